@@ -1,0 +1,8 @@
+"""kinlab: DH tables become URDF, load into Pinocchio, and stand beside your formulas."""
+
+from kinlab.dh import Convention, DHLink, DHTable
+from kinlab.errors import KinlabError
+
+__version__ = "0.1.0"
+
+__all__ = ["Convention", "DHLink", "DHTable", "KinlabError", "__version__"]

@@ -1,0 +1,93 @@
+"""Checks of arrays at the door: shape, type, finiteness, orthonormality."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from kinlab.errors import KinlabError, StateError
+from kinlab.tolerances import TOLERANCES
+
+Array = NDArray[np.float64]
+
+
+def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateError) -> Array:
+    """Reads real numbers as float64 and refuses everything else, NaN and infinity included.
+
+    Args:
+        value: anything numpy reads as an array of real numbers.
+        what: how to name it in a message, such as ``"robot 'ur5': q"``.
+        error: the class to raise.
+
+    Returns:
+        A float64 array (the same object where nothing had to change).
+
+    Raises:
+        KinlabError: (the class given) complex, boolean, text or ragged input, NaN, infinity.
+    """
+    try:
+        array = np.asarray(value)
+    except ValueError as problem:
+        raise error(f"{what}: rows of unequal length ({problem})") from None
+    if array.dtype.kind not in "iuf":
+        raise error(f"{what}: dtype {array.dtype} is not real numbers")
+    result: Array = np.asarray(array, dtype=np.float64)
+    if not np.isfinite(result).all():
+        place = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
+        where = f" at index {place[0] if len(place) == 1 else place}" if place else ""
+        raise error(f"{what}: {array[place]}{where}; every entry must be finite")
+    return result
+
+
+def shaped(
+    value: ArrayLike,
+    shape: tuple[int, ...],
+    what: str,
+    error: type[KinlabError] = StateError,
+) -> Array:
+    """As :func:`real_array`, and the shape must be the one given."""
+    array = real_array(value, what, error)
+    if array.shape != shape:
+        raise error(f"{what}: shape {array.shape}; expected {shape}")
+    return array
+
+
+def rigid_transform(value: ArrayLike, what: str, error: type[KinlabError] = StateError) -> Array:
+    """Reads homogeneous transforms of shape (..., 4, 4) and checks that they are rigid.
+
+    Args:
+        value: the transform or transforms.
+        what: how to name it in a message.
+        error: the class to raise.
+
+    Returns:
+        float64 array of the same shape.
+
+    Raises:
+        KinlabError: (the class given) wrong shape, last row not 0 0 0 1, rotation not
+            orthonormal (says by how much), or a mirror (determinant -1).
+    """
+    array = real_array(value, what, error)
+    if array.ndim < 2 or array.shape[-2:] != (4, 4):
+        raise error(f"{what}: shape {array.shape}; expected (4, 4)")
+    if not np.array_equal(
+        array[..., 3, :], np.broadcast_to([0.0, 0.0, 0.0, 1.0], array[..., 3, :].shape)
+    ):
+        raise error(f"{what}: the last row must be 0 0 0 1")
+    rotation = array[..., :3, :3]
+    miss = float(np.max(np.abs(np.swapaxes(rotation, -1, -2) @ rotation - np.eye(3)), initial=0.0))
+    if miss > TOLERANCES.orthonormal:
+        raise error(
+            f"{what}: the rotation is not orthonormal, R^T R misses 1 by {miss:.3g} "
+            f"(at most {TOLERANCES.orthonormal:g})"
+        )
+    if np.any(np.linalg.det(rotation) < 0):
+        raise error(f"{what}: the rotation is a mirror (determinant -1); it must be +1")
+    return array
+
+
+def frozen(array: Array) -> Array:
+    """A private copy that nobody can write to."""
+    copy = np.array(array, dtype=np.float64)
+    copy.flags.writeable = False
+    return copy

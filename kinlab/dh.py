@@ -1,0 +1,353 @@
+"""DH tables: links, conventions, and the hand product of link transforms.
+
+Nothing from Pinocchio is used here, so ``DHTable.fk`` is an oracle for the engine.
+
+Sources: note 000 section 三 and Craig, *Introduction to Robotics*, section 3.4 (modified);
+note 002 and Siciliano et al., *Robotics*, section 2.8 (standard).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab import table_io
+from kinlab.arrays import Array, frozen, real_array, rigid_transform, shaped
+from kinlab.convention import Convention, read_convention
+from kinlab.errors import StateError, TableError
+from kinlab.files import write_text
+from kinlab.tolerances import TOLERANCES
+
+GRAVITY = (0.0, 0.0, -9.81)
+
+
+@dataclass(frozen=True, eq=False)
+class DHLink:
+    """One row of a DH table with the link's limits and inertia.
+
+    Attributes:
+        joint: ``"revolute"`` or ``"prismatic"``.
+        a: length along x, metres (modified: a_{i-1}).
+        alpha: twist about x, radians (modified: alpha_{i-1}).
+        d: offset along z, metres; for a prismatic joint the constant added to q.
+        theta: angle about z, radians; for a revolute joint the constant added to q.
+        flip: the joint turns or slides against z: q enters with a minus sign.
+        lower, upper: limits of q, radians or metres. Not stated: one turn (±pi), or ±1 m.
+        velocity: limit, rad/s or m/s.
+        effort: limit, N m or N.
+        mass: kg.
+        com: centre of mass in DH frame i, metres, shape (3,).
+        inertia: tensor about the centre of mass with the axes of DH frame i, kg m², (3, 3).
+        armature: rotor inertia reflected to the joint, kg m² or kg; adds to M_ii.
+        name: the joint's name; ``None`` numbers it.
+
+    Raises:
+        TableError: a value that is no number, not finite, or physically impossible.
+    """
+
+    joint: Literal["revolute", "prismatic"] = "revolute"
+    a: float = 0.0
+    alpha: float = 0.0
+    d: float = 0.0
+    theta: float = 0.0
+    flip: bool = False
+    lower: float | None = None
+    upper: float | None = None
+    velocity: float = 10.0
+    effort: float = 1000.0
+    mass: float = 0.0
+    com: ArrayLike = (0.0, 0.0, 0.0)
+    inertia: ArrayLike = field(default_factory=lambda: np.zeros((3, 3)))
+    armature: float = 0.0
+    name: str | None = None
+
+    def __post_init__(self) -> None:
+        place = f"link {self.name!r}" if self.name else "link"
+        if self.joint not in ("revolute", "prismatic"):
+            raise TableError(
+                f'{place}: joint type {self.joint!r}; choose "revolute" or "prismatic"'
+            )
+        if not isinstance(self.flip, (bool, np.bool_)):
+            raise TableError(f"{place}: flip is {self.flip!r}; it must be true or false")
+        reach = math.pi if self.joint == "revolute" else 1.0
+        defaults = {"lower": -reach, "upper": reach}
+        for column in ("a", "alpha", "d", "theta", "lower", "upper", "velocity", "effort",
+                       "mass", "armature"):  # fmt: skip
+            value = getattr(self, column)
+            value = defaults[column] if value is None and column in defaults else value
+            number = float(shaped(value, (), f"{place}: {column}", TableError))
+            object.__setattr__(self, column, number)
+        com = shaped(self.com, (3,), f"{place}: com", TableError)
+        inertia = shaped(self.inertia, (3, 3), f"{place}: inertia", TableError)
+        object.__setattr__(self, "com", frozen(com))
+        object.__setattr__(self, "inertia", frozen(inertia))
+        self._check_physics(place)
+
+    def _check_physics(self, place: str) -> None:
+        assert self.lower is not None and self.upper is not None
+        if self.lower > self.upper:
+            raise TableError(f"{place}: lower {self.lower:g} is above upper {self.upper:g}")
+        for column in ("mass", "armature", "velocity", "effort"):
+            if getattr(self, column) < 0:
+                raise TableError(f"{place}: {column} is {getattr(self, column):g}; it must be >= 0")
+        check_inertia(np.asarray(self.inertia), place, TableError)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DHLink):
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    def __hash__(self) -> int:
+        return hash((self.joint, self.a, self.alpha, self.d, self.theta, self.mass))
+
+
+def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
+    """Refuses a tensor that no distribution of mass can have.
+
+    Args:
+        inertia: (3, 3) about the centre of mass, kg m².
+        place: what to put in front of the message.
+        error: the class to raise.
+
+    Raises:
+        Exception: (the class given) not symmetric, negative, or I1 + I2 < I3 for the
+            principal moments (the triangle inequality).
+    """
+    scale = float(np.max(np.abs(inertia), initial=0.0))
+    skew = float(np.max(np.abs(inertia - inertia.T)))
+    if skew > TOLERANCES.inertia_symmetry * scale:
+        raise error(f"{place}: inertia is not symmetric (off by {skew:.3g} kg m^2)")
+    principal = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
+    allowance = TOLERANCES.inertia_triangle * scale
+    if principal[0] < -allowance:
+        raise error(
+            f"{place}: inertia is not positive (a principal moment is {principal[0]:.3g} kg m^2)"
+        )
+    if principal[0] + principal[1] < principal[2] - allowance:
+        raise error(
+            f"{place}: inertia breaks the triangle inequality: principal moments "
+            f"{principal[0]:.4g} + {principal[1]:.4g} < {principal[2]:.4g} kg m^2"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class DHTable:
+    """A serial arm as a DH table.
+
+    Attributes:
+        name: the arm's name.
+        convention: ``"standard"`` or ``"modified"``; required.
+        links: the rows, from base to tool.
+        base: frame 0 in the world, (4, 4).
+        tool: the tool in DH frame n, (4, 4).
+        gravity: acceleration of gravity in the world, m/s², (3,).
+        source: where the numbers come from.
+        tool_name: name of the tool frame in the URDF.
+
+    Raises:
+        TableError: convention missing or unknown, no links, transforms not rigid.
+    """
+
+    name: str
+    convention: Convention | str | None = None
+    links: Sequence[DHLink] = ()
+    base: ArrayLike = field(default_factory=lambda: np.eye(4))
+    tool: ArrayLike = field(default_factory=lambda: np.eye(4))
+    gravity: ArrayLike = GRAVITY
+    source: str = ""
+    tool_name: str = "tool"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.name, str) or not self.name.strip():
+            raise TableError(f"table: name is {self.name!r}; it must be a word")
+        place = f"table {self.name!r}"
+        object.__setattr__(self, "convention", read_convention(self.convention, place))
+        links = tuple(self.links)
+        if not links:
+            raise TableError(f"{place}: it has no links")
+        for i, link in enumerate(links, 1):
+            if not isinstance(link, DHLink):
+                raise TableError(f"{place}, link {i}: {type(link).__name__} is not a DHLink")
+        object.__setattr__(self, "links", links)
+        names = [link.name or f"joint_{i}" for i, link in enumerate(links, 1)]
+        for i, name in enumerate(names, 1):
+            if name in names[: i - 1]:
+                raise TableError(f"{place}, link {i}: the name {name!r} is used twice")
+        for which in ("base", "tool"):
+            transform = rigid_transform(getattr(self, which), f"{place}: {which}", TableError)
+            shaped(transform, (4, 4), f"{place}: {which}", TableError)
+            object.__setattr__(self, which, frozen(transform))
+        gravity = shaped(self.gravity, (3,), f"{place}: gravity", TableError)
+        object.__setattr__(self, "gravity", frozen(gravity))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DHTable):
+            return NotImplemented
+        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.convention, self.links))
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.links)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, numbered where the table names none."""
+        return tuple(link.name or f"joint_{i}" for i, link in enumerate(self.links, 1))
+
+    def link_transforms(self, q: ArrayLike) -> Array:
+        """Each link's own transform ^{i-1}T_i, without base and tool.
+
+        Args:
+            q: joint positions, (n,) or (N, n), rad or m.
+
+        Returns:
+            (n, 4, 4) or (N, n, 4, 4).
+
+        Raises:
+            StateError: q of another length or type, or not finite.
+        """
+        values = self._read_q(q)
+        transforms = np.empty((*values.shape, 4, 4))
+        for i, link in enumerate(self.links):
+            move = -values[..., i] if link.flip else values[..., i]
+            revolute = link.joint == "revolute"
+            theta = link.theta + move if revolute else np.full_like(move, link.theta)
+            d = np.full_like(move, link.d) if revolute else link.d + move
+            transforms[..., i, :, :] = link_transform(
+                Convention(str(self.convention)), link.a, link.alpha, d, theta
+            )
+        return transforms
+
+    def frames(self, q: ArrayLike) -> Array:
+        """DH frames 1 to n in the world, (n, 4, 4) or (N, n, 4, 4); the tool is not applied."""
+        steps = self.link_transforms(q)
+        out = np.empty_like(steps)
+        current = np.asarray(self.base)
+        for i in range(self.n):
+            current = current @ steps[..., i, :, :]
+            out[..., i, :, :] = current
+        return out
+
+    def fk(self, q: ArrayLike) -> Array:
+        """Forward kinematics by hand: the product of the link transforms (note 000, 000.chain).
+
+        Args:
+            q: joint positions, (n,) or (N, n), rad or m.
+
+        Returns:
+            (n+1, 4, 4) or (N, n+1, 4, 4) in the world: the base frame 0, DH frames 1 to n-1,
+            and last the tool (DH frame n times ``tool``).
+
+        Raises:
+            StateError: q of another length or type, or not finite.
+        """
+        frames = self.frames(q)
+        base = np.broadcast_to(np.asarray(self.base), (*frames.shape[:-3], 1, 4, 4))
+        out = np.concatenate([base, frames], axis=-3)
+        out[..., -1, :, :] = out[..., -1, :, :] @ np.asarray(self.tool)
+        return out
+
+    def _read_q(self, q: ArrayLike) -> Array:
+        values = real_array(q, f"table {self.name!r}: q")
+        if values.ndim not in (1, 2) or values.shape[-1] != self.n:
+            raise StateError(
+                f"table {self.name!r}: q has shape {values.shape}; "
+                f"expected ({self.n},) or (N, {self.n})"
+            )
+        return values
+
+    @staticmethod
+    def load(path: str | Path, convention: str | None = None) -> DHTable:
+        """Reads a table from TOML or CSV; :mod:`kinlab.table_io` describes the formats.
+
+        Args:
+            path: a ``.toml`` or ``.csv`` file.
+            convention: for a CSV without a ``convention`` column.
+
+        Raises:
+            FileError: the file cannot be read, or is of another kind.
+            TableError: a missing or unknown column, or an impossible value, with its place.
+        """
+        return DHTable.from_columns(table_io.read(path, convention))
+
+    @staticmethod
+    def from_columns(columns: Mapping[str, Any]) -> DHTable:
+        """Builds a table from plain values, naming the row in every error.
+
+        Args:
+            columns: the fields of a table, with ``links`` as a list of mappings.
+
+        Raises:
+            TableError: an impossible value, with its place.
+        """
+        links = []
+        for i, row in enumerate(columns["links"], 1):
+            try:
+                links.append(DHLink(**row))
+            except TableError as problem:
+                said = str(problem).split(": ", 1)[1]  # the link does not know its row
+                raise TableError(f"table {columns['name']!r}, link {i}: {said}") from None
+        return DHTable(**{**columns, "links": links})
+
+    def save(self, path: str | Path) -> None:
+        """Writes the table as TOML; loading it again gives the same table, bit for bit.
+
+        Raises:
+            FileError: the file cannot be written; an old one stays whole.
+        """
+        write_text(path, self.to_toml())
+
+    def to_toml(self) -> str:
+        """The text that :meth:`save` writes."""
+        document = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "links"}
+        rows = [{f.name: getattr(link, f.name) for f in fields(link)} for link in self.links]
+        return table_io.dumps({**document, "links": rows})
+
+
+def link_transform(
+    convention: Convention, a: float, alpha: float, d: ArrayLike, theta: ArrayLike
+) -> Array:
+    """The transform ^{i-1}T_i of one row, written out entry by entry.
+
+    Args:
+        convention: which product of elementary transforms (see :class:`Convention`).
+        a: metres. alpha: radians.
+        d: metres, any shape S. theta: radians, shape S.
+
+    Returns:
+        (*S, 4, 4).
+    """
+    c, s = np.cos(theta), np.sin(theta)
+    ca, sa = math.cos(alpha), math.sin(alpha)
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    if convention is Convention.MODIFIED:
+        rows: list[list[Any]] = [
+            [c, -s, zero, a * one],
+            [s * ca, c * ca, -sa * one, -sa * np.asarray(d)],
+            [s * sa, c * sa, ca * one, ca * np.asarray(d)],
+            [zero, zero, zero, one],
+        ]
+    else:
+        rows = [
+            [c, -s * ca, s * sa, a * c],
+            [s, c * ca, -c * sa, a * s],
+            [zero, sa * one, ca * one, np.asarray(d)],
+            [zero, zero, zero, one],
+        ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _same(one: Any, two: Any) -> bool:
+    if isinstance(one, np.ndarray):
+        return np.array_equal(one, two)
+    return bool(one == two)

@@ -1,0 +1,77 @@
+"""Every error kinlab raises on purpose.
+
+A message names the place (table, link, joint, file, row), says what is wrong, and says what
+would be right. Catch ``KinlabError`` to catch them all; the command line turns each into one
+line and exit code 2.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class KinlabError(Exception):
+    """Root of the tree: something the caller gave cannot be used."""
+
+
+class TableError(KinlabError, ValueError):
+    """A DH table is incomplete or contradicts itself."""
+
+
+class ExpressionError(KinlabError, ValueError):
+    """A number or angle written as text cannot be read."""
+
+
+class UrdfError(KinlabError, ValueError):
+    """A URDF is not a tree of single-degree-of-freedom joints with sound numbers."""
+
+
+class StructureError(KinlabError, ValueError):
+    """A mechanism has the wrong shape for the request (a tree or loop where a chain is needed)."""
+
+
+class StateError(KinlabError, ValueError):
+    """A joint vector, pose or wrench has the wrong shape or type, or is not finite."""
+
+
+class InertiaError(KinlabError, ValueError):
+    """Dynamics were asked of a robot whose mass matrix is singular or absent."""
+
+
+class NameUnknownError(KinlabError, KeyError):
+    """A robot, frame, task, metric or quantity of that name does not exist."""
+
+    def __str__(self) -> str:  # KeyError would show the repr of the message
+        return str(self.args[0]) if self.args else ""
+
+
+class OptionError(KinlabError, ValueError):
+    """An option or tolerance has a value outside its valid range."""
+
+
+class FileError(KinlabError, OSError):
+    """A file cannot be read or written."""
+
+
+class MissingExtraError(KinlabError, ImportError):
+    """A feature needs an optional package that is not installed."""
+
+
+def near(name: str, valid: Iterable[str], *, limit: int = 5) -> str:
+    """Says which of the valid names are close to ``name``, or lists them when none is.
+
+    Args:
+        name: what the user wrote.
+        valid: the names that exist.
+        limit: how many near names to give.
+
+    Returns:
+        A sentence for the end of an error message.
+    """
+    names = list(dict.fromkeys(valid))
+    close = difflib.get_close_matches(name, names, n=limit, cutoff=0.5)
+    if close:
+        return "did you mean " + ", ".join(repr(c) for c in close) + "?"
+    shown = ", ".join(repr(n) for n in names[:40])
+    return f"choose one of {shown}" + (" ..." if len(names) > 40 else "")

@@ -1,0 +1,45 @@
+"""Every tolerance of kinlab in one frozen object, each with its reason."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """Named tolerances. All are relative or dimensionless unless a unit is given."""
+
+    orthonormal: float = 1e-9
+    """A rotation may miss R^T R = 1 by this much: rotations typed with ten digits pass, ones
+    typed with five are told how far they are off."""
+
+    inertia_symmetry: float = 1e-9
+    """Relative asymmetry of an inertia tensor that is still read as rounding."""
+
+    inertia_triangle: float = 1e-6
+    """Relative violation of I1 + I2 >= I3 that CAD exports with six digits show on thin plates
+    (equality is exact for a lamina, so rounding falls on either side)."""
+
+    massless: float = 1e-12
+    """Smallest eigenvalue of the mass matrix over the largest, below which M is singular."""
+
+    parallel_axes: float = 1e-10
+    """sin of the angle between two joint axes below which they are parallel (radians). Axes
+    from a URDF printed with ten digits fall below, the smallest calibrated skew stays above."""
+
+    intersecting_axes: float = 1e-10
+    """Distance between two lines, in metres, below which they intersect."""
+
+    formula_agrees: float = 1e-9
+    """Largest relative error at which a hand formula and the engine are the same formula. Two
+    double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
+    1e-3 or more."""
+
+    formula_differs: float = 1e-3
+    """A misprint must show at least this relative disagreement to be called shown."""
+
+    round_trip: float = 1e-10
+    """URDF to DH and back: frames, M and g may move by this much (relative for M and g)."""
+
+
+TOLERANCES = Tolerances()
