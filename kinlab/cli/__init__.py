@@ -22,6 +22,13 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+@app.callback()
+def _root() -> None:
+    """Keeps commands named, even where there is only one."""
+
+
 for _group in _GROUPS:
     _group.register(app)
 
