@@ -63,7 +63,7 @@ class Formula:
             where only some entries are meant: ``"inverse_dynamics[0]"``.
         robots: names of mechanisms, or of groups (``"serial"``: every one shipped).
         function: the corrected form; see the module's docstring for how it is called.
-        latex: the corrected form, typeset. What was corrected stands in ``\\right{...}``.
+        latex: the corrected form, typeset. What was corrected stands in ``\\fixed{...}``.
         printed: the note's own form where that is wrong.
         remark: what the note leaves unsaid, or says wrongly in words only.
     """

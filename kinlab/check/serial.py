@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,7 +14,7 @@ from kinlab import library
 from kinlab.arrays import Array
 from kinlab.check.quantity import Domain
 from kinlab.convention import Convention
-from kinlab.dh import DHTable
+from kinlab.dh import DHLink, DHTable
 from kinlab.errors import NameUnknownError, StructureError, near
 from kinlab.notes.arm import Arm
 from kinlab.robot import Robot
@@ -76,7 +77,21 @@ def load(robot: Any) -> Robot:
 
 @cache
 def _named(name: str) -> Robot:
-    return library.load(name)
+    special = SPECIAL.get(name)
+    return library.load(name) if special is None else Robot.from_dh(special())
+
+
+def _isotropic_2r() -> DHTable:
+    second = 0.4
+    first = float(np.sqrt(2.0)) * second
+    rods = (DHLink(a=0.0, mass=1.0, com=(0.2, 0.0, 0.0)), DHLink(a=first, mass=1.0, com=(0.1, 0, 0)))
+    tool = np.eye(4)
+    tool[0, 3] = second
+    return DHTable("planar2r_isotropic", "modified", rods, tool=tool, gravity=(0.0, -9.81, 0.0))
+
+
+SPECIAL = {"planar2r_isotropic": _isotropic_2r}
+"""Arms that only a formula of the notes asks for."""
 
 
 @cache
@@ -98,7 +113,7 @@ GROUPS: dict[str, Callable[[DHTable], bool]] = {
     "standard": lambda table: table.convention is Convention.STANDARD,
     "modified": lambda table: table.convention is Convention.MODIFIED,
     "sliding": lambda table: any(link.joint == "prismatic" for link in table.links),
-    "spatial": lambda table: any(link.alpha for link in table.links),
+    "spatial": lambda table: any(abs(math.sin(link.alpha)) > 1e-6 for link in table.links),
 }
 """Groups of shipped robots, by a rule on the table."""
 
