@@ -25,7 +25,8 @@ class Tolerances:
     rounding residue such as -2e-35 in links that stand for a frame only."""
 
     massless: float = 1e-12
-    """Smallest eigenvalue of the mass matrix over the largest, below which M is singular."""
+    """A joint moves no inertia when what it feels with the joints behind it free is below this
+    share of what it feels with them locked: rounding leaves 1e-16, a 50-joint chain 1e-4."""
 
     parallel_axes: float = 1e-8
     """sin of the angle between two joint axes below which they are parallel. Calling an angle s

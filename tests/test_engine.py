@@ -98,7 +98,8 @@ def test_energies_and_power(robot):
         mass = kl.mass_matrix(robot, q)
         assert kl.kinetic_energy(robot, q, v) == pytest.approx(0.5 * v @ mass @ v, rel=1e-12)
         gradient = [
-            (kl.potential_energy(robot, q + h * e) - kl.potential_energy(robot, q - h * e)) / (2 * h)
+            (kl.potential_energy(robot, q + h * e) - kl.potential_energy(robot, q - h * e))
+            / (2 * h)
             for e in np.eye(robot.n)
         ]
         assert kl.gravity_torques(robot, q) == pytest.approx(gradient, abs=1e-6)
@@ -163,7 +164,9 @@ def test_bad_calls():
     robot = kl.load("scara")
     with pytest.raises(StateError, match=r"robot 'scara': q has shape \(3,\); expected \(4,\) or"):
         kl.fk(robot, [0, 0, 0])
-    with pytest.raises(NameUnknownError, match="frame 'world' is unknown; choose one of 'base', 'tool'"):
+    with pytest.raises(
+        NameUnknownError, match="frame 'world' is unknown; choose one of 'base', 'tool'"
+    ):
         kl.jacobian(robot, np.zeros(4), "world")
     with pytest.raises(NameUnknownError, match="frame 'tol' is unknown; did you mean 'tool'"):
         kl.jacobian(robot, np.zeros(4), "tol")

@@ -91,6 +91,28 @@ def test_names_used_twice():
         kl.DHTable("arm", "standard", [kl.DHLink(name="elbow"), kl.DHLink(name="elbow")])
 
 
+@pytest.mark.parametrize(
+    ("names", "message"),
+    [
+        ({"name": "  "}, "table: name is '  '; it must be printable text"),
+        ({"name": "a\x00"}, "it must be printable text"),
+        ({"name": 5}, "table: name is 5"),
+        ({"name": "arm", "tool_name": "link_2"}, "tool_name 'link_2' is the name of a link"),
+        ({"name": "arm", "tool_name": ""}, "table 'arm': tool_name is ''"),
+    ],
+)
+def test_bad_names(names, message):
+    with pytest.raises(TableError, match=message):
+        kl.DHTable(convention="standard", links=[kl.DHLink()], **names)
+    with pytest.raises(TableError, match="name is 7"):
+        kl.DHLink(name=7)
+
+
+def test_any_source_makes_a_sound_urdf():
+    table = kl.DHTable("arm", "standard", [kl.DHLink(a=1.0)], source="a--b <&> -->\n\x01 ü -")
+    assert kl.Robot.from_dh(table).n == 1
+
+
 CSV = """joint, a, alpha, d, theta, mass, com_x, ixx, iyy, izz, convention
 revolute, 0.3, pi/2, 0, 0, 1.5, 0.1, 0.1, 0.1, 0.1, modified
 prismatic, 0.2, -90 deg, 0.1, 0, 2, 0, 0.1, 0.1, 0.1, modified
@@ -221,5 +243,3 @@ def test_tables_are_frozen():
     ):
         with pytest.raises((AttributeError, ValueError)):
             attempt()
-
-

@@ -131,7 +131,9 @@ def test_utf16_does_not_smuggle_entities(tmp_path):
 
 
 def test_continuous_joint_becomes_revolute_with_wide_limits():
-    arm = kl.Robot.from_urdf(robot(link("a"), joint("j1", "base", "a", kind="continuous", inner="")))
+    arm = kl.Robot.from_urdf(
+        robot(link("a"), joint("j1", "base", "a", kind="continuous", inner=""))
+    )
     assert arm.model.nq == arm.model.nv == 1
     assert (arm.lower[0], arm.upper[0]) == (-urdf_read.WIDE_TURN, urdf_read.WIDE_TURN)
 
@@ -157,7 +159,9 @@ def massless(last_mass):
 @pytest.mark.parametrize("function", ["mass_matrix", "gravity_torques", "potential_energy"])
 def test_moving_massless_link_names_its_joint(function):
     arm = massless(0)
-    with pytest.raises(InertiaError, match="the mass matrix is singular: joint 'j2' moves no inertia"):
+    with pytest.raises(
+        InertiaError, match="the mass matrix is singular: joint 'j2' moves no inertia"
+    ):
         getattr(kl, function)(arm, np.zeros(2))
     with pytest.raises(InertiaError, match="joint 'j2'"):
         kl.forward_dynamics(arm, np.zeros(2), np.zeros(2), np.zeros(2))
