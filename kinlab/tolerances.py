@@ -31,6 +31,10 @@ class Tolerances:
     """sin of the angle between two joint axes below which they are parallel (radians). Axes
     from a URDF printed with ten digits fall below, the smallest calibrated skew stays above."""
 
+    never_moves: float = 1e-9
+    """A singular value of J, relative to the largest, below which a coordinate of the task is
+    out of the arm's reach at that state; over several states in general position: everywhere."""
+
     intersecting_axes: float = 1e-10
     """Distance between two lines, in metres, below which they intersect."""
 
