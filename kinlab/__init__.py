@@ -12,6 +12,7 @@ from kinlab.dynamics import (
     potential_energy,
 )
 from kinlab.errors import KinlabError
+from kinlab.extract import to_dh
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
 from kinlab.robot import Robot
@@ -38,5 +39,6 @@ __all__ = [
     "mass_matrix",
     "potential_energy",
     "statics",
+    "to_dh",
     "to_urdf",
 ]

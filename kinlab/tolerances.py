@@ -27,9 +27,10 @@ class Tolerances:
     massless: float = 1e-12
     """Smallest eigenvalue of the mass matrix over the largest, below which M is singular."""
 
-    parallel_axes: float = 1e-10
-    """sin of the angle between two joint axes below which they are parallel (radians). Axes
-    from a URDF printed with ten digits fall below, the smallest calibrated skew stays above."""
+    parallel_axes: float = 1e-8
+    """sin of the angle between two joint axes below which they are parallel. Calling an angle s
+    zero moves the tool by s times the arm's length; keeping it puts the common normal 1/s away,
+    where rounding weighs 1e-16/s. Both are 1e-8 here, the worst case."""
 
     never_moves: float = 1e-9
     """A singular value of J, relative to the largest, below which a coordinate of the task is
@@ -45,6 +46,10 @@ class Tolerances:
 
     formula_differs: float = 1e-3
     """A misprint must show at least this relative disagreement to be called shown."""
+
+    residue: float = 1e-13
+    """Entries this close to zero, or angles this close to a multiple of 90°, are rounding residue
+    of a product of rotations (a few 1e-16) and are printed as the number meant."""
 
     round_trip: float = 1e-10
     """URDF to DH and back: frames, M and g may move by this much (relative for M and g)."""
