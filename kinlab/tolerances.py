@@ -33,6 +33,10 @@ class Tolerances:
     zero moves the tool by s times the arm's length; keeping it puts the common normal 1/s away,
     where rounding weighs 1e-16/s. Both are 1e-8 here, the worst case."""
 
+    never_moves: float = 1e-9
+    """A singular value of J, relative to the largest, below which a coordinate of the task is
+    out of the arm's reach at that state; over several states in general position: everywhere."""
+
     intersecting_axes: float = 1e-10
     """Distance between two lines, in metres, below which they intersect."""
 
