@@ -119,7 +119,7 @@ def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
         Exception: (the class given) not symmetric, negative, or I1 + I2 < I3 for the
             principal moments (the triangle inequality).
     """
-    scale = float(np.max(np.abs(inertia), initial=0.0))
+    scale = max(float(np.max(np.abs(inertia), initial=0.0)), TOLERANCES.inertia_floor)
     skew = float(np.max(np.abs(inertia - inertia.T)))
     if skew > TOLERANCES.inertia_symmetry * scale:
         raise error(f"{place}: inertia is not symmetric (off by {skew:.3g} kg m^2)")

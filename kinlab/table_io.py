@@ -27,6 +27,7 @@ from kinlab.convention import read_convention
 from kinlab.errors import ExpressionError, FileError, TableError, near
 from kinlab.expressions import parse_angle, parse_number
 from kinlab.files import read_text
+from kinlab.rotations import rpy_matrix
 
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
 _LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature")
@@ -181,19 +182,6 @@ def _transform(value: object, place: str) -> Array:
         except ExpressionError as problem:
             raise TableError(f"{place}.rpy: {problem}") from None
     return out
-
-
-def rpy_matrix(roll: float, pitch: float, yaw: float) -> Array:
-    """Rz(yaw) Ry(pitch) Rx(roll), URDF's fixed-axis angles; (3, 3)."""
-    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
-    cy, sy = np.cos(yaw), np.sin(yaw)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
 
 
 def _tensor(value: object, place: str) -> Array:

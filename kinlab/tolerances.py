@@ -20,6 +20,10 @@ class Tolerances:
     """Relative violation of I1 + I2 >= I3 that CAD exports with six digits show on thin plates
     (equality is exact for a lamina, so rounding falls on either side)."""
 
+    inertia_floor: float = 1e-9
+    """kg m². Moments below this are judged as if they were this large: exported files hold
+    rounding residue such as -2e-35 in links that stand for a frame only."""
+
     massless: float = 1e-12
     """Smallest eigenvalue of the mass matrix over the largest, below which M is singular."""
 

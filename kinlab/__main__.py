@@ -1,0 +1,5 @@
+"""``python -m kinlab`` is the ``kinlab`` command."""
+
+from kinlab.cli import main
+
+main()

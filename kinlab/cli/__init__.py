@@ -1,0 +1,48 @@
+"""The command line: each command parses, calls the API, prints.
+
+One file per group of commands; a new command is a new file and one line in ``_GROUPS``. A
+:class:`kinlab.errors.KinlabError` becomes one line on stderr and exit code 2.
+"""
+
+from __future__ import annotations
+
+import sys
+
+import typer
+
+from kinlab.cli import robots
+from kinlab.errors import KinlabError
+
+_GROUPS = (robots,)
+
+app = typer.Typer(
+    help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback()
+def _root() -> None:
+    """Keeps commands named, even where there is only one."""
+
+
+for _group in _GROUPS:
+    _group.register(app)
+
+
+def main() -> None:
+    """Entry point of the ``kinlab`` command."""
+    try:
+        app()
+    except KinlabError as problem:
+        print(f"kinlab: {problem}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        print("kinlab: stopped", file=sys.stderr)
+        sys.exit(130)
+    except BrokenPipeError:  # the reader of our output has gone, as in `kinlab list | head`
+        sys.stderr.close()
+        sys.exit(0)

@@ -1,0 +1,178 @@
+"""Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies.
+
+tau = M(q) qddot + C(q, qdot) qdot + g(q). Armatures are part of M; URDF damping and friction
+are not in any of these.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array
+from kinlab.kinematics import each_state, statics
+from kinlab.robot import Robot, require_inertia, scratch
+from kinlab.states import joint_vector, joint_vectors
+
+
+def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
+    """Joint-space inertia matrix M(q), symmetric positive definite (note 002, 002.M).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        (n, n) or (N, n, n), kg m² (kg for prismatic joints).
+
+    Raises:
+        StateError: q of the wrong shape or type, or not finite.
+        InertiaError: a joint moves no inertia.
+    """
+    require_inertia(robot)
+    return each_state(robot, _mass_matrix, joint_vector(robot, q, "q"))
+
+
+def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+    """Christoffel's C(q, qdot): C_ij = ½ Σ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qdot_k.
+
+    With it Mdot - 2C is skew (note 002, 002.C corrected and 002.skew).
+
+    Args:
+        robot: the robot.
+        q, v: joint positions and velocities, (n,) or (N, n).
+
+    Returns:
+        (n, n) or (N, n, n).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _coriolis, *joint_vectors(robot, q=q, v=v))
+
+
+def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
+    """Joint torques g(q) that hold the arm against gravity: g = dV/dq (note 002, 002.G).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        (n,) or (N, n), N m or N.
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _gravity, joint_vector(robot, q, "q"))
+
+
+def inverse_dynamics(
+    robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+) -> Array:
+    """Joint torques of a motion, by recursive Newton-Euler (note 000, 000.ne).
+
+    Args:
+        robot: the robot.
+        q, v, a: joint positions, velocities and accelerations, (n,) or (N, n).
+        wrench: (f, n) that the tool exerts on the environment, in base axes at the tool origin,
+            (6,) or (N, 6); adds J^T F.
+
+    Returns:
+        tau, (n,) or (N, n), N m or N.
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    q, v, a = joint_vectors(robot, q=q, v=v, a=a)
+    tau = each_state(robot, _rnea, q, v, a)
+    return tau if wrench is None else tau + statics(robot, q, wrench)
+
+
+def forward_dynamics(
+    robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
+) -> Array:
+    """Joint accelerations under joint torques, by the articulated-body algorithm.
+
+    Args:
+        robot: the robot.
+        q, v, tau: joint positions, velocities and torques, (n,) or (N, n).
+        wrench: as in :func:`inverse_dynamics`.
+
+    Returns:
+        qddot, (n,) or (N, n), rad/s² or m/s².
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
+    return each_state(robot, _aba, q, v, tau if wrench is None else tau - statics(robot, q, wrench))
+
+
+def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
+    """T = ½ qdot^T M qdot, armatures included (note 002).
+
+    Args:
+        robot: the robot.
+        q, v: joint positions and velocities, (n,) or (N, n).
+
+    Returns:
+        Joule: a float, or (N,).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _kinetic, *joint_vectors(robot, q=q, v=v))
+
+
+def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
+    """V = -Σ m g^T p_C, zero at the base origin (note 000, 000.lag).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        Joule: a float, or (N,).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _potential, joint_vector(robot, q, "q"))
+
+
+def _mass_matrix(robot: Robot, q: Array) -> Array:
+    upper = pin.crba(robot.model, scratch(robot), q)
+    full: Array = np.triu(upper) + np.triu(upper, 1).T
+    return full
+
+
+def _coriolis(robot: Robot, q: Array, v: Array) -> Array:
+    return np.array(pin.computeCoriolisMatrix(robot.model, scratch(robot), q, v))
+
+
+def _gravity(robot: Robot, q: Array) -> Array:
+    return np.array(pin.computeGeneralizedGravity(robot.model, scratch(robot), q))
+
+
+def _rnea(robot: Robot, q: Array, v: Array, a: Array) -> Array:
+    return np.array(pin.rnea(robot.model, scratch(robot), q, v, a))
+
+
+def _aba(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
+    return np.array(pin.aba(robot.model, scratch(robot), q, v, tau))
+
+
+def _kinetic(robot: Robot, q: Array, v: Array) -> float:
+    return float(pin.computeKineticEnergy(robot.model, scratch(robot), q, v))
+
+
+def _potential(robot: Robot, q: Array) -> float:
+    return float(pin.computePotentialEnergy(robot.model, scratch(robot), q))

@@ -1,0 +1,333 @@
+"""Robot: a small frozen handle of a serial arm in Pinocchio. It only looks things up.
+
+Every robot has nq == nv == n: a continuous joint becomes a revolute one with wide limits, and
+what does not lie on the way from the root to the tool is locked at zero.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab import urdf_read
+from kinlab.arrays import Array, frozen
+from kinlab.dh import DHTable
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, UrdfError, near
+from kinlab.tolerances import TOLERANCES
+from kinlab.urdf import EXTENSION, to_urdf
+
+_TOOL_NAMES = ("tool", "tool0", "tcp", "end_effector", "ee_link", "eef", "ee", "flange", "hand")
+"""Ends of link names that mean a tool, the best first."""
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A serial arm: a Pinocchio model and the frame that counts as its tool.
+
+    Build one with :meth:`from_dh`, :meth:`from_urdf` or :func:`kinlab.load`.
+
+    Attributes:
+        name: what messages call it.
+        model: the ``pin.Model``; nq == nv == n. Do not write to it.
+        tool: index of the tool frame in ``model.frames``.
+        urdf: the URDF text the model was built from.
+        table: the DH table, where the robot comes from one.
+        folder: where meshes are looked for, where the robot comes from a file.
+        source: where the numbers come from.
+        n: number of joints.
+        lower, upper: limits of q, (n,), rad or m.
+    """
+
+    name: str
+    model: Any = field(repr=False)
+    tool: int
+    urdf: str = field(default="", repr=False)
+    table: DHTable | None = field(default=None, repr=False)
+    folder: Path | None = None
+    source: str = ""
+    n: int = field(init=False)
+    lower: Array = field(init=False, repr=False)
+    upper: Array = field(init=False, repr=False)
+    singular_mass: str = field(init=False, repr=False)
+    """Why the mass matrix is singular, or an empty string."""
+    shape: tuple[int] = field(init=False, repr=False)
+    _scratch: threading.local = field(init=False, repr=False, default_factory=threading.local)
+
+    def __post_init__(self) -> None:
+        if self.model.nq != self.model.nv or self.model.nv != self.model.njoints - 1:
+            raise StructureError(
+                f"robot {self.name!r}: nq {self.model.nq}, nv {self.model.nv}, joints "
+                f"{self.model.njoints - 1}; every joint must have one degree of freedom (no "
+                "floating base; continuous joints as revolute)"
+            )
+        put = object.__setattr__
+        put(self, "n", int(self.model.nv))
+        put(self, "shape", (self.n,))
+        put(self, "lower", frozen(self.model.lowerPositionLimit))
+        put(self, "upper", frozen(self.model.upperPositionLimit))
+        put(self, "singular_mass", _why_singular(self.model, self.name))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Robot, (
+            self.name, self.model, self.tool, self.urdf, self.table, self.folder, self.source,
+        )  # fmt: skip
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints in the order of q."""
+        return tuple(str(name) for name in list(self.model.names)[1:])
+
+    @property
+    def tool_name(self) -> str:
+        """Name of the tool frame."""
+        return str(self.model.frames[self.tool].name)
+
+    @staticmethod
+    def from_dh(table: DHTable) -> Robot:
+        """Builds a robot from a DH table, by way of its URDF.
+
+        Args:
+            table: the DH table.
+
+        Returns:
+            The robot; its tool frame is DH frame n times ``table.tool``.
+        """
+        text = to_urdf(table)
+        robot = Robot.from_urdf(text, tool=table.tool_name)
+        return Robot(table.name, robot.model, robot.tool, text, table, None, table.source)
+
+    @staticmethod
+    def from_urdf(path_or_xml: str | Path, tool: str | None = None) -> Robot:
+        """Builds a robot from a URDF file or text.
+
+        Args:
+            path_or_xml: a file, or the XML itself.
+            tool: name of the link that is the tool. May be left out where all moving joints
+                lie on one chain; then it is that chain's last link, and of several links fixed
+                to it one with a usual tool name (tool, tool0, ee_link, ...), or the outermost.
+
+        Returns:
+            The robot of the joints between root and tool; all others are locked at zero.
+
+        Raises:
+            FileError: the file cannot be read.
+            UrdfError: not a sound URDF; the message names the link or joint.
+            StructureError: a tree and no tool named, no moving joint on the way to the tool, or
+                a mimic or multi-degree-of-freedom joint on it.
+            NameUnknownError: no link of that name.
+        """
+        text, file = urdf_read.load_source(path_or_xml)
+        place = f"urdf {file.name!r}" if file else "urdf"
+        root = urdf_read.parse(text, place)
+        name = root.get("name") or (file.stem if file else "robot")
+        place = place if file else f"urdf {name!r}"
+        base = urdf_read.check(root, place)
+        chain, tip = _chain(root, base, tool, place)
+        first = next(j for j in root.findall("joint") if j.get("name") == chain[0])
+        moved = set(urdf_read.links_behind(root, first.find("child").get("link")))
+        urdf_read.check_moved_inertias(root, moved, place)
+        model = _build(root, chain, place)
+        if not model.existFrame(tip, pin.FrameType.BODY):
+            raise UrdfError(f"{place}: Pinocchio made no frame for link {tip!r}")
+        frame = model.getFrameId(tip, pin.FrameType.BODY)
+        folder = file.resolve().parent if file else None
+        return Robot(name, model, frame, text, None, folder, str(file) if file else "URDF text")
+
+    @staticmethod
+    def from_model(model: Any, tool: str | None = None) -> Robot:
+        """Wraps a ``pin.Model`` whose joints form one chain.
+
+        Args:
+            model: the model; every joint one degree of freedom with nq == nv.
+            tool: name of the tool frame; left out, the last body frame.
+
+        Raises:
+            StructureError: the joints branch, or a joint has another number of freedoms.
+            NameUnknownError: no frame of that name.
+        """
+        where = f"model {model.name!r}"
+        for j in range(1, model.njoints):
+            if model.parents[j] != j - 1:
+                raise StructureError(
+                    f"{where}: joint {model.names[j]!r} branches off; reduce the model to one "
+                    "chain, or load the URDF with a tool named"
+                )
+        names = [str(frame.name) for frame in model.frames]
+        if tool is not None and tool not in names:
+            raise NameUnknownError(f"{where}: frame {tool!r} does not exist; {near(tool, names)}")
+        frame = model.getFrameId(tool) if tool is not None else len(names) - 1
+        return Robot(str(model.name), model, frame, source="pin.Model")
+
+
+def scratch(robot: Robot) -> Any:
+    """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
+    try:
+        return robot._scratch.data
+    except AttributeError:
+        robot._scratch.data = robot.model.createData()
+        return robot._scratch.data
+
+
+def require_inertia(robot: Robot) -> None:
+    """Refuses dynamics of a robot whose mass matrix is singular.
+
+    Raises:
+        InertiaError: naming the joint that moves nothing.
+    """
+    if robot.singular_mass:
+        raise InertiaError(robot.singular_mass)
+
+
+def frame_id(robot: Robot, name: str) -> int:
+    """Index of a frame by name.
+
+    Raises:
+        NameUnknownError: with the near names.
+    """
+    names = [str(frame.name) for frame in robot.model.frames]
+    if name not in names:
+        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+        raise NameUnknownError(message)
+    return int(robot.model.getFrameId(name))
+
+
+def _chain(root: Any, base: str, tool: str | None, place: str) -> tuple[list[str], str]:
+    """Names of the moving joints from root to tool, and the tool link."""
+    above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
+    links = [link.get("name") for link in root.findall("link")]
+    if tool is None:
+        tool = _default_tool(root, base, place)
+    elif tool not in links:
+        raise NameUnknownError(f"{place}: link {tool!r} does not exist; {near(tool, links)}")
+    chain = []
+    link = tool
+    while link in above:
+        joint = above[link]
+        kind = joint.get("type")
+        if kind != "fixed":
+            if kind not in urdf_read.MOVING:
+                raise StructureError(
+                    f"{place}: joint {joint.get('name')!r} is {kind}; joints with several degrees "
+                    "of freedom are not accepted between root and tool"
+                )
+            if joint.find("mimic") is not None:
+                raise StructureError(
+                    f"{place}: joint {joint.get('name')!r} mimics another joint and lies between "
+                    f"root and tool {tool!r}; name a tool in front of it"
+                )
+            chain.append(joint.get("name"))
+        link = joint.find("parent").get("link")
+    if not chain:
+        raise StructureError(f"{place}: no moving joint between {base!r} and tool {tool!r}")
+    return chain[::-1], tool
+
+
+def _default_tool(root: Any, base: str, place: str) -> str:
+    below = urdf_read.children(root)
+
+    def moving_below(link: str) -> list[Any]:
+        found = []
+        for joint in below[link]:
+            if joint.get("type") == "fixed":
+                found += moving_below(joint.find("child").get("link"))
+            else:
+                found.append(joint)
+        return found
+
+    link = base
+    while moving := moving_below(link):
+        if len(moving) > 1:
+            raise StructureError(
+                f"{place}: a tree: after link {link!r} branch the joints "
+                f"{', '.join(repr(j.get('name')) for j in moving[:6])}; name the tool, one of "
+                + ", ".join(repr(tip) for tip in _tips(below, base)[:12])
+            )
+        link = moving[0].find("child").get("link")
+    rigid = urdf_read.links_behind(root, link)
+    for end in _TOOL_NAMES:
+        for name in rigid:
+            if name == end or name.endswith(f"_{end}"):
+                return name
+    return rigid[-1]
+
+
+def _tips(below: dict[str, list[Any]], link: str) -> list[str]:
+    """Links with nothing behind them, depth first."""
+    if not below[link]:
+        return [link]
+    return [t for j in below[link] for t in _tips(below, j.find("child").get("link"))]
+
+
+def _build(root: Any, chain: list[str], place: str) -> Any:
+    from lxml import etree
+
+    extension = root.find(EXTENSION)
+    for joint in root.findall("joint"):
+        if joint.get("type") == "continuous":
+            joint.set("type", "revolute")
+            limit = joint.find("limit")
+            if limit is None:
+                limit = etree.SubElement(joint, "limit", effort="1000.0", velocity="10.0")
+            limit.set("lower", repr(-urdf_read.WIDE_TURN))
+            limit.set("upper", repr(urdf_read.WIDE_TURN))
+        mimic = joint.find("mimic")
+        if mimic is not None:
+            joint.remove(mimic)
+    if extension is not None:
+        root.remove(extension)
+    try:
+        model = pin.buildModelFromXML(etree.tostring(root, encoding="unicode"))
+    except (ValueError, RuntimeError) as problem:
+        raise UrdfError(f"{place}: Pinocchio cannot read it: {problem}") from None
+    locked = [j for j in range(1, model.njoints) if str(model.names[j]) not in chain]
+    if locked:
+        model = pin.buildReducedModel(model, locked, pin.neutral(model))
+    if extension is not None:
+        _apply_extension(model, extension, place)
+    return model
+
+
+def _apply_extension(model: Any, extension: Any, place: str) -> None:
+    where = f"{place}: <{EXTENSION}>"
+    gravity = urdf_read.numbers(extension.get("gravity"), 3, (0, 0, -9.81), f"{where} gravity")
+    model.gravity.linear = gravity
+    armature = np.zeros(model.nv)
+    for element in extension.findall("joint"):
+        if model.existJointName(element.get("name") or ""):
+            joint = model.joints[model.getJointId(element.get("name"))]
+            value = urdf_read.numbers(element.get("armature"), 1, (0.0,), f"{where} armature")
+            armature[joint.idx_v] = value[0]
+    model.armature = armature
+
+
+def _why_singular(model: Any, name: str) -> str:
+    """Says which joint moves no inertia, judged by M at three seeded states."""
+    data = model.createData()
+    rng = np.random.default_rng(0)
+    worst: tuple[float, Array] = (np.inf, np.zeros(model.nv))
+    for _ in range(3):
+        q = rng.uniform(-3.0, 3.0, model.nv)
+        values, vectors = np.linalg.eigh(_symmetric(pin.crba(model, data, q)))
+        if values[-1] <= 0.0:
+            return f"robot {name!r}: no link has mass: kinematics only; give mass and inertia"
+        ratio = float(values[0] / values[-1])
+        # a single good state proves M regular; a bad one may be a special pose
+        if ratio > TOLERANCES.massless:
+            return ""
+        if ratio < worst[0]:
+            worst = (ratio, vectors[:, 0])
+    joint = int(np.argmax(np.abs(worst[1])))
+    return (
+        f"robot {name!r}: the mass matrix is singular: joint {model.names[joint + 1]!r} moves no "
+        "inertia; give its link mass, inertia or armature (kinematics work without)"
+    )
+
+
+def _symmetric(upper: Array) -> Array:
+    full: Array = np.triu(upper) + np.triu(upper, 1).T
+    return full

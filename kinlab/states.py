@@ -1,0 +1,64 @@
+"""Joint vectors at the door: cheap on the good path, exact about what is wrong on the other."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, real_array
+from kinlab.errors import StateError
+from kinlab.robot import Robot
+
+_FLOAT = np.dtype(np.float64)
+_INF = math.inf
+
+
+def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
+    """Reads a joint vector (n,) or a stack of them (N, n).
+
+    Args:
+        robot: whose joints.
+        value: the numbers.
+        name: what to call them in a message: ``"q"``, ``"v"``, ...
+
+    Returns:
+        float64 array of shape (n,) or (N, n); the caller's own object where it is sound.
+
+    Raises:
+        StateError: wrong length, not real numbers, NaN or infinity.
+    """
+    if (
+        type(value) is np.ndarray
+        and value.dtype is _FLOAT
+        and value.shape == robot.shape
+        and value.dot(value) < _INF  # NaN and infinity fail the comparison, at a third of isfinite
+    ):
+        return value
+    array = real_array(value, f"robot {robot.name!r}: {name}")
+    if array.ndim not in (1, 2) or array.shape[-1] != robot.n:
+        raise StateError(
+            f"robot {robot.name!r}: {name} has shape {array.shape}; "
+            f"expected ({robot.n},) or (N, {robot.n})"
+        )
+    return array
+
+
+def joint_vectors(robot: Robot, **values: ArrayLike) -> tuple[Array, ...]:
+    """Reads several joint vectors of one call and brings them to one leading length.
+
+    A single vector beside stacks is repeated. The answers are all (n,) or all (N, n).
+
+    Raises:
+        StateError: as :func:`joint_vector`, or stacks of different length.
+    """
+    arrays = [joint_vector(robot, value, name) for name, value in values.items()]
+    lengths = {len(a) for a in arrays if a.ndim == 2}
+    if not lengths:
+        return tuple(arrays)
+    if len(lengths) > 1:
+        shapes = ", ".join(f"{k} {a.shape}" for k, a in zip(values, arrays, strict=True))
+        raise StateError(f"robot {robot.name!r}: stacks of different length: {shapes}")
+    shape = (lengths.pop(), robot.n)
+    return tuple(np.broadcast_to(a, shape) for a in arrays)
