@@ -1,0 +1,1 @@
+FiveBar=None
