@@ -97,7 +97,7 @@ class ClosedChain:
         span = data.oMi[4].translation - data.oMi[2].translation
         first, second = np.asarray(self.linkage.l2)
         turn = np.arctan2(span[1], span[0]) + assembly * np.arctan2(second, first)
-        return turn + np.array([0.0, assembly * 0.5 * np.pi])
+        return np.array([turn, turn + assembly * 0.5 * np.pi])
 
     def _lead_to_zero(self, data: Any, q: Array, assembly: int) -> tuple[Array, float]:
         """Leads the gap to zero along a straight line, in one step where Newton manages that."""
@@ -196,7 +196,7 @@ class ClosedChain:
     def jacobian(self, q: Array) -> Array:
         """J of theta_dot = J v, (2, 2), rad/m; raises SingularError at type I and II."""
         self._refuse_type_one(q)
-        return np.linalg.inv(self.tool_jacobian(q) @ self.projection(q))
+        return np.asarray(np.linalg.inv(self.tool_jacobian(q) @ self.projection(q)), np.float64)
 
     def joint_rates(self, q: Array, v: ArrayLike) -> Array:
         """All four joint rates for a tool velocity (2,), rad/s."""
@@ -268,7 +268,8 @@ def build(linkage: Linkage) -> ClosedChain:
         rod = model.addJoint(crank, pin.JointModelRZ(), elbow, JOINTS[2 * leg + 1])
         for joint, part in ((crank, "crank"), (rod, "rod")):
             mass, com, spin = (
-                float(getattr(linkage, f"{part}_{what}")[leg]) for what in ("mass", "com", "inertia")
+                float(getattr(linkage, f"{part}_{what}")[leg])
+                for what in ("mass", "com", "inertia")
             )
             body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
             model.appendBodyToJoint(joint, body, pin.SE3.Identity())

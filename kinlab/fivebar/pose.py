@@ -62,7 +62,7 @@ def deliver(result: Array, ok: Mask, *, single: bool, masked: bool) -> Array:
     """Masks the rows that are not ok if the caller wants that, and drops the axis of one point."""
     if masked:
         hidden = ~ok.reshape((-1,) + (1,) * (result.ndim - 1))
-        result = np.ma.masked_array(result, np.broadcast_to(hidden, result.shape).copy())  # type: ignore[no-untyped-call]
+        result = np.ma.masked_array(result, np.broadcast_to(hidden, result.shape).copy())
     answer: Array = result[0] if single else result
     return answer
 

@@ -185,7 +185,9 @@ def simulate(
         states[k + 1] = _project(chain, now + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
     energy = np.array([sum(chain.energy(s[:4], s[4:])) for s in states])
     gap = np.array([np.linalg.norm(chain.closure(s[:4])[0]) for s in states])
-    return Motion(np.arange(count + 1) * step, states[:, :4], states[:, 4:], energy, gap)
+    return Motion(
+        np.linspace(0.0, count * step, count + 1), states[:, :4], states[:, 4:], energy, gap
+    )
 
 
 def _project(chain: ClosedChain, state: Array) -> Array:
