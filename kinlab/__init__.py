@@ -13,6 +13,7 @@ from kinlab.dynamics import (
 )
 from kinlab.errors import KinlabError
 from kinlab.fivebar import FiveBar
+from kinlab.extract import to_dh
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
 from kinlab.robot import Robot
@@ -40,5 +41,6 @@ __all__ = [
     "mass_matrix",
     "potential_energy",
     "statics",
+    "to_dh",
     "to_urdf",
 ]
