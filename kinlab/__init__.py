@@ -12,6 +12,7 @@ from kinlab.dynamics import (
     potential_energy,
 )
 from kinlab.errors import KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.extract import to_dh
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
@@ -24,6 +25,7 @@ __all__ = [
     "Convention",
     "DHLink",
     "DHTable",
+    "FiveBar",
     "KinlabError",
     "Robot",
     "__version__",

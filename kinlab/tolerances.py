@@ -40,6 +40,14 @@ class Tolerances:
     intersecting_axes: float = 1e-10
     """Distance between two lines, in metres, below which they intersect."""
 
+    singular_sine: float = 1e-9
+    """Sine of the angle between two bars of a five-bar below which they are in line. At the
+    edge of the workspace one ulp of position is a sine of 1e-8, so nothing regular is lost."""
+
+    closure: float = 1e-12
+    """Gap of a closed loop, relative to the size of the mechanism, that Newton must reach; it
+    ends near 1e-16 when it converges at all."""
+
     formula_agrees: float = 1e-9
     """Largest relative error at which a hand formula and the engine are the same formula. Two
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
