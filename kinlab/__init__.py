@@ -21,6 +21,8 @@ from kinlab.energies import (
     momentum_rate,
 )
 from kinlab.errors import KinlabError
+from kinlab.extract import to_dh
+from kinlab.fivebar import FiveBar
 from kinlab.formula import hand_formula
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
@@ -56,6 +58,7 @@ __all__ = [
     "Convention",
     "DHLink",
     "DHTable",
+    "FiveBar",
     "KinlabError",
     "Robot",
     "__version__",
@@ -95,5 +98,6 @@ __all__ = [
     "potential_energy",
     "static_wrenches",
     "statics",
+    "to_dh",
     "to_urdf",
 ]

@@ -160,7 +160,7 @@ def _jacobian(robot: Robot, q: Array, frame: Any) -> Array:
     pin.computeJointJacobians(robot.model, data, q)
     pin.updateFramePlacement(robot.model, data, robot.tool)
     jac: Array = pin.getFrameJacobian(robot.model, data, robot.tool, frame)
-    return jac
+    return jac.reshape(6, robot.n)  # eigenpy hands out a matrix of one column as a vector
 
 
 def _jacobian_dot(robot: Robot, q: Array, v: Array, frame: Any) -> Array:
@@ -168,4 +168,4 @@ def _jacobian_dot(robot: Robot, q: Array, v: Array, frame: Any) -> Array:
     pin.computeJointJacobiansTimeVariation(robot.model, data, q, v)
     pin.updateFramePlacement(robot.model, data, robot.tool)
     jac: Array = pin.getFrameJacobianTimeVariation(robot.model, data, robot.tool, frame)
-    return jac
+    return jac.reshape(6, robot.n)

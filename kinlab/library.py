@@ -44,9 +44,9 @@ def example_robots() -> dict[str, Entry]:
     spec = importlib.util.find_spec("example_robot_data")
     if spec is None:
         return {}
-    from example_robot_data import robots_loader, utils
+    from example_robot_data import robots_loader
 
-    folder = Path(utils.getModelPath("ur_description"))  # the wheel's own constant is wrong
+    folder = _data_folder()
     entries = {}
     for name, loader in sorted(robots_loader.ROBOTS.items()):
         path = folder / loader.path / loader.urdf_subpath / loader.urdf_filename
@@ -54,6 +54,13 @@ def example_robots() -> dict[str, Entry]:
         if loader.urdf_filename and path.is_file():
             entries[name] = Entry(name, path, "example-robot-data")
     return entries
+
+
+def _data_folder() -> Path:
+    """The ``robots`` folder of example-robot-data."""
+    from example_robot_data import utils
+
+    return Path(utils.getModelPath("ur_description"))  # the wheel's own constant is wrong
 
 
 def load(name_or_path: str | Path, tool: str | None = None) -> Robot:
@@ -102,3 +109,12 @@ def _tool_of(name: str) -> str:
 def _refuse_tool(tool: str | None, text: str) -> None:
     if tool is not None:
         raise NameUnknownError(f"{text}: a DH table has one tool; leave tool {tool!r} out")
+
+
+def mesh_folders(robot: Robot) -> list[Path]:
+    """Where mesh names of a robot's URDF may start: its own folders, then example-robot-data."""
+    folders = [] if robot.folder is None else [robot.folder, *robot.folder.parents]
+    if example_robots():
+        data = _data_folder().resolve()
+        folders += [data.parent.parent, data.parent, data]
+    return folders

@@ -17,6 +17,18 @@ NOTES = (
     "kinlab.notes.note000_transforms",
     "kinlab.notes.note000_jacobian",
     "kinlab.notes.note000_singularity",
+    "kinlab.notes.note000_inverse",
+    "kinlab.notes.note000_statics",
+    "kinlab.notes.note000_newton_euler",
+    "kinlab.notes.note000_lagrange",
+    "kinlab.notes.note001_energies",
+    "kinlab.notes.note001_torques",
+    "kinlab.notes.note001_coefficients",
+    "kinlab.notes.note002_action",
+    "kinlab.notes.note002_frames",
+    "kinlab.notes.note002_mass",
+    "kinlab.notes.note002_equations",
+    "kinlab.notes.note002_coriolis",
 )
 """Modules of hand formulas, in the order of the report."""
 
@@ -84,9 +96,7 @@ def plan(
     return pairs
 
 
-def run(
-    pairs: Iterable[tuple[Formula, str]], samples: int = 200, seed: int = 0
-) -> Iterator[Row]:
+def run(pairs: Iterable[tuple[Formula, str]], samples: int = 200, seed: int = 0) -> Iterator[Row]:
     """Runs formulas on robots, one after the other.
 
     Args:

@@ -97,12 +97,12 @@ def turning_energy(nothing: None, points: Array, masses: Array, omega: Array) ->
     return energy
 
 
-def _length(nothing: None, rotation: Array, point: Array) -> Array:
+def _length(nothing: None, rotation: Array, point: Array) -> Any:
     turned = np.einsum("aij,aj->ai", rotation, point)
     return np.sqrt(np.einsum("ai,ai->a", turned, turned))
 
 
-def _cross_norm(nothing: None, point: Array, other: Array) -> Array:
+def _cross_norm(nothing: None, point: Array, other: Array) -> Any:
     product = np.stack([pin.skew(p) @ o for p, o in zip(point, other, strict=True)])
     return np.einsum("ai,ai->a", product, product)
 

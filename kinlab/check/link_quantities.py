@@ -1,4 +1,4 @@
-"""Engine quantities of single links, of the mass matrix's derivatives and of Lagrange's equation."""
+"""Engine quantities of single links, of dM/dq, and of Lagrange's equation."""
 
 from __future__ import annotations
 
@@ -20,6 +20,19 @@ def mass_rate_power(robot: Robot, q: Any, v: Any) -> Array:
     size = np.abs(rate) + np.abs(coriolis)
     share: Array = (rate - coriolis) / np.where(size > 0.0, size, 1.0)
     return share
+
+
+def mass_rate_velocity(robot: Robot, q: Any, v: Any) -> Array:
+    """Mdot qdot."""
+    product: Array = np.einsum("aij,aj->ai", mass_derivatives.mass_matrix_dot(robot, q, v), v)
+    return product
+
+
+def skew_matrix(robot: Robot, q: Any, v: Any) -> Array:
+    """Mdot - 2C."""
+    rate = mass_derivatives.mass_matrix_dot(robot, q, v)
+    matrix: Array = rate - 2.0 * dynamics.coriolis_matrix(robot, q, v)
+    return matrix
 
 
 def half_velocity_gradient(robot: Robot, q: Any, v: Any) -> Array:
@@ -62,6 +75,8 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
         "dM_ij/dq_k, (n, n, n)",
     ),
     ("mass_matrix_dot", "q v", mass_derivatives.mass_matrix_dot, "Mdot, (n, n)"),
+    ("mass_rate_velocity", "q v", mass_rate_velocity, "Mdot qdot, (n,)"),
+    ("skew_matrix", "q v", skew_matrix, "Mdot - 2C, (n, n)"),
     ("mass_rate_power", "q v", mass_rate_power, "v^T (Mdot - 2C) v over its parts' size"),
     (
         "coriolis_coefficients", "q", mass_derivatives.coriolis_coefficients,
@@ -86,7 +101,9 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ),
 )  # fmt: skip
 
+_SCALES = {"mass_rate_power": 1.0}
+
 QUANTITIES = tuple(
-    Quantity(name, tuple(arguments.split()), engine, about, SERIAL)
+    Quantity(name, tuple(arguments.split()), engine, about, SERIAL, scale=_SCALES.get(name, 0.0))
     for name, arguments, engine, about in _ROWS
 )

@@ -15,6 +15,7 @@ _MODULES = (
     "kinlab.check.serial_quantities",
     "kinlab.check.link_quantities",
     "kinlab.check.special_quantities",
+    "kinlab.check.action_quantities",
     "kinlab.check.identity",
 )
 """Modules whose ``QUANTITIES`` belong to the list."""

@@ -20,7 +20,7 @@ from kinlab.notes.arm import Arm
 from kinlab.robot import Robot
 
 REACH = float(np.pi)
-"""Joint positions are drawn from the joint's range, from one turn at most."""
+"""Joint positions are drawn from the joint's range, from ± this about its middle at most."""
 
 
 def arm_of(table: DHTable) -> Arm:
@@ -84,7 +84,10 @@ def _named(name: str) -> Robot:
 def _isotropic_2r() -> DHTable:
     second = 0.4
     first = float(np.sqrt(2.0)) * second
-    rods = (DHLink(a=0.0, mass=1.0, com=(0.2, 0.0, 0.0)), DHLink(a=first, mass=1.0, com=(0.1, 0, 0)))
+    rods = (
+        DHLink(a=0.0, mass=1.0, com=(0.2, 0.0, 0.0)),
+        DHLink(a=first, mass=1.0, com=(0.1, 0, 0)),
+    )
     tool = np.eye(4)
     tool[0, 3] = second
     return DHTable("planar2r_isotropic", "modified", rods, tool=tool, gravity=(0.0, -9.81, 0.0))
@@ -133,11 +136,10 @@ def sample(
 
 
 def positions(robot: Robot, count: int, rng: np.random.Generator) -> Array:
-    """Uniform over each joint's range, of which no more than ±pi (rad or m)."""
-    lower, upper = np.maximum(robot.lower, -REACH), np.minimum(robot.upper, REACH)
-    beyond = lower > upper  # a range that lies outside one turn altogether
-    lower, upper = np.where(beyond, robot.lower, lower), np.where(beyond, robot.upper, upper)
-    return rng.uniform(lower, upper, (count, robot.n))
+    """Uniform over each joint's range, of which no more than one turn about its middle."""
+    half = np.minimum(0.5 * (robot.upper - robot.lower), REACH)
+    middle = 0.5 * (robot.upper + robot.lower)
+    return rng.uniform(middle - half, middle + half, (count, robot.n))
 
 
 def _normal(scale: float) -> Callable[[Robot, int, np.random.Generator], Array]:

@@ -18,13 +18,17 @@ from kinlab.convention import Convention
 from kinlab.robot import Robot, frame_id, scratch
 
 
-def link_transforms(robot: Robot, q: Any) -> Array:
-    """^{i-1}T_i between the DH frames of the robot's table, as Pinocchio places them."""
-    base = np.eye(4) if robot.table is None else np.asarray(robot.table.base)
+def dh_poses(robot: Robot, q: Any) -> Array:
+    """Poses of the DH frames of the robot's table, as Pinocchio places them."""
     if robot.table is not None and robot.table.convention is Convention.STANDARD:
-        poses = np.stack([_dh_frames(robot, one) for one in q])
-    else:
-        poses = links.link_poses(robot, q)
+        return np.stack([_dh_frames(robot, one) for one in q])
+    return links.link_poses(robot, q)
+
+
+def link_transforms(robot: Robot, q: Any) -> Array:
+    """^{i-1}T_i between the DH frames."""
+    base = np.eye(4) if robot.table is None else np.asarray(robot.table.base)
+    poses = dh_poses(robot, q)
     first = np.broadcast_to(base, (len(poses), 1, 4, 4))
     before = np.concatenate([first, poses[:, :-1]], axis=1)
     steps: Array = np.linalg.solve(before, poses)
@@ -92,8 +96,10 @@ def equal_columns_cosine(robot: Robot, q: Any) -> Array:
     return _root(
         robot,
         q,
-        lambda j: np.einsum("ai,ai->a", j[..., 0], j[..., 0])
-        - np.einsum("ai,ai->a", j[..., 1], j[..., 1]),
+        lambda j: (
+            np.einsum("ai,ai->a", j[..., 0], j[..., 0])
+            - np.einsum("ai,ai->a", j[..., 1], j[..., 1])
+        ),
     )
 
 
@@ -116,9 +122,9 @@ def _root(robot: Robot, q: Any, miss: Any) -> Array:
 
 def newton_step(robot: Robot, q: Any, target: Any) -> Array:
     """q + J^-1 (x_d - f(q)) for x = (x, y, phi)."""
-    step: Array = q + np.linalg.solve(planar_jacobian(robot, q), _miss(robot, q, target)[..., None])[
-        ..., 0
-    ]
+    step: Array = (
+        q + np.linalg.solve(planar_jacobian(robot, q), _miss(robot, q, target)[..., None])[..., 0]
+    )
     return step
 
 
@@ -183,11 +189,23 @@ def _with_target(robot: Robot, arguments: Any, count: int, rng: np.random.Genera
     return q, rng.uniform(-1.0, 1.0, (count, 3))
 
 
+def _well_conditioned(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
+    """Draws states where J keeps its rank plainly, and random twists."""
+    del arguments
+    kept = np.empty((0, robot.n))
+    while len(kept) < count:
+        q = positions(robot, count, rng)
+        values = np.linalg.svd(kinematics.jacobian(robot, q), compute_uv=False)
+        kept = np.concatenate([kept, q[values[:, -1] > 0.02 * values[:, 0]]])
+    return kept[:count], rng.standard_normal((count, 6))
+
+
 _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     (
         "link_transforms", "q", link_transforms,
         "^{i-1}T_i of every DH row in the table's own convention, (n, 4, 4)", None,
     ),
+    ("dh_poses", "q", dh_poses, "poses of the DH frames in the base, (n, 4, 4)", None),
     ("common_normals", "q", common_normals, "projectors on x_{i-1}, (n, 3, 3)", None),
     (
         "angular_jacobian_last", "q", angular_jacobian_last,
@@ -213,7 +231,7 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ("loss", "q target", loss, "½|x_d - f|², a number", _with_target),
     ("loss_gradient", "q target", loss_gradient, "its gradient, (3,)", _with_target),
     ("gradient_step", "q target", gradient_step, "q - 0.1 gradient, (3,)", _with_target),
-    ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", None),
+    ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", _well_conditioned),
 )  # fmt: skip
 
 QUANTITIES = tuple(

@@ -2,29 +2,188 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from kinlab.dh import DHTable
+    from kinlab.robot import Robot
+
 NAME = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv/.urdf file.")]
-TOOL = Annotated[str | None, typer.Option("--tip", "--tool", help="Link that is the tool (URDF).")]
+TIP = Annotated[str | None, typer.Option("--tip", help="Link that is the tool (URDF only).")]
 OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
 
 
 def register(app: typer.Typer) -> None:
     """Adds the commands of this file."""
+    app.command("list")(list_robots)
+    app.command("info")(info)
     app.command("urdf")(urdf)
+    app.command("dh")(dh)
 
 
-def urdf(name: NAME, output: OUTPUT = None) -> None:
-    """Print the URDF of a robot, or write it to a file."""
-    from kinlab.files import write_text
+def list_robots() -> None:
+    """List the robots that can be loaded by name."""
+    from rich.console import Console
+    from rich.table import Table
+
+    from kinlab.errors import KinlabError
+    from kinlab.library import DATA_PREFIX, example_robots, load, shipped
+
+    width = max(len(name) for name in [*shipped(), *example_robots()])
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    table.add_column("name", no_wrap=True, min_width=width)
+    table.add_column("DoF", justify="right", min_width=3)
+    table.add_column("source", no_wrap=True, overflow="ellipsis")
+    for name in shipped():
+        robot = load(name)
+        table.add_row(name, str(robot.n), robot.source.split("; ")[0])
+    for name, entry in example_robots().items():
+        shown = DATA_PREFIX + name if name in shipped() else name
+        try:
+            robot = load(DATA_PREFIX + name)
+            about = f"example-robot-data, {entry.path.name}"
+            table.add_row(shown, str(robot.n), about)
+        except KinlabError as problem:
+            reason = "a tree: name a tool" if "a tree" in str(problem) else str(problem)
+            table.add_row(shown, "-", f"[dim]example-robot-data, {reason}[/dim]")
+    Console().print(table)
+
+
+def info(name: NAME, tip: TIP = None) -> None:
+    """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
+    from rich.console import Console
+
+    from kinlab.extract import to_dh
     from kinlab.library import load
 
-    text = load(name).urdf
+    robot = load(name, tip)
+    console = Console()
+    gravity = " ".join(f"{g:g}" for g in robot.model.gravity.linear)
+    mass = sum(inertia.mass for inertia in list(robot.model.inertias)[1:])
+    console.print(f"[bold]{robot.name}[/bold]: {robot.n} joints, tool frame {robot.tool_name!r}")
+    console.print(f"source: {robot.source}", highlight=False)
+    console.print(f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", highlight=False)
+    if robot.singular_mass:
+        console.print(f"[yellow]{robot.singular_mass}[/yellow]")
+    for line in _missing_meshes(robot):
+        console.print(f"[yellow]{line}; a plain shape is drawn instead[/yellow]", highlight=False)
+    console.print(_joints(robot))
+    table = robot.table or to_dh(robot)
+    console.print(_rows(table, "" if robot.table else ", extracted"))
+    if robot.table is None:
+        console.print(f"[dim]{table.source}[/dim]", highlight=False)
+    frames = [str(frame.name) for frame in robot.model.frames][1:]
+    console.print("frames: " + ", ".join(dict.fromkeys(frames)), highlight=False, soft_wrap=False)
+
+
+def urdf(name: NAME, output: OUTPUT = None, tip: TIP = None) -> None:
+    """Print the URDF of a robot, or write it to a file."""
+    from kinlab.library import load
+
+    _give(load(name, tip).urdf, output)
+
+
+def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
+    """Print the modified DH table of a robot, or write it as TOML with -o."""
+    from rich.console import Console
+
+    from kinlab.extract import to_dh
+    from kinlab.library import load
+
+    table = to_dh(load(name, tip))
+    if output is not None:
+        _give(table.to_toml(), output)
+        return
+    console = Console()
+    console.print(_rows(table, ""))
+    for which in ("base", "tool"):
+        rows = "; ".join(" ".join(f"{x:.6g}" for x in row) for row in getattr(table, which)[:3])
+        console.print(f"{which}: {rows}", highlight=False)
+    console.print(f"{table.source}; write it whole, inertias included, with -o", highlight=False)
+
+
+def _give(text: str, output: Path | None) -> None:
+    from kinlab.files import write_text
+
     if output is None:
         typer.echo(text, nl=False)
     else:
         write_text(output, text)
         typer.echo(f"wrote {output}")
+
+
+def _missing_meshes(robot: Robot) -> list[str]:
+    from kinlab import library, urdf_read
+
+    folders = library.mesh_folders(robot)
+    root = urdf_read.parse(robot.urdf, robot.name)
+    return list(dict.fromkeys(urdf_read.missing_meshes(root, folders)))
+
+
+def _joints(robot: Robot) -> Table:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(title="joints", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    for column in ("joint", "kind", "lower", "upper", "velocity", "effort", "mass", "armature"):
+        left = column in ("joint", "kind")
+        table.add_column(column, justify="left" if left else "right", no_wrap=column != "joint")
+    model = robot.model
+    for j, name in enumerate(robot.joint_names, 1):
+        k = model.joints[j].idx_v
+        revolute = "P" not in model.joints[j].shortname().removeprefix("JointModel")
+        unit, factor = ("°", 180 / math.pi) if revolute else (" m", 1.0)
+        table.add_row(
+            name,
+            "revolute" if revolute else "prismatic",
+            f"{robot.lower[k] * factor:.5g}{unit}",
+            f"{robot.upper[k] * factor:.5g}{unit}",
+            f"{model.upperVelocityLimit[k]:.4g}",
+            f"{model.upperEffortLimit[k]:.4g}",
+            f"{model.inertias[j].mass:.4g}",
+            f"{model.armature[k]:.4g}",
+        )
+    return table
+
+
+def _rows(dh_table: DHTable, remark: str) -> Table:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    modified = dh_table.convention == "modified"
+    below = "i-1" if modified else "i"
+    title = f"DH table, {dh_table.convention} convention{remark}"
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    for column in ("i", f"alpha_{below}", f"a_{below} [m]", "d_i [m]", "theta_i"):
+        table.add_column(column, justify="right")
+    for i, link in enumerate(dh_table.links, 1):
+        variable = f"-q{i}" if link.flip else f"q{i}"
+        revolute = link.joint == "revolute"
+        table.add_row(
+            str(i),
+            _degrees(link.alpha),
+            _metres(link.a),
+            _metres(link.d) if revolute else _plus(variable, _metres(link.d)),
+            _plus(variable, _degrees(link.theta)) if revolute else _degrees(link.theta),
+        )
+    return table
+
+
+def _degrees(angle: float) -> str:
+    return f"{round(math.degrees(angle), 7) + 0.0:.8g}°"
+
+
+def _metres(length: float) -> str:
+    return f"{round(length, 9) + 0.0:.8g}"
+
+
+def _plus(variable: str, constant: str) -> str:
+    if constant in ("0", "0°"):
+        return variable
+    return f"{variable} - {constant[1:]}" if constant[0] == "-" else f"{variable} + {constant}"

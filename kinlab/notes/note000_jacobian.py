@@ -69,8 +69,8 @@ def planar_3r_jacobian(arm: Arm, q: Array) -> Array:
     )
 
 
-def propagate(arm: Arm, q: Array, v: Array, slides: bool) -> Array:
-    """Velocities (v, omega) from link to link, (..., n, 6)."""
+def propagate(arm: Arm, q: Array, v: Array, slide: Array = Z) -> Array:
+    """Velocities (v, omega) from link to link, (..., n, 6); a slide adds d_dot times ``slide``."""
     arm = craig(arm)
     steps = link_transforms(arm, q)
     rates = arm.sign * np.asarray(v)
@@ -81,20 +81,21 @@ def propagate(arm: Arm, q: Array, v: Array, slides: bool) -> Array:
         p = steps[..., i, :3, 3]
         linear = apply(down, linear + cross(omega, p))
         omega = apply(down, omega)
-        if not arm.prismatic[i]:
+        if arm.prismatic[i]:
+            linear = linear + rates[..., i, None] * slide
+        else:
             omega = omega + rates[..., i, None] * Z
-        elif slides:
-            linear = linear + rates[..., i, None] * Z
         result.append(np.concatenate([linear, omega], axis=-1))
     return np.stack(result, axis=-2)
 
 
 def _velocities_printed(arm: Arm, q: Array, v: Array) -> Array:
-    return propagate(arm, q, v, slides=False)
+    return propagate(arm, q, v, slide=0.0 * Z)
 
 
 _VELOCITY = (
-    r"{}^{i+1}\omega_{i+1} = {}^{i+1}_iR\,{}^i\omega_i + \dot\theta_{i+1}\,{}^{i+1}\hat Z_{i+1},\quad"
+    r"{}^{i+1}\omega_{i+1} = {}^{i+1}_iR\,{}^i\omega_i"
+    r" + \dot\theta_{i+1}\,{}^{i+1}\hat Z_{i+1},\quad"
     r" {}^{i+1}v_{i+1} = {}^{i+1}_iR({}^iv_i + {}^i\omega_i \times {}^ip_{i+1})"
 )
 
@@ -114,7 +115,7 @@ _VELOCITY = (
 )
 def velocities(arm: Arm, q: Array, v: Array) -> Array:
     """Velocity propagation from link to link, revolute and prismatic."""
-    return propagate(arm, q, v, slides=True)
+    return propagate(arm, q, v)
 
 
 @formula(
@@ -145,7 +146,8 @@ def _omega_printed(arm: Arm, q: Array) -> Array:
     source="note 000, section 四.2",
     quantity="angular_jacobian_last",
     robots="serial",
-    latex=r"{}^n\omega_n = \sum_i \fixed{{}^n_iR} \begin{pmatrix} 0 \\ 0 \\ 1 \end{pmatrix} \dot\theta_i",
+    latex=r"{}^n\omega_n = \sum_i \fixed{{}^n_iR} \begin{pmatrix} 0 \\ 0 \\ 1 \end{pmatrix}"
+    r" \dot\theta_i",
     printed=Printed(
         _omega_printed,
         "sub- and superscripts of R exchanged in the middle lines: ^i_nR turns the wrong way",
@@ -188,11 +190,9 @@ def tool_jacobian(arm: Arm, q: Array) -> Array:
     turned, place = last.tool[:3, :3], last.tool[:3, 3]
     result = []
     for rate in np.eye(arm.n):
-        motion = propagate(last, q, np.broadcast_to(rate, np.shape(q)), slides=True)[..., -1, :]
+        motion = propagate(last, q, np.broadcast_to(rate, np.shape(q)))[..., -1, :]
         linear = motion[..., :3] + cross(motion[..., 3:], place)
-        result.append(
-            np.concatenate([linear @ turned, motion[..., 3:] @ turned], axis=-1)
-        )
+        result.append(np.concatenate([linear @ turned, motion[..., 3:] @ turned], axis=-1))
     return np.stack(result, axis=-1)
 
 

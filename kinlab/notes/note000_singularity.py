@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from kinlab.formula import Printed, formula
@@ -17,7 +19,7 @@ from kinlab.notes.arm import Arm, Array, columns, lengths, matrix, turn
     latex=r"\det J = l_1 l_2 s_2",
     remark="a determinant needs a square J; rank and the smallest singular value serve any shape",
 )
-def planar_3r_determinant(arm: Arm, q: Array) -> Array:
+def planar_3r_determinant(arm: Arm, q: Array) -> Any:
     """det J of the planar 3R arm: singular where it is stretched or folded."""
     l1, l2, _ = lengths(arm)
     return l1 * l2 * np.sin(columns(q)[1])
@@ -31,7 +33,7 @@ def planar_3r_determinant(arm: Arm, q: Array) -> Array:
     robots=("planar2r", "planar2r_rods"),
     latex=r"\det J_{xy} = l_1 l_2 s_2",
 )
-def planar_2r_determinant(arm: Arm, q: Array) -> Array:
+def planar_2r_determinant(arm: Arm, q: Array) -> Any:
     """det J of the planar 2R arm, the tool's angle left out."""
     l1, l2 = lengths(arm)
     return l1 * l2 * np.sin(columns(q)[1])

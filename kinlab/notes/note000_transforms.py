@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from kinlab.formula import Printed, formula
@@ -36,7 +38,7 @@ def rotation_inverse(_: None, rotation: Array) -> Array:
     robots="identity",
     latex=r"\lVert {}^1p \rVert = \lVert R\,{}^0p \rVert = \lVert {}^0p \rVert",
 )
-def rotated_length(_: None, rotation: Array, point: Array) -> Array:
+def rotated_length(_: None, rotation: Array, point: Array) -> Any:
     """A rotation keeps the length of a vector."""
     del rotation
     return np.linalg.norm(point, axis=-1)
