@@ -35,13 +35,14 @@ def to_function(
         NameUnknownError: ``changed`` names no parameter.
     """
     numbers = values_at(arm, changed or {})
-    grid = sympy.Matrix([[expression]]) if isinstance(expression, sympy.Expr) else expression
+    scalar = not isinstance(expression, sympy.MatrixBase)
+    grid = sympy.Matrix([[expression]]) if scalar else expression
     used = [s for s in numbers if s in grid.free_symbols]
     arguments = [*arm.q, *arm.qd, *arm.qdd, *used]
     compiled = sympy.lambdify(arguments, list(grid), modules="math", cse=True)
     fixed = [numbers[s] for s in used]
     shape: tuple[int, ...] = grid.shape if grid.shape[1] > 1 else grid.shape[:1]
-    shape = () if isinstance(expression, sympy.Expr) else shape
+    shape = () if scalar else shape
 
     def function(q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> Array:
         states = []
@@ -81,7 +82,7 @@ def to_python(arm: SymbolicArm, expression: Expression, name: str) -> str:
         Source text that ends in a newline.
     """
     printer = NumPyPrinter({"fully_qualified_modules": False})
-    scalar = isinstance(expression, sympy.Expr)
+    scalar = not isinstance(expression, sympy.MatrixBase)
     grid = sympy.Matrix([[expression]]) if scalar else expression
     shared, (reduced,) = sympy.cse(grid, symbols=sympy.numbered_symbols("x"))
     lines = ["import numpy as np", "from numpy import cos, sin", "", ""]
