@@ -34,7 +34,8 @@ def compare(table: kl.DHTable, symbols: str, tolerance: float) -> None:
         function = symbolic.to_function(arm, sympy.sympify(getattr(symbolic, what)(arm)))
         for state in states:
             expected = getattr(kl, what)(robot, *state[:count])
-            np.testing.assert_allclose(function(*state[:count]), expected, atol=tolerance)
+            found = function(*state[:count]).reshape(np.shape(expected))
+            np.testing.assert_allclose(found, expected, atol=tolerance)
 
 
 @pytest.mark.parametrize("symbols", ["all", "none"])

@@ -29,7 +29,7 @@ def to_function(
 
     Returns:
         ``f(q, qd, qdd)``; the arguments the expression does not use may be left out. It answers
-        with the shape of the expression, a column as (n,).
+        with the shape of the expression, a column of two or more as (n,).
 
     Raises:
         NameUnknownError: ``changed`` names no parameter.
@@ -41,7 +41,7 @@ def to_function(
     arguments = [*arm.q, *arm.qd, *arm.qdd, *used]
     compiled = sympy.lambdify(arguments, list(grid), modules="math", cse=True)
     fixed = [numbers[s] for s in used]
-    shape: tuple[int, ...] = grid.shape if grid.shape[1] > 1 else grid.shape[:1]
+    shape: tuple[int, ...] = grid.shape[:1] if grid.rows > 1 == grid.cols else grid.shape
     shape = () if scalar else shape
 
     def function(q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> Array:
