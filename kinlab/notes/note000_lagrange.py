@@ -95,8 +95,8 @@ def mvg_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     """The four terms together, M, B and C from the link Jacobians."""
     symbols = mass.christoffel(arm, q)
     j, k = np.triu_indices(arm.n, 1)
-    products = np.einsum("...ip,...p->...i", 2.0 * symbols[..., j, k], v[..., j] * v[..., k])
-    squares = np.einsum("...ijj,...j->...i", symbols, v * v)
+    products: Array = np.einsum("...ip,...p->...i", 2.0 * symbols[..., j, k], v[..., j] * v[..., k])
+    squares: Array = np.einsum("...ijj,...j->...i", symbols, v * v)
     inertia = apply(mass.mass_matrix(arm, q), a)
     return inertia + products + squares + mass.gravity_torques(arm, q)
 
@@ -154,6 +154,7 @@ def potential_energies(arm: Arm, q: Array) -> Any:
 def lagrange_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     """Joint torques by differentiation of the energies, exactly."""
     slope = mass.mass_derivatives(arm, q)
-    rate = np.einsum("...ijk,...k,...j->...i", slope, v, v) + apply(mass.mass_matrix(arm, q), a)
-    gradient = 0.5 * np.einsum("...ijk,...i,...j->...k", slope, v, v)
+    turning: Array = np.einsum("...ijk,...k,...j->...i", slope, v, v)
+    rate = turning + apply(mass.mass_matrix(arm, q), a)
+    gradient: Array = 0.5 * np.einsum("...ijk,...i,...j->...k", slope, v, v)
     return rate - gradient + mass.gravity_torques(arm, q)

@@ -69,8 +69,8 @@ def _assembled(arm: Arm, q: Array, v: Array, a: Array, squares: Array) -> Array:
     """D_ij a_j + D_ijj squares_j + 2 D_i12 d1 d2 + D_i."""
     symbols = velocity_coefficients(arm, q)
     d1, d2 = columns(v)
-    coriolis = (symbols[..., 0, 1] + symbols[..., 1, 0]) * (d1 * d2)[..., None]
-    centripetal = np.einsum("...ijj,...j->...i", symbols, squares)
+    coriolis: Array = (symbols[..., 0, 1] + symbols[..., 1, 0]) * (d1 * d2)[..., None]
+    centripetal: Array = np.einsum("...ijj,...j->...i", symbols, squares)
     return apply(inertias(arm, q), a) + centripetal + coriolis + gravity(arm, q)
 
 

@@ -39,7 +39,7 @@ def coriolis(arm: Arm, q: Array, v: Array) -> Array:
 
 def printed_coriolis(arm: Arm, q: Array, v: Array) -> Array:
     """The note's C."""
-    one = np.einsum("...ikj,...k->...ij", mass.mass_derivatives(arm, q), v)
+    one: Array = np.einsum("...ikj,...k->...ij", mass.mass_derivatives(arm, q), v)
     return 0.5 * (one + turn(one))
 
 

@@ -18,7 +18,7 @@ _GRAVITY = "note 002, section 3"
 def _tensor(points: Array, masses: Array) -> Array:
     x, y, z = np.moveaxis(points, -1, 0)
 
-    def total(values: Array) -> Array:
+    def total(values: Array) -> Any:
         return np.sum(masses * values, axis=-1)
 
     xx, yy, zz = total(y**2 + z**2), total(x**2 + z**2), total(x**2 + y**2)
@@ -85,7 +85,7 @@ def link_jacobians(arm: Arm, q: Array) -> Array:
 def _own_axes(arm: Arm, q: Array) -> Array:
     body = mass.links(arm, q)
     total: Array = np.einsum("l,...lic,...ljc->...ij", arm.mass, body.linear, body.linear)
-    turning = np.einsum("...lia,lab,...ljb->...ij", body.angular, arm.inertia, body.angular)
+    turning: Array = np.einsum("...lia,lab,...ljb->...ij", body.angular, arm.inertia, body.angular)
     return total + turning + np.diag(arm.armature)
 
 
