@@ -35,7 +35,7 @@ def thread_count(states: int) -> int:
         OptionError: ``KINLAB_THREADS`` is not a whole number above zero.
     """
     most = max(1, states // _STATES_PER_THREAD)
-    return 1 if most == 1 else min(most, _limit())
+    return 1 if most == 1 else min(most, available())
 
 
 @contextmanager
@@ -49,7 +49,12 @@ def one_thread() -> Iterator[None]:
         _local.limit = before
 
 
-def _limit() -> int:
+def available() -> int:
+    """Number of threads a batch of this thread may use, however long it is.
+
+    Raises:
+        OptionError: as :func:`thread_count`.
+    """
     limit = getattr(_local, "limit", None)
     if limit is not None:
         return int(limit)
