@@ -165,9 +165,11 @@ def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
     """
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
+    # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
+    inertia = mass_matrix(robot, q)
     if q.ndim == 1:
-        return float(finite_answer(robot, np.float64(_kinetic(robot, q, v)), "kinetic_energy"))
-    energy: Array = 0.5 * np.einsum("ij,ijk,ik->i", v, mass_matrix(robot, q), v)
+        return float(finite_answer(robot, np.float64(0.5 * v @ inertia @ v), "kinetic_energy"))
+    energy: Array = 0.5 * np.einsum("ij,ijk,ik->i", v, inertia, v)
     return finite_answer(robot, energy, "kinetic_energy")
 
 
@@ -209,10 +211,6 @@ def _coriolis(robot: Robot, q: Array, v: Array) -> Array:
 def _gravity(robot: Robot, q: Array) -> Array:
     torques: Array = pin.computeGeneralizedGravity(robot.model, scratch(robot), q)
     return torques
-
-
-def _kinetic(robot: Robot, q: Array, v: Array) -> float:
-    return float(pin.computeKineticEnergy(robot.model, scratch(robot), q, v))
 
 
 def _potential(robot: Robot, q: Array) -> float:
