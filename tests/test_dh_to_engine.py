@@ -114,7 +114,9 @@ def test_random_tables_cover_every_case():
 
 
 @pytest.mark.parametrize("convention", ["standard", "modified"])
-@given(alpha=st.sampled_from([np.pi / 2, -np.pi / 2]), theta=st.sampled_from([np.pi / 2, -np.pi / 2]))
+@given(
+    alpha=st.sampled_from([np.pi / 2, -np.pi / 2]), theta=st.sampled_from([np.pi / 2, -np.pi / 2])
+)
 @settings(max_examples=4)
 def test_gimbal_lock_loses_nothing(convention, alpha, theta):
     rows = [kl.DHLink(a=0.3, alpha=alpha, d=0.2, theta=theta, mass=1.0, inertia=np.eye(3))] * 4
