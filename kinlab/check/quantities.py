@@ -16,6 +16,7 @@ _MODULES = (
     "kinlab.check.link_quantities",
     "kinlab.check.special_quantities",
     "kinlab.check.action_quantities",
+    "kinlab.check.table_check",
     "kinlab.check.identity",
 )
 """Modules whose ``QUANTITIES`` belong to the list."""
