@@ -96,13 +96,10 @@ __all__ = [
     "fk",
     "forward_dynamics",
     "gravity_torques",
-<<<<<<< HEAD
+    "hand_formula",
     "ik",
     "ik_batch",
-=======
-    "hand_formula",
     "inertial_wrenches",
->>>>>>> main
     "inverse_dynamics",
     "jacobian",
     "jacobian_dot",
