@@ -19,7 +19,6 @@ from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import (
-    TaskSpace,
     read_reachable_task,
     revolute,
     search_box,

@@ -18,7 +18,6 @@ from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 
-
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""
 
