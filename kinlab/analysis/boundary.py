@@ -10,7 +10,7 @@ they cross, and a piece belongs to the boundary where one of its two sides is ou
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -131,7 +131,7 @@ def _planar_chain(robot: Robot) -> _Chain:
     if not (axes.turns.all() and upright.all()) or robot.n > _MOST_JOINTS:
         raise OptionError(
             f"robot {robot.name!r}: the boundary in closed form is for 1 to {_MOST_JOINTS} revolute "
-            "joints about axes parallel to the base's z; use workspace() for other arms"
+            "joints about axes parallel to the base's z; other arms: workspace()"
         )
     tip = fk(robot, np.zeros(robot.n))[:2, 3]
     corners = np.concatenate([axes.point[:, :2], tip[np.newaxis]]) @ np.array([1.0, 1.0j])
@@ -216,7 +216,7 @@ def _cut(arcs: list[Arc], shortest: float) -> list[Arc]:
                 if ahead < arc.stop - arc.start:
                     cuts.append(ahead)
         cuts.sort()
-        for one, two in zip(cuts, cuts[1:], strict=False):
+        for one, two in pairwise(cuts):
             if (two - one) * arc.radius > 1e-9 * shortest:
                 pieces.append(Arc(arc.centre, arc.radius, arc.start + one, arc.start + two))
     return pieces

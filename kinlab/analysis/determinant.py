@@ -37,8 +37,8 @@ class SingularFactor:
         power: how often it stands in det J.
         joints: names of the joints in it.
         meaning: class of the singularities where it vanishes (``wrist``, ``shoulder``,
-            ``elbow``, ``boundary``, ``interior``, joined by "/" where they differ), or ``never zero`` where the search found no
-            zero at all.
+            ``elbow``, ``boundary``, ``interior``; joined by "/" where they differ), or
+            ``never zero`` where the search found no zero at all.
         within_limits: whether a zero within the joint limits was found.
         example: a singular configuration on it, or ``None``.
         function: q (n,) to its value in SI units.

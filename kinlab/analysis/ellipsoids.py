@@ -73,7 +73,7 @@ def ellipsoid(
         require_inertia(robot)
         matrix = np.linalg.solve(mass_matrix(robot, state), matrix.T).T
     left, values, _ = np.linalg.svd(matrix)
-    sigma = np.pad(values, (0, space.m - len(values)))
+    sigma: Array = np.pad(np.asarray(values, dtype=np.float64), (0, space.m - len(values)))
     if kind == "force":
         flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
         inverse = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)

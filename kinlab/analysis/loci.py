@@ -190,7 +190,8 @@ def _trace(system: sets.SingularSystem, start: Array, step: float) -> Locus:
 def _continuous(robot: Robot, states: Array) -> Array:
     """The curve moved by whole turns so that its middle point lies in the search box."""
     middle = states[len(states) // 2]
-    return states + (wrap(robot, middle) - middle)
+    moved: Array = states + (wrap(robot, middle) - middle)
+    return moved
 
 
 def _bounds(system: sets.SingularSystem) -> tuple[Array, Array]:
