@@ -1,0 +1,116 @@
+"""The few shapes that the pictures are made of, as meshcat objects; metres, colours 0xRRGGBB."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import meshcat.geometry as g
+import numpy as np
+
+from kinlab.arrays import Array
+
+RED, GREEN, BLUE = 0xC62828, 0x2E7D32, 0x1565C0
+"""Axes x, y and z; in the DH picture red is what lies along x (a, alpha), blue along z."""
+
+
+class Torus(g.Geometry):  # type: ignore[misc]
+    """A piece of a ring about z that starts at x and goes on for ``arc`` radians (0 to 2 pi)."""
+
+    def __init__(self, radius: float, tube: float, arc: float) -> None:
+        super().__init__()
+        self.radius, self.tube, self.arc = radius, tube, arc
+
+    def lower(self, object_data: Any) -> dict[str, Any]:
+        """meshcat's wire format."""
+        return {
+            "uuid": self.uuid,
+            "type": "TorusGeometry",
+            "radius": self.radius,
+            "tube": self.tube,
+            "radialSegments": 8,
+            "tubularSegments": 40,
+            "arc": self.arc,
+        }
+
+
+def paint(color: int, opacity: float = 1.0) -> Any:
+    """A shaded material."""
+    return g.MeshPhongMaterial(color=color, opacity=opacity, shininess=40)
+
+
+def flat(color: int, opacity: float = 1.0) -> Any:
+    """A material that looks the same from everywhere, for lines."""
+    return g.MeshBasicMaterial(color=color, opacity=opacity)
+
+
+def rod(node: Any, start: Array, end: Array, radius: float, material: Any) -> None:
+    """Puts a cylinder from start to end, (3,) each in the parent's frame, at ``node``.
+
+    Nothing is drawn where they coincide.
+    """
+    along = np.asarray(end, dtype=float) - start
+    length = float(np.linalg.norm(along))
+    if length < 1e-9:
+        return
+    node.set_object(g.Cylinder(length, radius), material)
+    place = np.eye(4)
+    place[:3, :3] = turn_to(along / length, 1)
+    place[:3, 3] = np.asarray(start) + 0.5 * along
+    node.set_transform(place)
+
+
+def arrow(node: Any, start: Array, end: Array, radius: float, material: Any) -> None:
+    """A rod with a point at its end, (3,) each in the parent's frame."""
+    along = np.asarray(end, dtype=float) - start
+    length = float(np.linalg.norm(along))
+    direction = along / length
+    tip = min(0.3 * length, 8.0 * radius)
+    neck = np.asarray(start) + direction * (length - tip)
+    rod(node["shaft"], start, neck, radius, material)
+    cone = g.Cylinder(tip, radiusTop=0.0, radiusBottom=2.6 * radius)
+    node["tip"].set_object(cone, material)
+    place = np.eye(4)
+    place[:3, :3] = turn_to(direction, 1)
+    place[:3, 3] = neck + 0.5 * tip * direction
+    node["tip"].set_transform(place)
+
+
+def ball(node: Any, radius: float, material: Any) -> None:
+    """A ball about the node's origin."""
+    node.set_object(g.Sphere(radius), material)
+
+
+def triad(node: Any, size: float) -> None:
+    """Three arrows, x red, y green, z blue, in the node's own frame."""
+    for name, axis, color in zip("xyz", np.eye(3), (RED, GREEN, BLUE), strict=True):
+        arrow(node[name], np.zeros(3), size * axis, 0.03 * size, flat(color))
+
+
+def polyline(node: Any, points: Array, color: int) -> None:
+    """A line through points (N, 3)."""
+    line = g.Line(g.PointsGeometry(np.asarray(points, np.float32).T), g.LineBasicMaterial(color))
+    node.set_object(line)
+
+
+def floor(node: Any, size: float, step: float) -> None:
+    """A square grid of half-width ``size`` in the plane z = 0."""
+    count = max(1, round(size / step))
+    marks = step * np.arange(-count, count + 1)
+    end = step * count
+    lines = [((-end, m, 0.0), (end, m, 0.0)) for m in marks]
+    lines += [((m, -end, 0.0), (m, end, 0.0)) for m in marks]
+    points = np.array(lines, dtype=np.float32).reshape(-1, 3)
+    node.set_object(
+        g.LineSegments(g.PointsGeometry(points.T), g.LineBasicMaterial(color=0xC3CCD5))
+    )
+
+
+def turn_to(direction: Array, axis: int) -> Array:
+    """A rotation (3, 3) that turns the given coordinate axis to a unit direction."""
+    other = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    side = np.cross(other, direction)
+    side /= np.linalg.norm(side)
+    columns = [np.zeros(3)] * 3
+    columns[axis], columns[(axis + 1) % 3] = direction, side
+    columns[(axis + 2) % 3] = np.cross(direction, side)
+    return np.column_stack(columns)
