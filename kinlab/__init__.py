@@ -17,6 +17,7 @@ from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
+from kinlab.viewer import view
 
 __version__ = "0.1.0"
 
@@ -41,4 +42,5 @@ __all__ = [
     "statics",
     "to_dh",
     "to_urdf",
+    "view",
 ]

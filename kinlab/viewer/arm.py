@@ -21,15 +21,21 @@ from kinlab.viewer import shapes
 
 ROOT = "/meshcat/robot"
 _FORMATS = (".dae", ".obj", ".stl")
-_STAND_IN = 0x90A4AE
+_STAND_IN = (0.57, 0.64, 0.68, 1.0)
+_GHOSTLY = 0.3
+"""Opacity of a ghost."""
 
 
 class NestedVisualizer(MeshcatVisualizer):  # type: ignore[misc]
     """Pinocchio's visualizer, drawing each body below the node of the joint that carries it."""
 
+    def __init__(self, model: Any, visuals: Any, root: str) -> None:
+        super().__init__(model, visual_model=visuals)
+        self.paths = joint_paths(model, root)
+
     def getViewerNodeName(self, geometry_object: Any, geometry_type: Any) -> str:
         """Node of a body: its joint's node, then ``visuals``."""
-        path = joint_paths(self.model)[geometry_object.parentJoint]
+        path = self.paths[geometry_object.parentJoint]
         return f"{path}/visuals/{_node_name(geometry_object.name)}"
 
     def updatePlacements(self, geometry_type: Any) -> None:
@@ -41,15 +47,15 @@ class NestedVisualizer(MeshcatVisualizer):  # type: ignore[misc]
     def display(self, q: Array) -> None:
         """Moves the joint nodes to q, (n,)."""
         pin.forwardKinematics(self.model, self.data, q)
-        for joint, path in enumerate(joint_paths(self.model)):
+        for joint, path in enumerate(self.paths):
             if joint:
                 parent = self.data.oMi[self.model.parents[joint]]
                 self.viewer[path].set_transform(parent.actInv(self.data.oMi[joint]).homogeneous)
 
 
-def joint_paths(model: Any) -> list[str]:
+def joint_paths(model: Any, root: str = ROOT) -> list[str]:
     """Node path of each joint of a model, the base first."""
-    paths = [ROOT]
+    paths = [root]
     for joint in range(1, model.njoints):
         paths.append(f"{paths[model.parents[joint]]}/{_node_name(model.names[joint])}")
     return paths
@@ -68,23 +74,37 @@ def draw_arm(scene: Any, robot: Robot, q: Array, *, meshes: bool = True) -> list
         One line for each mesh that is missing or of a kind that no browser can show.
     """
     visuals, bare, notes = _visual_model(robot, meshes)
-    pictured = NestedVisualizer(robot.model, visual_model=visuals)
+    _draw(scene, robot, q, visuals, bare, ROOT, None)
+    return notes
+
+
+def draw_ghost(scene: Any, robot: Robot, q: Array, root: str, color: int) -> None:
+    """Draws a robot see-through and without meshes, in one colour, below node ``root``."""
+    visuals, bare, _ = _visual_model(robot, False)
+    rgba = [*shapes.rgb(color), _GHOSTLY]
+    _draw(scene, robot, q, visuals, bare, root, rgba)
+
+
+def _draw(
+    scene: Any, robot: Robot, q: Array, visuals: Any, bare: set[int], root: str,
+    rgba: list[float] | None,
+) -> None:  # fmt: skip
+    pictured = NestedVisualizer(robot.model, visuals, root)
     pictured.initViewer(viewer=scene)
-    pictured.loadViewerModel(rootNodeName=ROOT)
+    pictured.loadViewerModel(rootNodeName=root, visual_color=rgba)
     pictured.display(q)
-    paths = joint_paths(robot.model)
     radius = 0.02 * reach(robot)
+    red, green, blue, opacity = rgba or _STAND_IN
+    material = shapes.paint(shapes.hexadecimal((red, green, blue)), opacity)
     for joint in sorted(bare):
-        start = np.zeros(3)
         end = (
             robot.model.jointPlacements[joint + 1].translation
             if joint < robot.n
             else robot.model.frames[robot.tool].placement.translation
         )
-        node = scene[f"{paths[joint]}/visuals/stand_in"]
-        shapes.rod(node["rod"], start, end, radius, shapes.paint(_STAND_IN))
-        shapes.ball(node["ball"], 1.3 * radius, shapes.paint(_STAND_IN))
-    return notes
+        node = scene[f"{pictured.paths[joint]}/visuals/stand_in"]
+        shapes.rod(node["rod"], np.zeros(3), end, radius, material)
+        shapes.ball(node["ball"], 1.3 * radius, material)
 
 
 def reach(robot: Robot) -> float:

@@ -76,7 +76,12 @@ def draw_dh(scene: Any, robot: Robot, table: DHTable) -> DHPicture:
             scene[f"{path}/d/rod"], np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.005 * size,
             shapes.flat(shapes.BLUE),
         )  # fmt: skip
-        around = [carriers.axes[i - 1], carriers.axes[i], carriers.triads[i - 1], carriers.triads[i]]
+        around = [
+            carriers.axes[i - 1],
+            carriers.axes[i],
+            carriers.triads[i - 1],
+            carriers.triads[i],
+        ]
         picture.groups[group] = [path, x_path, *around]
         picture.rows.append(
             {
@@ -93,6 +98,22 @@ def draw_dh(scene: Any, robot: Robot, table: DHTable) -> DHPicture:
                 "color": shapes.BLUE,
             }
         )
+    return picture
+
+
+def frames_only(scene: Any, robot: Robot) -> DHPicture:
+    """For an arm without a DH table: a triad in each joint frame of its URDF, and at the tool."""
+    picture = DHPicture()
+    size = 0.09 * reach(robot)
+    for i, path in enumerate(joint_paths(robot.model)):
+        shapes.triad(scene[f"{path}/frame"], size)
+        picture.groups["frames"].append(f"{path}/frame")
+        picture.labels.append(Label(f"{path}/frame", (0, 0, 0), f"{{{i}}}", "frames"))
+    tool = f"{joint_paths(robot.model)[-1]}/tool_frame"
+    shapes.triad(scene[tool], size)
+    scene[tool].set_transform(robot.model.frames[robot.tool].placement.homogeneous)
+    picture.groups["frames"].append(tool)
+    picture.labels.append(Label(tool, (0, 0, 0), "tool", "frames"))
     return picture
 
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from kinlab.arrays import Array
+
 
 @dataclass(frozen=True)
 class Label:
@@ -19,7 +21,7 @@ class Label:
     """
 
     path: str
-    at: Sequence[float]
+    at: Sequence[float] | Array
     html: str
     group: str
 

@@ -505,7 +505,7 @@ const kinlab = (() => {
         "aria-label": joint.name });
       const box = element("input", { type: "number", step, "aria-label": `${joint.name} value` });
       const move = (value) => {
-        play_off();
+        stopPlaying();
         setJoints(state.q.map((x, k) => (k === i ? value : x)));
       };
       range.addEventListener("input", () => move(Number(range.value)));
@@ -519,7 +519,7 @@ const kinlab = (() => {
         element("span", { class: "unit" }, unit(joint)));
     }
 
-    const play_off = () => spec.animation && play(false);
+    const stopPlaying = () => spec.animation && play(false);
 
     function check(group, text) {
       const box = element("input", { type: "checkbox",
@@ -560,14 +560,42 @@ const kinlab = (() => {
     }
 
     function poseButton(name, q) {
-      return element("button", { onclick: () => { play_off(); setJoints(q); } }, name);
+      return element("button", { onclick: () => { stopPlaying(); setJoints(q); } }, name);
     }
 
+    function legend({ name, low, high }) {
+      return element("div", { class: "line legend" }, element("span", {}, name),
+        element("span", {}, number(low), element("i"), number(high)));
+    }
+
+    // -- a live page tells its server where the sliders stand, and draws what the script adds
+
+    function connect() {
+      const address = new URL("socket", location);
+      address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
+      const socket = new WebSocket(address);
+      socket.binaryType = "arraybuffer";
+      socket.onmessage = ({ data }) => {
+        if (data instanceof ArrayBuffer) return viewer.handle_command_bytearray(new Uint8Array(data));
+        const { q, reload, revision } = JSON.parse(data);
+        if (q) setJoints(q, { tell: false });
+        if (reload || (revision !== undefined && revision !== spec.live)) location.reload();
+      };
+      socket.onclose = () => {
+        report.ended.hidden = false;
+      };
+      api.onjoints = (q) => socket.readyState === 1 && socket.send(JSON.stringify({ q }));
+    }
+
+    report.ended = element("div", { class: "warning", id: "ended" },
+      "The server has ended. The sliders still work; reload when it is back.");
+    report.ended.hidden = true;
     report.stopped = element("div", { class: "warning", id: "stopped" });
     report.stopped.hidden = true;
     panel.append(
       element("h1", {}, spec.title),
       element("small", { class: "subtitle", title: spec.subtitle }, spec.subtitle),
+      report.ended,
       ...spec.notes.map((text) => element("div", { class: "warning" }, text)),
       ...animationPanel(),
       element("h2", {}, "Joints"),
@@ -584,6 +612,7 @@ const kinlab = (() => {
       line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", "condition number: 1 where isotropic"),
       element("h2", {}, "Show"),
       ...spec.checks.map(([group, text]) => check(group, text)),
+      ...spec.legend.map(legend),
       ...dhTable(),
     );
     for (const group of spec.shown) show(group, true);
@@ -598,6 +627,7 @@ const kinlab = (() => {
     };
     setJoints(state.q, { tell: false });
     if (spec.animation) seek(0);
+    if (spec.live) connect();
     requestAnimationFrame(everyFrame);
     return api;
   }

@@ -18,14 +18,14 @@ class Recorder:
 
     Attributes:
         web_url: asked for by ``meshcat.Visualizer``; there is none.
-        listeners: called with each packed command, in order.
+        listeners: called with each packed command and each message of :meth:`tell`.
     """
 
     web_url = ""
 
     def __init__(self) -> None:
         self._commands: dict[tuple[str, ...], bytes] = {}
-        self.listeners: list[Callable[[bytes], None]] = []
+        self.listeners: list[Callable[[bytes | dict[str, Any]], None]] = []
 
     def send(self, command: Any) -> None:
         """Takes one meshcat command; a later one for the same path and property replaces it."""
@@ -42,8 +42,12 @@ class Recorder:
         key = (kind, path, str(data.get("property", "")))
         self._commands.pop(key, None)  # a replaced command takes its place at the end
         self._commands[key] = packed
+        self.tell(packed)
+
+    def tell(self, message: bytes | dict[str, Any]) -> None:
+        """Passes a packed command, or a message of ours, to every listener."""
         for listener in self.listeners:
-            listener(packed)
+            listener(message)
 
     def commands(self) -> list[bytes]:
         """The commands that build the scene in an empty viewer, packed, in order."""

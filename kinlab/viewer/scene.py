@@ -1,65 +1,84 @@
-"""Scene: an arm on the page, and what a script adds to it."""
+"""Scene: an arm on a page, with its ellipsoids and ghosts."""
 
 from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.errors import StateError
-from kinlab.files import write_text
-from kinlab.kinematics import fk
+from kinlab.errors import NameUnknownError, near
+from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.viewer import shapes
-from kinlab.viewer.arm import draw_arm, reach
-from kinlab.viewer.dh_picture import DHPicture, draw_dh
-from kinlab.viewer.framing import look_at, round_step
-from kinlab.viewer.page_spec import arm_spec, linear_rank
+from kinlab.viewer.arm import draw_ghost, reach
+from kinlab.viewer.arm_page import draw_page
+from kinlab.viewer.page import COLORS, Page
 from kinlab.viewer.recorder import new_scene
-from kinlab.viewer.static_page import page_html
 
 
-class Scene:
+class Scene(Page):
+    """A robot in the viewer, to which a script adds frames, ellipsoids, paths, clouds, ghosts.
+
+    Args:
+        robot: the arm to draw.
+        q: joint positions at the start, (n,); left out, zero (or the nearest limit).
+        meshes: draw the URDF's meshes; otherwise rods from joint to joint.
+
+    Raises:
+        StateError: q of another shape, or not finite.
+    """
+
     def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
+        vis, recorder = new_scene()
         self.robot = robot
-        start = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
-        q = start if q is None else joint_vector(robot, q, "q")
-        self._vis, self.recorder = new_scene()
-        size = reach(robot)
-        notes = draw_arm(self._vis, robot, q, meshes=meshes)
-        picture = DHPicture() if robot.table is None else draw_dh(self._vis, robot, robot.table)
-        self._vis["/Grid"].delete()
-        self._vis["/Axes"].delete()
-        shapes.floor(self._vis["/meshcat/floor"], 1.2 * size, round_step(size))
-        self._vis["/Background"].set_property("top_color", [1.0, 1.0, 1.0])
-        self._vis["/Background"].set_property("bottom_color", [0.86, 0.9, 0.94])
-        points = _joint_origins(robot, q)
-        camera = look_at(points, np.array([1.0, -1.3, 0.7]), 0.3 * size)
-        self.spec = arm_spec(robot, q, picture, camera, notes)
-        for kind, color in (("velocity", 0x00897B), ("force", 0xEF6C00)):
-            path = f"/meshcat/ellipsoids/{kind}"
-            shapes.ball(self._vis[path], 1.0, shapes.paint(color, 0.4))
-            self.spec["ellipsoids"].append(
-                {"kind": kind, "path": path, "size": 0.2 * size, "rank": linear_rank(robot)}
-            )
-            self.spec["groups"][kind] = [path]
-            self.spec["checks"].append([kind, f"{kind} ellipsoid"])
-        self.spec["trace"] = "/meshcat/trace"
-        self.spec["groups"]["trace"] = ["/meshcat/trace"]
-        self.spec["checks"].append(["trace", "tool trace"])
+        self._read = lambda q: joint_vector(robot, q, "q")
+        self._spec = {"title": robot.name}
+        start = np.clip(np.zeros(robot.n), robot.lower, robot.upper) if q is None else self._one(q)
+        spec = draw_page(vis, robot, start, meshes=meshes)
+        super().__init__(vis, recorder, spec, reach(robot), self._read)
 
-    def html(self) -> str:
-        return page_html(self.spec, self.recorder.commands())
+    def ellipsoid(self, name: str, q: ArrayLike, kind: str = "velocity") -> None:
+        """Draws the ellipsoid of the tool's velocities or forces at a pose, and leaves it there.
 
-    def save(self, path: str | Path) -> None:
-        write_text(path, self.html())
+        Args:
+            name: what to call it.
+            q: joint positions, (n,).
+            kind: ``"velocity"``: semi-axes sigma_i; ``"force"``: 1/sigma_i. Both are scaled so
+                that the longest is a fifth of the arm; a force without bound is drawn flat.
 
+        Raises:
+            NameUnknownError: another kind.
+            StateError: q of another shape, or not finite.
+        """
+        if kind not in shapes.ELLIPSOIDS:
+            raise NameUnknownError(f"ellipsoid {kind!r}; {near(kind, shapes.ELLIPSOIDS)}")
+        pose = self._one(q)
+        U, sigma, _ = np.linalg.svd(jacobian(self.robot, pose)[:3])
+        sigma = np.append(sigma, np.zeros(3 - len(sigma)))
+        moves = sigma > 1e-9 * sigma[0]
+        axes = sigma if kind == "velocity" else np.where(moves, 1 / np.where(moves, sigma, 1), 0)
+        scale = shapes.ELLIPSOID_SIZE * self._size
+        radii = scale * np.maximum(axes / (axes.max() or 1.0), 0.01)
+        place = np.eye(4)
+        place[:3, :3] = U * radii * (1, 1, np.linalg.det(U))
+        place[:3, 3] = fk(self.robot, pose)[:3, 3]
+        path = self._node(name)
+        shapes.ball(self._vis[path], 1.0, shapes.paint(shapes.ELLIPSOIDS[kind], 0.4))
+        self._vis[path].set_transform(place)
 
-def _joint_origins(robot: Robot, q):
-    import pinocchio as pin
-    data = robot.model.createData()
-    pin.forwardKinematics(robot.model, data, q)
-    return np.array([np.zeros(3), *(m.translation for m in list(data.oMi)[1:]), fk(robot, q)[:3, 3]])
+    def ghosts(self, name: str, q: ArrayLike, color: int | None = None) -> None:
+        """Draws the robot see-through at other poses, such as the branches of an IK solution.
+
+        Args:
+            name: what to call them.
+            q: joint positions, (n,) or (N, n).
+            color: 0xRRGGBB; left out, each ghost has its own.
+
+        Raises:
+            StateError: q of another shape, or not finite.
+        """
+        poses = np.atleast_2d(self._read(q))
+        root = self._node(name)
+        for i, pose in enumerate(poses):
+            paint = COLORS[i % len(COLORS)] if color is None else color
+            draw_ghost(self._vis, self.robot, pose, f"{root}/{i + 1}", paint)

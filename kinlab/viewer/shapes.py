@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import meshcat.geometry as g
@@ -11,6 +12,21 @@ from kinlab.arrays import Array
 
 RED, GREEN, BLUE = 0xC62828, 0x2E7D32, 0x1565C0
 """Axes x, y and z; in the DH picture red is what lies along x (a, alpha), blue along z."""
+
+
+ELLIPSOIDS = {"velocity": 0x00897B, "force": 0xEF6C00}
+"""The kinds of ellipsoid and their colours."""
+
+ELLIPSOID_SIZE = 0.2
+"""Longest semi-axis of an ellipsoid over the size of the mechanism."""
+
+_SCALE = np.array(
+    [
+        (0.267, 0.005, 0.329), (0.231, 0.322, 0.546), (0.128, 0.567, 0.551),
+        (0.369, 0.789, 0.383), (0.993, 0.906, 0.144),
+    ]
+)  # fmt: skip
+"""Five knots of the colour map viridis, which stays readable in grey and to the colour-blind."""
 
 
 class Torus(g.Geometry):  # type: ignore[misc]
@@ -31,6 +47,17 @@ class Torus(g.Geometry):  # type: ignore[misc]
             "tubularSegments": 40,
             "arc": self.arc,
         }
+
+
+def rgb(color: int) -> tuple[float, float, float]:
+    """0xRRGGBB as three numbers from 0 to 1."""
+    return ((color >> 16) / 255.0, (color >> 8 & 255) / 255.0, (color & 255) / 255.0)
+
+
+def hexadecimal(color: Sequence[float]) -> int:
+    """Three numbers from 0 to 1 as 0xRRGGBB."""
+    red, green, blue = (round(255 * part) for part in color)
+    return red << 16 | green << 8 | blue
 
 
 def paint(color: int, opacity: float = 1.0) -> Any:
@@ -92,6 +119,19 @@ def polyline(node: Any, points: Array, color: int) -> None:
     node.set_object(line)
 
 
+def cloud(node: Any, points: Array, colors: Array, size: float) -> None:
+    """Points (N, 3) with colours (N, 3) from 0 to 1, drawn ``size`` metres large."""
+    at, paint_of = np.asarray(points, np.float32).T, np.asarray(colors, np.float32).T
+    node.set_object(g.PointCloud(at, paint_of, size=size))
+
+
+def scale_colors(values: Array, low: float, high: float) -> Array:
+    """Colours (N, 3) for values (N,): from dark blue at ``low`` to yellow at ``high``."""
+    where = np.clip((values - low) / ((high - low) or 1.0), 0.0, 1.0) * (len(_SCALE) - 1)
+    ticks = np.arange(len(_SCALE))
+    return np.column_stack([np.interp(where, ticks, _SCALE[:, k]) for k in range(3)])
+
+
 def floor(node: Any, size: float, step: float) -> None:
     """A square grid of half-width ``size`` in the plane z = 0."""
     count = max(1, round(size / step))
@@ -100,9 +140,7 @@ def floor(node: Any, size: float, step: float) -> None:
     lines = [((-end, m, 0.0), (end, m, 0.0)) for m in marks]
     lines += [((m, -end, 0.0), (m, end, 0.0)) for m in marks]
     points = np.array(lines, dtype=np.float32).reshape(-1, 3)
-    node.set_object(
-        g.LineSegments(g.PointsGeometry(points.T), g.LineBasicMaterial(color=0xC3CCD5))
-    )
+    node.set_object(g.LineSegments(g.PointsGeometry(points.T), g.LineBasicMaterial(color=0xC3CCD5)))
 
 
 def turn_to(direction: Array, axis: int) -> Array:

@@ -5,60 +5,61 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.kinematics import jacobian
+from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
-from kinlab.viewer import dh_picture
-from kinlab.viewer.arm import joint_paths, motion_subspace, reach
-from kinlab.viewer.framing import Camera
+from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
+from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
+from kinlab.viewer.framing import look_at
+from kinlab.viewer.stage import add_ellipsoids, empty_spec, set_stage
 
 _ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
 _STILL = 1e-9
 """A row of J whose entries stay below this over random poses cannot be moved by the arm."""
 
 
-def arm_spec(
-    robot: Robot, q: Array, picture: dh_picture.DHPicture, camera: Camera, notes: list[str]
-) -> dict[str, Any]:
-    """Kinematics, labels and camera of an arm.
+def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, Any]:
+    """Draws an arm with its DH picture and ellipsoids.
 
     Args:
+        vis: an empty ``meshcat.Visualizer``.
         robot: the arm.
         q: what the sliders start at, (n,).
-        picture: the DH picture; an empty one where the arm has no table.
-        camera: where to look from.
-        notes: lines to show under the title.
+        meshes: draw the URDF's meshes.
 
     Returns:
         What ``start`` in page.js takes.
     """
-    model = robot.model
+    size = reach(robot)
+    set_stage(vis, size)
+    camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.3 * size)
+    spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
+    spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
+    table = robot.table
+    picture = frames_only(vis, robot) if table is None else draw_dh(vis, robot, table)
     rows, task = task_rows(robot)
-    return {
+    model = robot.model
+    spec |= {
         "kind": "arm",
-        "title": robot.name,
-        "subtitle": f"{robot.n} joints. {robot.source}".strip(),
-        "notes": notes,
         "joints": [_joint(robot, i) for i in range(1, model.njoints)],
         "tool": _flat(model.frames[robot.tool].placement.homogeneous),
         "rows": rows,
         "task": task,
         "q": [float(x) for x in q],
         "poses": _poses(robot),
-        "camera": camera.as_json(),
         "body": joint_paths(model)[0],
         "dh": picture.rows,
         "dh_convention": picture.convention,
-        "dh_columns": dh_picture.columns(picture.convention),
-        "groups": picture.groups,
+        "dh_columns": columns(picture.convention),
         "labels": [label.as_json() for label in picture.labels],
-        "shown": ["frames"],
-        "checks": [["frames", "frames"]],
-        "ellipsoids": [],
-        "animation": None,
-        "live": False,
     }
+    spec["groups"] |= picture.groups
+    spec["shown"].append("frames")
+    spec["checks"].insert(0, ["frames", "frames"])
+    add_ellipsoids(vis, spec, size, linear_rank(robot))
+    return spec
 
 
 def task_rows(robot: Robot) -> tuple[list[int], str]:
@@ -114,3 +115,11 @@ def _poses(robot: Robot) -> dict[str, list[float]]:
 
 def _flat(matrix: Array) -> list[float]:
     return [float(x) for x in np.asarray(matrix).reshape(-1)]
+
+
+def _origins(robot: Robot, q: Array) -> Array:
+    """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    joints = [placement.translation for placement in list(data.oMi)[1:]]
+    return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])
