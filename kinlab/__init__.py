@@ -13,6 +13,7 @@ from kinlab.dynamics import (
 )
 from kinlab.errors import KinlabError
 from kinlab.extract import to_dh
+from kinlab.fivebar import FiveBar
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
 from kinlab.robot import Robot
@@ -25,6 +26,7 @@ __all__ = [
     "Convention",
     "DHLink",
     "DHTable",
+    "FiveBar",
     "KinlabError",
     "Robot",
     "__version__",

@@ -9,6 +9,7 @@ note 002 and Siciliano et al., *Robotics*, section 2.8 (standard).
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
@@ -25,6 +26,7 @@ from kinlab.files import write_text
 from kinlab.tolerances import TOLERANCES
 
 GRAVITY = (0.0, 0.0, -9.81)
+_LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +71,8 @@ class DHLink:
 
     def __post_init__(self) -> None:
         place = f"link {self.name!r}" if self.name else "link"
+        if self.name is not None:
+            _check_name(self.name, f"{place}: name")
         if self.joint not in ("revolute", "prismatic"):
             raise TableError(
                 f'{place}: joint type {self.joint!r}; choose "revolute" or "prismatic"'
@@ -164,9 +168,11 @@ class DHTable:
     tool_name: str = "tool"
 
     def __post_init__(self) -> None:
-        if not isinstance(self.name, str) or not self.name.strip():
-            raise TableError(f"table: name is {self.name!r}; it must be a word")
+        _check_name(self.name, "table: name")
         place = f"table {self.name!r}"
+        _check_name(self.tool_name, f"{place}: tool_name")
+        if _LINK_NAME.fullmatch(self.tool_name):
+            raise TableError(f"{place}: tool_name {self.tool_name!r} is the name of a link")
         object.__setattr__(self, "convention", read_convention(self.convention, place))
         links = tuple(self.links)
         if not links:
@@ -345,6 +351,11 @@ def link_transform(
             [zero, zero, zero, one],
         ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def _check_name(name: object, place: str) -> None:
+    if not isinstance(name, str) or not name.strip() or not name.isprintable():
+        raise TableError(f"{place} is {name!r}; it must be printable text")
 
 
 def _same(one: Any, two: Any) -> bool:

@@ -39,6 +39,22 @@ class InertiaError(KinlabError, ValueError):
     """Dynamics were asked of a robot whose mass matrix is singular or absent."""
 
 
+class MechanismError(KinlabError, ValueError):
+    """A closed-chain mechanism has impossible lengths or masses, or cannot be assembled."""
+
+
+class UnreachableError(StateError):
+    """A point or joint vector at which the mechanism cannot be assembled."""
+
+
+class SingularError(StateError):
+    """The quantity asked for does not exist at a singular pose."""
+
+
+class MotorError(KinlabError, ValueError):
+    """A motor lacks a figure that sizing needs, or has an impossible one."""
+
+
 class NameUnknownError(KinlabError, KeyError):
     """A robot, frame, task, metric or quantity of that name does not exist."""
 

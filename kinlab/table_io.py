@@ -223,7 +223,7 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
         if "convention" in header:
             stated = read_convention(cells.pop("convention", None), where)
             if convention not in (None, stated):
-                raise TableError(f"{where}: convention {stated!r} differs from {convention!r}")
+                raise TableError(f"{where}: convention '{stated}' differs from '{convention}'")
             convention = stated
         links.append(_link(_csv_link(cells, where), where))
     return {"name": name, "convention": convention, "links": links, "source": "CSV import"}

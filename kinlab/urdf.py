@@ -112,8 +112,9 @@ def _text(urdf: Any, table: DHTable) -> str:
 
     root = urdf.write_xml().getroot()
     _write_rotations(root, urdf.robot)
-    about = f"DH table {table.name!r}, {table.convention} convention. {table.source}".strip()
-    root.insert(0, etree.Comment(f" {about.replace('--', '- -').rstrip('-')} "))
+    about = f"DH table {table.name!r}, {table.convention} convention. {table.source}"
+    about = "".join(c for c in " ".join(about.split()) if c.isprintable())
+    root.insert(0, etree.Comment(f" {about.replace('-', '‐' if '--' in about else '-')} "))
     armatures = {
         name: link.armature
         for name, link in zip(table.joint_names, table.links, strict=True)

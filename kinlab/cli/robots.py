@@ -35,9 +35,10 @@ def list_robots() -> None:
     from kinlab.errors import KinlabError
     from kinlab.library import DATA_PREFIX, example_robots, load, shipped
 
+    width = max(len(name) for name in [*shipped(), *example_robots()])
     table = Table(box=None, header_style="bold", pad_edge=False)
-    table.add_column("name", no_wrap=True)
-    table.add_column("DoF", justify="right")
+    table.add_column("name", no_wrap=True, min_width=width)
+    table.add_column("DoF", justify="right", min_width=3)
     table.add_column("source", no_wrap=True, overflow="ellipsis")
     for name in shipped():
         robot = load(name)
@@ -126,20 +127,13 @@ def _missing_meshes(robot: Robot) -> list[str]:
 
 
 def _joints(robot: Robot) -> Table:
+    from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    table = Table(title="joints", title_justify="left", header_style="bold")
-    for column in (
-        "joint",
-        "kind",
-        "lower",
-        "upper",
-        "velocity",
-        "effort",
-        "mass [kg]",
-        "armature",
-    ):
-        table.add_column(column, justify="left" if column in ("joint", "kind") else "right")
+    table = Table(title="joints", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    for column in ("joint", "kind", "lower", "upper", "velocity", "effort", "mass", "armature"):
+        left = column in ("joint", "kind")
+        table.add_column(column, justify="left" if left else "right", no_wrap=column != "joint")
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v

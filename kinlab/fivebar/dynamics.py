@@ -1,0 +1,270 @@
+"""Dynamics of a five-bar in closed form, with rods of mass.
+
+What the rods' mass does is one row of coefficients, :mod:`kinlab.fivebar.rods`; the formulas
+are the same for all of them.
+
+Sources: note 003 (003.vw, 003.G, 003.P); Huang et al. 2005, doi 10.1115/1.1898343, whose rods
+have no mass; the exact form is derived by virtual work and tested against a Lagrangian.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array
+from kinlab.errors import InertiaError
+from kinlab.fivebar.geometry import rate_bias, rate_matrix
+from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.pose import (
+    HANGING,
+    Mode,
+    OnUnreachable,
+    Pose,
+    read_vectors,
+    solve_pose,
+    turned,
+)
+from kinlab.fivebar.rods import RodModel, rod_model
+from kinlab.tolerances import TOLERANCES
+
+
+def crank_inertia(linkage: Linkage, rods: RodModel) -> Array:
+    """I_A* = I_1 + m_1 c_1² + j² I_M + alpha_B l1², about the base pins, (2,), kg m²."""
+    own = np.asarray(linkage.crank_inertia) + np.asarray(linkage.crank_mass) * np.square(
+        linkage.crank_com
+    )
+    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    total: Array = own + rotor + rods.elbow * np.square(linkage.l1)
+    return total
+
+
+def inverse_dynamics(
+    linkage: Linkage,
+    xy: ArrayLike,
+    v: ArrayLike,
+    a: ArrayLike,
+    mode: Mode = HANGING,
+    model: str = "exact",
+    on_unreachable: OnUnreachable = "raise",
+) -> Array:
+    """Crank torques for a motion of the tool (003.vw, and with rods of mass).
+
+    tau_i = I_A*_i theta_ddot_i + kappa_i l1_i n_i·a - (m_1 c_1 + m_B l1)_i n_i·g
+            + [J^-T ((m + sum alpha_C) a + sum kappa_i a_Bi - (m + sum m_P) g)]_i
+
+    with n_i = k x u_i, g the vector of gravity, m_B and m_P the rods' weight at elbow and tool.
+
+    Args:
+        linkage: the five-bar.
+        xy: tool, (2,) or (N, 2), m.
+        v: tool velocity, m/s. a: tool acceleration, m/s².
+        mode: signs of u_i x w_i.
+        model: ``"exact"``, ``"massless"``, ``"half"``, ``"third"`` or ``"static"``.
+        on_unreachable: ``"raise"`` or ``"mask"``.
+
+    Returns:
+        Torques at the crank side of the gears, (2,) or (N, 2), N m.
+
+    Raises:
+        UnreachableError: a point out of reach.
+        SingularError: type I (infinite rates) or type II (infinite torques).
+        OptionError: no such mode or model.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, on_unreachable, regular="I II")
+    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    acceleration = read_vectors(a, pose, f"{linkage.name}: a")
+    return pose.give(torques(linkage, pose, velocity, acceleration, rods))
+
+
+def torques(linkage: Linkage, pose: Pose, v: Array, a: Array, rods: RodModel) -> Array:
+    """The formula of :func:`inverse_dynamics` for solved poses, (N, 2)."""
+    l1 = np.asarray(linkage.l1)
+    jac = rate_matrix(linkage, pose)
+    rate = np.einsum("nij,nj->ni", jac, v)
+    turn = np.einsum("nij,nj->ni", jac, a) + rate_bias(linkage, pose, v)
+    normal = turned(pose.u)
+    elbow = l1[:, None] * (turn[..., None] * normal - (rate**2)[..., None] * pose.u)
+    force = (linkage.payload + rods.tool.sum()) * a
+    force = force + np.einsum("i,nij->nj", rods.coupling, elbow)
+    force = force - (linkage.payload + rods.tool_weight.sum()) * np.asarray(linkage.gravity)
+    shared = rods.coupling * l1 * np.einsum("nij,nj->ni", normal, a)
+    tau: Array = (
+        crank_inertia(linkage, rods) * turn
+        + shared
+        + crank_gravity(linkage, pose, rods)
+        + tool_force(linkage, pose, force)
+    )
+    return tau
+
+
+def crank_gravity(linkage: Linkage, pose: Pose, rods: RodModel) -> Array:
+    """tau_Ag: what holds the weight of the cranks and of the rods' share at the elbows, (N, 2)."""
+    moment = np.asarray(linkage.crank_mass) * np.asarray(linkage.crank_com)
+    moment = moment + rods.elbow_weight * np.asarray(linkage.l1)
+    held: Array = -moment * (turned(pose.u) @ np.asarray(linkage.gravity))
+    return held
+
+
+def tool_force(linkage: Linkage, pose: Pose, force: Array) -> Array:
+    """J^-T F: the crank torques that apply the force F at the tool, (N, 2).
+
+    From F = lambda_1 w_1 + lambda_2 w_2: tau_i = l1_i (u_i x w_i) lambda_i.
+    """
+    w1, w2 = pose.w[:, 0], pose.w[:, 1]
+    first = (force[:, 0] * w2[:, 1] - force[:, 1] * w2[:, 0]) / pose.rods
+    second = (w1[:, 0] * force[:, 1] - w1[:, 1] * force[:, 0]) / pose.rods
+    along = np.stack([first, second], axis=1)
+    tau: Array = np.asarray(linkage.l1) * pose.sine * along
+    return tau
+
+
+def velocity_matrix(linkage: Linkage, pose: Pose) -> Array:
+    """J^-1 of v = J^-1 theta_dot for solved poses, (N, 2, 2)."""
+    columns = np.stack([-turned(pose.w[:, 1]), turned(pose.w[:, 0])], axis=2)
+    inverse: Array = (
+        columns * (np.asarray(linkage.l1) * pose.sine)[:, None, :] / pose.rods[:, None, None]
+    )
+    return inverse
+
+
+def mass_matrix(
+    linkage: Linkage,
+    xy: ArrayLike,
+    mode: Mode = HANGING,
+    model: str = "exact",
+    on_unreachable: OnUnreachable = "raise",
+) -> Array:
+    """M in the actuated joints: tau = M theta_ddot + h(theta, theta_dot).
+
+    M = diag(I_A*) + K J^-1 + J^-T K^T + (m + sum alpha_C) J^-T J^-1, row i of K being
+    kappa_i l1_i n_i^T. :func:`task_mass_matrix` is J^T M J, which multiplies the tool's
+    acceleration.
+
+    Args:
+        linkage: the five-bar.
+        xy: tool, (2,) or (N, 2), m.
+        mode: signs of u_i x w_i.
+        model: a rod model, see :data:`ROD_MODELS`.
+        on_unreachable: ``"raise"`` or ``"mask"``.
+
+    Returns:
+        (2, 2) or (N, 2, 2), symmetric, kg m².
+
+    Raises:
+        UnreachableError: a point out of reach.
+        SingularError: type II, where the cranks do not determine the tool.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, on_unreachable, regular="II")
+    return pose.give(joint_mass(linkage, pose, rods))
+
+
+def joint_mass(linkage: Linkage, pose: Pose, rods: RodModel) -> Array:
+    """The formula of :func:`mass_matrix` for solved poses, (N, 2, 2)."""
+    inverse = velocity_matrix(linkage, pose)
+    shared = (rods.coupling * np.asarray(linkage.l1))[:, None] * turned(pose.u) @ inverse
+    mass: Array = (
+        np.diag(crank_inertia(linkage, rods))
+        + shared
+        + shared.swapaxes(1, 2)
+        + (linkage.payload + rods.tool.sum()) * inverse.swapaxes(1, 2) @ inverse
+    )
+    return mass
+
+
+def task_mass_matrix(
+    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+) -> Array:
+    """Lambda = J^T M J, the inertia felt at the tool: J^T tau = Lambda a + ...
+
+    Arguments as :func:`mass_matrix`.
+
+    Returns:
+        (2, 2) or (N, 2, 2), symmetric, kg.
+
+    Raises:
+        UnreachableError: a point out of reach.
+        SingularError: type I or type II.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="I II")
+    jac = rate_matrix(linkage, pose)
+    return pose.give(jac.swapaxes(1, 2) @ joint_mass(linkage, pose, rods) @ jac)
+
+
+def gravity_torques(
+    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+) -> Array:
+    """Crank torques that hold the linkage still, (2,) or (N, 2), N m.
+
+    Arguments as :func:`mass_matrix`; exists at type I too, where the cranks carry no tool force.
+
+    Raises:
+        UnreachableError: a point out of reach.
+        SingularError: type II.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="II")
+    weight = -(linkage.payload + rods.tool_weight.sum()) * np.asarray(linkage.gravity)
+    held = tool_force(linkage, pose, np.broadcast_to(weight, pose.xy.shape))
+    return pose.give(crank_gravity(linkage, pose, rods) + held)
+
+
+def bias_torques(
+    linkage: Linkage, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+) -> Array:
+    """h of tau = M theta_ddot + h: gravity and velocity terms, (2,) or (N, 2), N m.
+
+    Arguments and errors as :func:`inverse_dynamics`.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="I II")
+    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    return pose.give(_bias(linkage, pose, velocity, rods))
+
+
+def _bias(linkage: Linkage, pose: Pose, v: Array, rods: RodModel) -> Array:
+    inverse = velocity_matrix(linkage, pose)
+    steady = -np.einsum("nij,nj->ni", inverse, rate_bias(linkage, pose, v))  # theta_ddot = 0
+    return torques(linkage, pose, v, steady, rods)
+
+
+def forward_dynamics(
+    linkage: Linkage,
+    xy: ArrayLike,
+    v: ArrayLike,
+    tau: ArrayLike,
+    mode: Mode = HANGING,
+    model: str = "exact",
+) -> Array:
+    """Crank accelerations under given torques: theta_ddot = M^-1 (tau - h).
+
+    Args:
+        linkage: the five-bar.
+        xy: tool, (2,) or (N, 2), m. v: its velocity, m/s.
+        tau: crank torques, (2,) or (N, 2), N m.
+        mode: signs of u_i x w_i.
+        model: a rod model, see :data:`ROD_MODELS`.
+
+    Returns:
+        (2,) or (N, 2), rad/s².
+
+    Raises:
+        InertiaError: no mass where the motion needs one.
+        UnreachableError, SingularError: as :func:`inverse_dynamics`.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="I II")
+    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    torque = read_vectors(tau, pose, f"{linkage.name}: tau")
+    mass = joint_mass(linkage, pose, rods)
+    least = np.linalg.eigvalsh(mass)
+    if np.any(least[:, 0] <= TOLERANCES.massless * np.abs(least[:, 1])):
+        raise InertiaError(
+            f"{linkage.name}: the mass matrix is singular, so torques do not determine the "
+            "acceleration; give the cranks an inertia, or the tool a payload and the rods a mass"
+        )
+    force = torque - _bias(linkage, pose, velocity, rods)
+    return pose.give(np.asarray(np.linalg.solve(mass, force[..., None])[..., 0], np.float64))

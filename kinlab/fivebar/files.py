@@ -1,0 +1,94 @@
+"""Five-bars as TOML: the presets in ``robots/fivebar/`` and files of one's own.
+
+Keys are the arguments of :class:`kinlab.fivebar.linkage.Linkage`; numbers may be text such as
+``"0.2/sqrt(2)"``, and a pair is a list (leg 1, leg 2).
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import tomli_w
+
+from kinlab.errors import ExpressionError, MechanismError, NameUnknownError, near
+from kinlab.expressions import parse_number
+from kinlab.files import read_text, write_text
+from kinlab.fivebar.linkage import Linkage
+from kinlab.resources import robots_dir
+
+_TEXT = ("name", "source")
+_KEYS = tuple(f.name for f in fields(Linkage))
+_MOTORS = "motors"
+
+
+def presets() -> dict[str, Path]:
+    """The shipped five-bars, name to file."""
+    files = sorted((robots_dir() / "fivebar").glob("*.toml"))
+    return {file.stem: file for file in files if file.stem != _MOTORS}
+
+
+def read(name_or_path: str | Path) -> dict[str, Any]:
+    """Reads the arguments of a five-bar.
+
+    Args:
+        name_or_path: a preset ("isotropic"), or a path ending in .toml.
+
+    Returns:
+        Arguments for ``FiveBar(**...)``; the name is the file's where it states none.
+
+    Raises:
+        NameUnknownError: no preset of that name.
+        FileError: the file cannot be read.
+        MechanismError: not TOML, a key that does not exist or is missing, or not a number.
+    """
+    text = str(name_or_path)
+    if text.lower().endswith(".toml"):
+        path = Path(text)
+    elif text in presets():
+        path = presets()[text]
+    else:
+        raise NameUnknownError(f"no five-bar {text!r}; {near(text, presets())}")
+    return loads(read_text(path), path.stem)
+
+
+def loads(text: str, name: str) -> dict[str, Any]:
+    """As :func:`read`, from TOML text."""
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise MechanismError(f"five-bar {name!r}: not TOML: {problem}") from None
+    place = f"five-bar {data.get('name', name)!r}"
+    for key in data:
+        if key not in _KEYS:
+            raise MechanismError(f"{place}: key {key!r} is unknown; {near(key, _KEYS)}")
+    for key in ("l1", "l2", "e"):
+        if key not in data:
+            raise MechanismError(f"{place}: key {key!r} is missing")
+    return {"name": name, **{key: _value(key, data[key], place) for key in data}}
+
+
+def _value(key: str, value: object, place: str) -> Any:
+    if key in _TEXT:
+        if not isinstance(value, str):
+            raise MechanismError(f"{place}: {key} must be text")
+        return value
+    try:
+        if isinstance(value, list):
+            return [parse_number(v) for v in value]
+        return parse_number(value)
+    except ExpressionError as problem:
+        raise MechanismError(f"{place}: {key}: {problem}") from None
+
+
+def write(linkage: Linkage, path: str | Path) -> None:
+    """Writes a five-bar; reading it again gives the same one, bit for bit.
+
+    Raises:
+        FileError: the file cannot be written; an old one stays whole.
+    """
+    values: Mapping[str, Any] = linkage.values()
+    write_text(path, tomli_w.dumps(values))

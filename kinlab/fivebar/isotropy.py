@@ -1,0 +1,119 @@
+"""Isotropic poses of a five-bar: those where the tool moves equally well in every direction.
+
+J J^T = c I needs rods at right angles and rows of one length, l1_1 |u_1 x w_1| = l1_2 |u_2 x w_2|.
+On the axis of a symmetric linkage the second holds by itself. With zero pressure angles as well
+the pose is fully isotropic; that exists iff e = (l2 - l1)/√2, at (0, ∓(l1 + l2)/√2).
+
+Sources: note 000 (000.iso); Huang et al. 2005, doi 10.1115/1.1898343.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.loci import grid
+from kinlab.fivebar.metrics import condition_number, pressure_angles, singular_values
+from kinlab.fivebar.pose import HANGING, Mode, solve_pose
+
+_NEWTON_STEPS = 40
+_SAME_PLACE = 3e-3
+"""Two answers closer than this part of the linkage's size are one: at a fully isotropic pose
+the conditions are flat along x, and Newton ends anywhere within a few 1e-4."""
+
+
+@dataclass(frozen=True)
+class IsotropicPose:
+    """One isotropic pose.
+
+    Attributes:
+        xy: tool, m.
+        mode: working mode.
+        condition: kappa of J there, as measured.
+        rate: the common singular value of J, rad/m.
+        pressure: pressure angles, rad; both zero at a fully isotropic pose.
+    """
+
+    xy: tuple[float, float]
+    mode: tuple[int, int]
+    condition: float
+    rate: float
+    pressure: tuple[float, float]
+
+
+def isotropic_poses(
+    linkage: Linkage, mode: Mode = HANGING, resolution: int = 41
+) -> list[IsotropicPose]:
+    """Finds the isotropic poses of one working mode by Newton from a grid of starts.
+
+    With both cranks on one axis (e = 0) each pose is one of a whole circle; the one straight
+    below is returned.
+
+    Args:
+        linkage: the five-bar.
+        mode: signs of u_i x w_i.
+        resolution: starts along the longer side of the workspace.
+
+    Returns:
+        Poses with kappa = 1 to 1e-9, from the lowest up; empty if there are none.
+
+    Raises:
+        OptionError: a mode that does not exist.
+    """
+    _, _, points = grid(linkage, resolution)
+    points = points[solve_pose(linkage, points, mode, "mask", regular="I II").ok]
+    size = float(np.sum(linkage.l1) + np.sum(linkage.l2))
+    points = _newton(linkage, points, mode, size, rcond=1e-6)
+    points = points[condition_number(linkage, points, mode) - 1.0 < 1e-9]
+    if linkage.e == 0.0:
+        points = np.stack([np.zeros(len(points)), -np.hypot(points[:, 0], points[:, 1])], axis=1)
+    middles = []
+    while len(points):
+        near = np.linalg.norm(points - points[0], axis=1) <= _SAME_PLACE * size
+        middles.append(points[near].mean(axis=0))
+        points = points[~near]
+    if not middles:
+        return []
+    # a middle is off only across the flat direction, which the larger rcond leaves alone
+    points = _newton(linkage, np.array(middles), mode, size, rcond=1e-2)
+    return [_describe(linkage, point, mode) for point in points[np.lexsort(points.T)]]
+
+
+def _newton(linkage: Linkage, points: Array, mode: Mode, size: float, rcond: float) -> Array:
+    """Newton from all points at once; those that leave the workspace are dropped."""
+    for _ in range(_NEWTON_STEPS):
+        value, slope = _conditions(linkage, points, mode, 1e-6 * size)
+        step = -np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=rcond), value)
+        length = np.linalg.norm(step, axis=1, keepdims=True)
+        points = points + step * np.minimum(1.0, 0.05 * size / np.maximum(length, 1e-300))
+        points = points[solve_pose(linkage, points, mode, "mask", regular="I II").ok]
+    return points
+
+
+def _conditions(
+    linkage: Linkage, points: Array, mode: Mode, h: float
+) -> tuple[Array, Array]:  # fmt: skip
+    """w_1·w_2 and the difference of the rows' lengths, with central differences by x and y."""
+
+    def value(at: Array) -> Array:
+        pose = solve_pose(linkage, at, mode, "mask")
+        right = np.einsum("nj,nj->n", pose.w[:, 0], pose.w[:, 1])
+        reach = np.asarray(linkage.l1) * np.abs(pose.sine)
+        return np.stack([right, (reach[:, 0] - reach[:, 1]) / reach.sum(axis=1)], axis=1)
+
+    slopes = [(value(points + s) - value(points - s)) / (2.0 * h) for s in h * np.eye(2)]
+    return value(points), np.stack(slopes, axis=2)
+
+
+def _describe(linkage: Linkage, point: Array, mode: Mode) -> IsotropicPose:
+    pressure = pressure_angles(linkage, point, mode)
+    return IsotropicPose(
+        (float(point[0]), float(point[1])),
+        (int(mode[0]), int(mode[1])),
+        float(condition_number(linkage, point, mode)),
+        float(singular_values(linkage, point, mode).mean()),
+        (float(pressure[0]), float(pressure[1])),
+    )

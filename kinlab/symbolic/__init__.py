@@ -1,0 +1,29 @@
+"""Symbolic derivation of an arm from its DH table: FK, J, det J, M, C, G, tau.
+
+    >>> import kinlab as kl
+    >>> from kinlab import symbolic
+    >>> arm = symbolic.arm(kl.load("planar2r").table)
+    >>> symbolic.det_jacobian(arm).expression
+    l1*l2*sin(q2)
+
+Everything is computed with sparse polynomials in the parameters and the pairs (cos q_i, sin q_i),
+exactly, and becomes a sympy expression at the end.
+"""
+
+from kinlab.symbolic.arm import SymbolicArm, arm
+from kinlab.symbolic.determinant import Determinant, det_jacobian
+from kinlab.symbolic.kinematics import fk, frames, jacobian
+from kinlab.symbolic.output import to_function, to_latex, to_python
+
+__all__ = [
+    "Determinant",
+    "SymbolicArm",
+    "arm",
+    "det_jacobian",
+    "fk",
+    "frames",
+    "jacobian",
+    "to_function",
+    "to_latex",
+    "to_python",
+]

@@ -1,0 +1,27 @@
+"""Writes robots/urdf/*.urdf from the DH tables in robots/*.toml.
+
+The URDFs are committed so that any other tool can use them; a test regenerates them and finds
+no difference. Run it after changing a table: ``python scripts/make_urdfs.py``.
+"""
+
+from __future__ import annotations
+
+from kinlab.dh import DHTable
+from kinlab.files import write_text
+from kinlab.library import shipped
+from kinlab.resources import robots_dir
+from kinlab.urdf import to_urdf
+
+
+def main() -> None:
+    """Writes one file per table and prints its name."""
+    folder = robots_dir() / "urdf"
+    folder.mkdir(exist_ok=True)
+    for entry in shipped().values():
+        file = folder / f"{entry.name}.urdf"
+        write_text(file, to_urdf(DHTable.load(entry.path)))
+        print(f"wrote {file.name}")
+
+
+if __name__ == "__main__":
+    main()
