@@ -10,6 +10,7 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.tasks import TASKS, generic_rank
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
 from kinlab.viewer.framing import look_at
@@ -74,20 +75,16 @@ def task_rows(robot: Robot) -> tuple[list[int], str]:
     linear = [r for r in moving if r < 3]
     if len(moving) > robot.n and 0 < len(linear) <= robot.n:
         moving = linear
-    if moving == [0, 1, 2, 3, 4, 5]:
-        return moving, "pose"
-    if moving == [0, 1, 2]:
-        return moving, "position"
-    return moving, ", ".join(_ROWS[r] for r in moving)
+    names = {rows: name for name, rows in TASKS.items()}
+    coordinates = ", ".join(_ROWS[r] for r in moving)
+    return moving, f"task {names.get(tuple(moving), coordinates)}"
 
 
 def linear_rank(robot: Robot) -> int:
     """Number of directions in which the tool's origin can move, 1 to 3, away from singularity."""
     rng = np.random.default_rng(1)
-    stack = jacobian(robot, rng.uniform(-1.0, 1.0, (5, robot.n)))[:, :3]
-    sigma = np.linalg.svd(stack, compute_uv=False)
-    ranks = (sigma > 1e-6 * np.maximum(sigma[:, :1], _STILL)).sum(axis=1)
-    return max(1, int(ranks.max()))
+    stack = jacobian(robot, rng.uniform(-1.0, 1.0, (5, robot.n)))
+    return max(1, generic_rank(stack, TASKS["position"]))
 
 
 def _joint(robot: Robot, i: int) -> dict[str, Any]:

@@ -163,15 +163,18 @@ const kinlab = (() => {
       const w = elbow.map((b, i) => [(tool[0] - b[0]) / l2[i], (tool[1] - b[1]) / l2[i]]);
       return { u, elbow, tool, w, sine: Math.abs(w[0][0] * w[1][1] - w[0][1] * w[1][0]) };
     }
-    // Tool velocity over crank rates: w_i . v = l1_i (u_i x w_i) theta_dot_i for both legs.
-    function jacobian(q) {
+    // theta_dot = J v (note 003): row i is w_i / (l1_i u_i x w_i).
+    function rates(q) {
       const { u, w } = loop(q);
-      const c = w[0][0] * w[1][1] - w[0][1] * w[1][0];
-      const drive = u.map((d, i) => l1[i] * (d[0] * w[i][1] - d[1] * w[i][0]));
-      return [
-        [(w[1][1] * drive[0]) / c, (-w[0][1] * drive[1]) / c],
-        [(-w[1][0] * drive[0]) / c, (w[0][0] * drive[1]) / c],
-      ];
+      return w.map((r, i) => {
+        const drive = l1[i] * (u[i][0] * r[1] - u[i][1] * r[0]);
+        return [r[0] / drive, r[1] / drive];
+      });
+    }
+    function jacobian(q) {
+      const [[a, b], [c, d]] = rates(q);
+      const det = a * d - b * c;
+      return [[d / det, -b / det], [-c / det, a / det]];
     }
     // Walks from a closed pose towards another in small steps; stops where the rods come into
     // line, since beyond it the loop cannot close or the tool could take either side.
@@ -202,10 +205,9 @@ const kinlab = (() => {
     return {
       joints,
       loop,
-      jacobian,
       admit,
       tool,
-      task: jacobian,
+      task: rates,
       linear: (q) => [...jacobian(q), [0, 0]],
       place(q) {
         const pose = loop(q);
@@ -563,7 +565,11 @@ const kinlab = (() => {
       return element("button", { onclick: () => { stopPlaying(); setJoints(q); } }, name);
     }
 
-    function legend({ name, low, high }) {
+    function legend({ name, low, high, color }) {
+      if (color) {
+        return element("div", { class: "line" }, element("span", {}, name),
+          element("span", { class: "swatch", style: `background: ${color}` }));
+      }
       return element("div", { class: "line legend" }, element("span", {}, name),
         element("span", {}, number(low), element("i"), number(high)));
     }
@@ -606,7 +612,7 @@ const kinlab = (() => {
       element("h2", {}, "Tool"),
       line("x, y, z [m]", "position", "position of the tool in the base"),
       line("roll, pitch, yaw [°]", "angles", "R = Rz(yaw) Ry(pitch) Rx(roll)"),
-      element("h2", {}, `Jacobian, task ${spec.task}`),
+      element("h2", {}, `Jacobian, ${spec.task}`),
       line("det J", "det", "determinant of the Jacobian's task rows"),
       line("σ<sub>min</sub>", "sigma", "smallest singular value: 0 in a singular pose"),
       line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", "condition number: 1 where isotropic"),

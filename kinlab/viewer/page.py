@@ -92,13 +92,13 @@ class Page:
         self._changed()
 
     def path(self, name: str, points: ArrayLike, color: int | None = None) -> None:
-        """Draws a line through points (N, 3), metres; colour 0xRRGGBB.
+        """Draws a line through points (N, 3), metres, N at least 2; colour 0xRRGGBB.
 
         Raises:
             StateError: points of another shape, or not finite.
         """
-        line = self._points(name, points)
-        shapes.polyline(self._vis[self._node(name)], line, self._color(color))
+        line = self._points(name, points, least=2)
+        shapes.tube(self._vis[self._node(name)], line, 0.003 * self._size, self._color(color))
 
     def points(
         self, name: str, points: ArrayLike, values: ArrayLike | None = None, size: float = 0.0
@@ -192,12 +192,14 @@ class Page:
     def _node(self, name: str) -> str:
         if not name or "/" in name:
             raise OptionError(f"name {name!r}: give a word without '/'")
-        return f"/meshcat/added/{name}"
+        return f"{self._spec['root']}/added/{name}"
 
-    def _points(self, name: str, points: ArrayLike) -> Array:
+    def _points(self, name: str, points: ArrayLike, least: int = 1) -> Array:
         array = real_array(points, f"points {name!r}")
-        if array.ndim != 2 or array.shape[1] != 3 or not len(array):
-            raise StateError(f"points {name!r}: shape {array.shape}; expected (N, 3), N at least 1")
+        if array.ndim != 2 or array.shape[1] != 3 or len(array) < least:
+            raise StateError(
+                f"points {name!r}: shape {array.shape}; expected (N, 3), N at least {least}"
+            )
         return array
 
     def _color(self, color: int | None) -> int:

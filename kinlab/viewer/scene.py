@@ -1,17 +1,24 @@
-"""Scene: an arm on a page, with its ellipsoids and ghosts."""
+"""Scene: an arm on a page, with its ellipsoids and ghosts; and the five-bar's page."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.errors import NameUnknownError, near
+from kinlab.arrays import Array, real_array, shaped
+from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.fivebar.geometry import fk as fivebar_fk
+from kinlab.fivebar.geometry import ik, mode_of
+from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.pose import solve_pose
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import draw_page
+from kinlab.viewer.fivebar_page import best_start, size_of
+from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
 from kinlab.viewer.page import COLORS, Page
 from kinlab.viewer.recorder import new_scene
 
@@ -82,3 +89,45 @@ class Scene(Page):
         for i, pose in enumerate(poses):
             paint = COLORS[i % len(COLORS)] if color is None else color
             draw_ghost(self._vis, self.robot, pose, f"{root}/{i + 1}", paint)
+
+
+class FiveBarScene(Page):
+    """A five-bar in the viewer. Points that are added are in its plane: (x, y, 0).
+
+    Args:
+        linkage: the five-bar.
+        theta: crank angles at the start, (2,), rad; left out, the best-conditioned pose on the
+            axis x = 0 that hangs below the base.
+        assembly: sign of w_1 x w_2.
+
+    Attributes:
+        mode: signs of u_i x w_i at the start.
+
+    Raises:
+        UnreachableError: the loop cannot close there.
+        SingularError: the start is a singularity of type II.
+        StateError: theta of another shape, or not finite.
+    """
+
+    def __init__(
+        self, linkage: Linkage, theta: ArrayLike | None = None, assembly: int = 1
+    ) -> None:
+        self.linkage, self.assembly = linkage, assembly
+        if theta is None:
+            start = ik(linkage, best_start(linkage, assembly))
+        else:
+            start = shaped(theta, (2,), f"{linkage.name}: theta")
+        xy = fivebar_fk(linkage, start, assembly)
+        self.mode = mode_of(linkage, start, xy)
+        solve_pose(linkage, xy, self.mode, regular="II")
+        vis, recorder = new_scene()
+        spec = draw_fivebar(vis, linkage, start, assembly, self.mode)
+        super().__init__(vis, recorder, spec, size_of(linkage), self._angles)
+
+    def _angles(self, theta: ArrayLike) -> Array:
+        angles = real_array(theta, f"{self.linkage.name}: theta")
+        if angles.ndim not in (1, 2) or angles.shape[-1] != 2:
+            raise StateError(
+                f"{self.linkage.name}: theta has shape {angles.shape}; expected (2,) or (N, 2)"
+            )
+        return angles

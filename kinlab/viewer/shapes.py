@@ -102,6 +102,22 @@ def arrow(node: Any, start: Array, end: Array, radius: float, material: Any) -> 
     node["tip"].set_transform(place)
 
 
+def pin(node: Any, centre: Array, radius: float, height: float, material: Any) -> None:
+    """A short cylinder along z about ``centre``, (3,)."""
+    half = np.array([0.0, 0.0, 0.5 * height])
+    rod(node, centre - half, centre + half, radius, material)
+
+
+def slab(node: Any, length: float, width: float, height: float, material: Any) -> None:
+    """A flat bar along x from the node's origin, with round ends."""
+    node["bar"].set_object(g.Box([length, width, height]), material)
+    middle = np.eye(4)
+    middle[0, 3] = 0.5 * length
+    node["bar"].set_transform(middle)
+    pin(node["near"], np.zeros(3), 0.5 * width, height, material)
+    pin(node["far"], np.array([length, 0.0, 0.0]), 0.5 * width, height, material)
+
+
 def ball(node: Any, radius: float, material: Any) -> None:
     """A ball about the node's origin."""
     node.set_object(g.Sphere(radius), material)
@@ -113,10 +129,23 @@ def triad(node: Any, size: float) -> None:
         arrow(node[name], np.zeros(3), size * axis, 0.03 * size, flat(color))
 
 
-def polyline(node: Any, points: Array, color: int) -> None:
-    """A line through points (N, 3)."""
-    line = g.Line(g.PointsGeometry(np.asarray(points, np.float32).T), g.LineBasicMaterial(color))
-    node.set_object(line)
+def tube(node: Any, points: Array, radius: float, color: int) -> None:
+    """A six-sided tube through points (N, 3); a line would be one pixel thin everywhere."""
+    start, along = points[:-1], np.diff(points, axis=0)
+    long = np.linalg.norm(along, axis=1) > 1e-12
+    start, along = start[long], along[long]
+    along_unit = along / np.linalg.norm(along, axis=1, keepdims=True)
+    side = np.cross(along_unit, np.eye(3)[np.argmin(np.abs(along_unit), axis=1)])
+    side *= radius / np.linalg.norm(side, axis=1, keepdims=True)
+    up = np.cross(along_unit, side)
+    turn = np.arange(6) * np.pi / 3
+    ring = np.cos(turn)[:, None] * side[:, None] + np.sin(turn)[:, None] * up[:, None]
+    near, far = start[:, None] + ring, (start + along)[:, None] + ring
+    corners = np.concatenate([near, far], axis=1).reshape(-1, 3)
+    i, j = np.arange(6), np.roll(np.arange(6), -1)
+    one = np.concatenate([np.stack([i, j, i + 6], 1), np.stack([j, j + 6, i + 6], 1)])
+    faces = (one + 12 * np.arange(len(start))[:, None, None]).reshape(-1, 3)
+    node.set_object(g.TriangularMeshGeometry(corners, faces), flat(color))
 
 
 def cloud(node: Any, points: Array, colors: Array, size: float) -> None:

@@ -7,8 +7,6 @@ from typing import Any
 from kinlab.viewer import shapes
 from kinlab.viewer.framing import Camera, round_step
 
-TRACE = "/meshcat/trace"
-
 
 def set_stage(vis: Any, size: float) -> None:
     """Replaces meshcat's dark sky, huge grid and axes by a light stage of the right size."""
@@ -19,9 +17,20 @@ def set_stage(vis: Any, size: float) -> None:
     shapes.floor(vis["/meshcat/floor"], 1.2 * size, round_step(size))
 
 
-def empty_spec(title: str, subtitle: str, camera: Camera) -> dict[str, Any]:
-    """A page of nothing but its title; the mechanisms fill in the rest."""
+def empty_spec(
+    title: str, subtitle: str, camera: Camera, root: str = "/meshcat"
+) -> dict[str, Any]:  # fmt: skip
+    """A page of nothing but its title; the mechanisms fill in the rest.
+
+    Args:
+        title: the mechanism's name.
+        subtitle: where it comes from.
+        camera: where to look from.
+        root: the node in whose frame the tool's position, and what is added, are given.
+    """
+    trace = f"{root}/trace"
     return {
+        "root": root,
         "title": title,
         "subtitle": subtitle,
         "notes": [],
@@ -30,13 +39,13 @@ def empty_spec(title: str, subtitle: str, camera: Camera) -> dict[str, Any]:
         "dh": [],
         "dh_convention": "",
         "dh_columns": [],
-        "groups": {"trace": [TRACE]},
+        "groups": {"trace": [trace]},
         "labels": [],
         "shown": ["added"],
         "checks": [["trace", "tool trace"]],
         "ellipsoids": [],
         "legend": [],
-        "trace": TRACE,
+        "trace": trace,
         "animation": None,
         "live": "",
     }
@@ -52,7 +61,7 @@ def add_ellipsoids(vis: Any, spec: dict[str, Any], size: float, rank: int) -> No
         rank: number of directions in which the tool can move.
     """
     for kind, color in shapes.ELLIPSOIDS.items():
-        path = f"/meshcat/ellipsoids/{kind}"
+        path = f"{spec['root']}/ellipsoids/{kind}"
         shapes.ball(vis[path], 1.0, shapes.paint(color, 0.4))
         entry = {"kind": kind, "path": path, "size": shapes.ELLIPSOID_SIZE * size, "rank": rank}
         spec["ellipsoids"].append(entry)
