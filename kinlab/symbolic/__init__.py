@@ -12,6 +12,15 @@ exactly, and becomes a sympy expression at the end.
 
 from kinlab.symbolic.arm import SymbolicArm, arm
 from kinlab.symbolic.determinant import Determinant, det_jacobian
+from kinlab.symbolic.dynamics import (
+    christoffel,
+    coriolis_matrix,
+    gravity_torques,
+    inverse_dynamics,
+    kinetic_energy,
+    mass_matrix,
+    potential_energy,
+)
 from kinlab.symbolic.kinematics import fk, frames, jacobian
 from kinlab.symbolic.output import to_function, to_latex, to_python
 
@@ -19,10 +28,17 @@ __all__ = [
     "Determinant",
     "SymbolicArm",
     "arm",
+    "christoffel",
+    "coriolis_matrix",
     "det_jacobian",
     "fk",
     "frames",
+    "gravity_torques",
+    "inverse_dynamics",
     "jacobian",
+    "kinetic_energy",
+    "mass_matrix",
+    "potential_energy",
     "to_function",
     "to_latex",
     "to_python",

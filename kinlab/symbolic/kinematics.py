@@ -61,7 +61,7 @@ def link_frames(arm: SymbolicArm) -> list[Grid]:
     """Frame 0 (the base) and the DH frames 1 to n, as polynomials."""
     out = [_placed(arm, np.asarray(arm.table.base), "base")]
     for i in range(arm.n):
-        out.append(product(arm, out[-1], _link(arm, i)))
+        out.append(product(arm, out[-1], link_step(arm, i)))
     return out
 
 
@@ -141,7 +141,7 @@ def _placed(arm: SymbolicArm, transform: Array, which: str) -> Grid:
     return [*rows, [zero, zero, zero, one]]
 
 
-def _link(arm: SymbolicArm, i: int) -> Grid:
+def link_step(arm: SymbolicArm, i: int) -> Grid:
     """^{i-1}T_i of row i (from 0), as :func:`kinlab.dh.link_transform` writes it."""
     link, trig = arm.table.links[i], arm.trig
     zero, one = trig.ring.zero, trig.ring.one

@@ -29,19 +29,20 @@ def to_function(
 
     Returns:
         ``f(q, qd, qdd)``; the arguments the expression does not use may be left out. It answers
-        with the shape of the expression, a column as (n,).
+        with the shape of the expression, a column of two or more as (n,).
 
     Raises:
         NameUnknownError: ``changed`` names no parameter.
     """
     numbers = values_at(arm, changed or {})
-    grid = sympy.Matrix([[expression]]) if isinstance(expression, sympy.Expr) else expression
+    scalar = not isinstance(expression, sympy.MatrixBase)
+    grid = sympy.Matrix([[expression]]) if scalar else expression
     used = [s for s in numbers if s in grid.free_symbols]
     arguments = [*arm.q, *arm.qd, *arm.qdd, *used]
     compiled = sympy.lambdify(arguments, list(grid), modules="math", cse=True)
     fixed = [numbers[s] for s in used]
-    shape: tuple[int, ...] = grid.shape if grid.shape[1] > 1 else grid.shape[:1]
-    shape = () if isinstance(expression, sympy.Expr) else shape
+    shape: tuple[int, ...] = grid.shape[:1] if grid.rows > 1 == grid.cols else grid.shape
+    shape = () if scalar else shape
 
     def function(q: ArrayLike, qd: ArrayLike | None = None, qdd: ArrayLike | None = None) -> Array:
         states = []
@@ -81,7 +82,7 @@ def to_python(arm: SymbolicArm, expression: Expression, name: str) -> str:
         Source text that ends in a newline.
     """
     printer = NumPyPrinter({"fully_qualified_modules": False})
-    scalar = isinstance(expression, sympy.Expr)
+    scalar = not isinstance(expression, sympy.MatrixBase)
     grid = sympy.Matrix([[expression]]) if scalar else expression
     shared, (reduced,) = sympy.cse(grid, symbols=sympy.numbered_symbols("x"))
     lines = ["import numpy as np", "from numpy import cos, sin", "", ""]

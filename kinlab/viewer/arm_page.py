@@ -8,6 +8,8 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
+from kinlab.errors import StructureError
+from kinlab.extract import to_dh
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 from kinlab.tasks import TASKS, generic_rank
@@ -38,8 +40,11 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.3 * size)
     spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
-    table = robot.table
-    picture = frames_only(vis, robot) if table is None else draw_dh(vis, robot, table)
+    try:
+        picture = draw_dh(vis, robot, robot.table or to_dh(robot))
+    except StructureError as problem:  # an arm that DH parameters cannot hold
+        picture = frames_only(vis, robot)
+        spec["notes"].append(f"no DH table: {problem}")
     rows, task = task_rows(robot)
     model = robot.model
     spec |= {
@@ -91,9 +96,11 @@ def _joint(robot: Robot, i: int) -> dict[str, Any]:
     subspace = motion_subspace(robot.model, i)
     revolute = bool(subspace[3:].any())
     kind = "revolute" if revolute else "prismatic"
+    name = robot.joint_names[i - 1]
+    plain = "" if name == f"joint_{i}" else name
     return {
-        "name": robot.joint_names[i - 1],
-        "label": f"{'θ' if revolute else 'd'}{i}  {robot.joint_names[i - 1]}",
+        "name": name,
+        "label": f"{'θ' if revolute else 'd'}{i} {plain}".strip(),
         "type": kind,
         "axis": [float(x) for x in (subspace[3:] if revolute else subspace[:3])],
         "placement": _flat(robot.model.jointPlacements[i].homogeneous),

@@ -83,6 +83,7 @@ def draw_page(
     _draw_bars(vis, linkage, size)
     spec |= {
         "kind": "fivebar",
+        "planar": True,
         "home": HOME,
         "l1": np.asarray(linkage.l1).tolist(),
         "l2": np.asarray(linkage.l2).tolist(),

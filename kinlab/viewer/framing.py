@@ -40,7 +40,7 @@ def look_at(points: Array, direction: Array, least: float) -> Camera:
     low, high = points.min(axis=0), points.max(axis=0)
     target = 0.5 * (low + high)
     radius = max(0.5 * float(np.linalg.norm(high - low)), least)
-    distance = 1.25 * radius / np.sin(np.radians(_FIELD_OF_VIEW / 2))
+    distance = 1.1 * radius / np.sin(np.radians(_FIELD_OF_VIEW / 2))
     return Camera(target + distance * direction / np.linalg.norm(direction), target)
 
 

@@ -155,7 +155,7 @@ def _track(
     robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array
 ) -> Array | None:  # fmt: skip
     """Follows positions from pose to pose by Newton steps; None where that leads nowhere."""
-    walk = []
+    walk: list[Array] = []
     for offset in offsets:
         for _ in range(8):
             now = fk(robot, q)

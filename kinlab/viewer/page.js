@@ -376,7 +376,8 @@ const kinlab = (() => {
       const T = model.tool(state.q);
       const at = origin(T);
       const { sigmaMin, kappa, det } = metrics(model.task(state.q));
-      report.position.textContent = at.map((x) => x.toFixed(4)).join("  ");
+      const coordinates = spec.planar ? at.slice(0, 2) : at;
+      report.position.textContent = coordinates.map((x) => x.toFixed(4)).join("  ");
       report.angles.textContent = angles(T).map((x) => x.toFixed(1)).join("  ");
       report.det.textContent = det === null ? "J is not square" : number(det);
       report.sigma.textContent = number(sigmaMin);
@@ -596,6 +597,7 @@ const kinlab = (() => {
     report.ended = element("div", { class: "warning", id: "ended" },
       "The server has ended. The sliders still work; reload when it is back.");
     report.ended.hidden = true;
+    const turns = line("roll, pitch, yaw [°]", "angles", "R = Rz(yaw) Ry(pitch) Rx(roll)");
     report.stopped = element("div", { class: "warning", id: "stopped" });
     report.stopped.hidden = true;
     panel.append(
@@ -610,8 +612,8 @@ const kinlab = (() => {
       element("div", { class: "buttons" },
         ...Object.entries(spec.poses).map(([name, q]) => poseButton(name, q))),
       element("h2", {}, "Tool"),
-      line("x, y, z [m]", "position", "position of the tool in the base"),
-      line("roll, pitch, yaw [°]", "angles", "R = Rz(yaw) Ry(pitch) Rx(roll)"),
+      line(spec.planar ? "x, y [m]" : "x, y, z [m]", "position", "position of the tool in the base"),
+      spec.planar ? "" : turns,
       element("h2", {}, `Jacobian, ${spec.task}`),
       line("det J", "det", "determinant of the Jacobian's task rows"),
       line("σ<sub>min</sub>", "sigma", "smallest singular value: 0 in a singular pose"),

@@ -35,6 +35,7 @@ def empty_spec(
         "subtitle": subtitle,
         "notes": [],
         "camera": camera.as_json(),
+        "planar": False,
         "body": "",
         "dh": [],
         "dh_convention": "",
