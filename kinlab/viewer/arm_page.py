@@ -37,7 +37,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     """
     size = reach(robot)
     set_stage(vis, size)
-    camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.3 * size)
+    camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.2 * size)
     spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
     try:

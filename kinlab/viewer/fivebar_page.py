@@ -78,7 +78,7 @@ def draw_page(
     vis[HOME].set_transform(upright)
     edges = _type_one_points(linkage)
     corners = np.array([[p[0], 0.0, p[1]] for curve in edges for p in curve])
-    camera = look_at(corners, np.array([0.25, -1.0, 0.12]), 0.5 * size)
+    camera = look_at(corners, np.array([0.25, -1.0, 0.12]), 0.0)
     spec = empty_spec(linkage.name, f"five-bar. {linkage.source}".strip(), camera, HOME)
     _draw_bars(vis, linkage, size)
     spec |= {

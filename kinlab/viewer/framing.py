@@ -29,18 +29,18 @@ class Camera:
         }
 
 
-def look_at(points: Array, direction: Array, least: float) -> Camera:
+def look_at(points: Array, direction: Array, margin: float) -> Camera:
     """A camera that sees all points.
 
     Args:
         points: (N, 3), metres.
         direction: from the target towards the camera, (3,).
-        least: radius that must be visible even around a single point, metres.
+        margin: what must be visible around them, metres.
     """
     low, high = points.min(axis=0), points.max(axis=0)
     target = 0.5 * (low + high)
-    radius = max(0.5 * float(np.linalg.norm(high - low)), least)
-    distance = 1.1 * radius / np.sin(np.radians(_FIELD_OF_VIEW / 2))
+    radius = 0.5 * float(np.linalg.norm(high - low)) + margin
+    distance = radius / np.sin(np.radians(_FIELD_OF_VIEW / 2))
     return Camera(target + distance * direction / np.linalg.norm(direction), target)
 
 

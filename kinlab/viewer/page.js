@@ -309,10 +309,13 @@ const kinlab = (() => {
   }
 
   // Fades the arm's bodies, so that lines inside them can be seen.
+  const asLoaded = new WeakMap();
   function setOpacity(path, opacity) {
     const fade = (material) => {
-      const own = (material.userData.own ??= material.clone());
-      material.opacity = own.opacity * opacity;
+      const { opacity: full, transparent } = material;
+      if (!asLoaded.has(material)) asLoaded.set(material, { full, transparent });
+      const own = asLoaded.get(material);
+      material.opacity = own.full * opacity;
       material.transparent = opacity < 1 || own.transparent;
       material.depthWrite = opacity === 1;
     };
@@ -516,6 +519,7 @@ const kinlab = (() => {
         const value = meant(joint, Number(box.value));
         move(Math.min(joint.upper, Math.max(joint.lower, value)));
       });
+      range.disabled = box.disabled = joint.lower === joint.upper;
       sliders.push({ range, box });
       return element("div", { class: "joint" },
         element("span", { class: "name", title: joint.name }, joint.label), range, box,

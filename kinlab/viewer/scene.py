@@ -109,9 +109,7 @@ class FiveBarScene(Page):
         StateError: theta of another shape, or not finite.
     """
 
-    def __init__(
-        self, linkage: Linkage, theta: ArrayLike | None = None, assembly: int = 1
-    ) -> None:
+    def __init__(self, linkage: Linkage, theta: ArrayLike | None = None, assembly: int = 1) -> None:
         self.linkage, self.assembly = linkage, assembly
         if theta is None:
             start = ik(linkage, best_start(linkage, assembly))

@@ -27,7 +27,7 @@ _PAGE = """<!DOCTYPE html>
 const viewer = new MeshCat.Viewer(document.getElementById("meshcat-pane"));
 const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
 for (const command of {commands}) viewer.handle_command_bytearray(bytes(command));
-const page = kinlab.start({spec});
+window.page = kinlab.start({spec});
 </script>
 </body>
 </html>
