@@ -30,7 +30,7 @@ def listening(pid):
     inodes = set()
     for entry in Path(f"/proc/{pid}/fd").iterdir():
         with contextlib.suppress(FileNotFoundError):  # closed since the folder was read
-            found = re.fullmatch(r"socket:\[(\d+)\]", os.readlink(entry))
+            found = re.fullmatch(r"socket:\[(\d+)\]", str(entry.readlink()))
             if found:
                 inodes.add(found[1])
     addresses = []

@@ -61,6 +61,7 @@ def view(
 
 
 def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool) -> Page:
+    from kinlab.errors import NameUnknownError
     from kinlab.fivebar.files import presets
     from kinlab.library import load
     from kinlab.viewer import motions
@@ -69,7 +70,12 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
     start = None if q is None else _numbers(q)
     if name in presets() or _holds_five_bar(name):
         return _open_five_bar(name, start, animate)
-    robot = load(name, tip)
+    try:
+        robot = load(name, tip)
+    except NameUnknownError as problem:
+        if tip is not None or "/" in name:
+            raise
+        raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
     if animate is not None:
         shown = motions.motion(robot, animate, scene.q)

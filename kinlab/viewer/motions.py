@@ -202,7 +202,8 @@ def _slide(det: Callable[[Array], Array], q: Array, heading: Array) -> Array:
     normal = _slope(det, q)
     normal /= np.linalg.norm(normal) or 1.0
     along: Array = heading - (heading @ normal) * normal
-    return along / (np.linalg.norm(along) or 1.0)
+    along /= np.linalg.norm(along) or 1.0
+    return along
 
 
 def _settle(det: Callable[[Array], Array], q: Array) -> Array:
