@@ -53,6 +53,7 @@ from kinlab.mass_derivatives import (
 )
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
+from kinlab.viewer import view
 
 if TYPE_CHECKING:
     from kinlab.inverse.batch import ik_batch
@@ -124,4 +125,5 @@ __all__ = [
     "statics",
     "to_dh",
     "to_urdf",
+    "view",
 ]
