@@ -12,8 +12,8 @@ from kinlab.dynamics import (
     potential_energy,
 )
 from kinlab.errors import KinlabError
-from kinlab.fivebar import FiveBar
 from kinlab.extract import to_dh
+from kinlab.fivebar import FiveBar
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
 from kinlab.robot import Robot

@@ -21,11 +21,10 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped
 from kinlab.errors import OptionError, SingularError, UnreachableError
-from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.linkage import JOINTS, Linkage
 from kinlab.tolerances import TOLERANCES
 
 CRANKS, PASSIVE = (0, 2), (1, 3)
-JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
 _STEPS = 30
 
 
