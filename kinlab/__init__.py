@@ -1,5 +1,6 @@
 """kinlab: DH tables become URDF, load into Pinocchio, and stand beside your formulas."""
 
+from kinlab.check.compare import Comparison, compare
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
 from kinlab.dynamics import (
@@ -11,17 +12,49 @@ from kinlab.dynamics import (
     mass_matrix,
     potential_energy,
 )
+from kinlab.energies import (
+    action,
+    lagrange_torques,
+    lagrangian,
+    lagrangian_gradient,
+    momentum,
+    momentum_rate,
+)
 from kinlab.errors import KinlabError
 from kinlab.extract import to_dh
 from kinlab.fivebar import FiveBar
+from kinlab.formula import hand_formula
 from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
 from kinlab.library import load
+from kinlab.link_forces import (
+    inertial_wrenches,
+    joint_wrenches,
+    link_kinetic_energies,
+    link_potential_energies,
+    static_wrenches,
+)
+from kinlab.links import (
+    com_accelerations,
+    com_jacobians,
+    com_positions,
+    link_accelerations,
+    link_poses,
+    link_velocities,
+)
+from kinlab.mass_derivatives import (
+    centrifugal_coefficients,
+    christoffel,
+    coriolis_coefficients,
+    mass_matrix_derivatives,
+    mass_matrix_dot,
+)
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "Comparison",
     "Convention",
     "DHLink",
     "DHTable",
@@ -29,17 +62,41 @@ __all__ = [
     "KinlabError",
     "Robot",
     "__version__",
+    "action",
+    "centrifugal_coefficients",
+    "christoffel",
+    "com_accelerations",
+    "com_jacobians",
+    "com_positions",
+    "compare",
+    "coriolis_coefficients",
     "coriolis_matrix",
     "fk",
     "forward_dynamics",
     "gravity_torques",
+    "hand_formula",
+    "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
     "jacobian_dot",
+    "joint_wrenches",
     "kinetic_energy",
+    "lagrange_torques",
+    "lagrangian",
+    "lagrangian_gradient",
+    "link_accelerations",
+    "link_kinetic_energies",
+    "link_poses",
+    "link_potential_energies",
+    "link_velocities",
     "load",
     "mass_matrix",
+    "mass_matrix_derivatives",
+    "mass_matrix_dot",
+    "momentum",
+    "momentum_rate",
     "potential_energy",
+    "static_wrenches",
     "statics",
     "to_dh",
     "to_urdf",

@@ -13,7 +13,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,123 +21,14 @@ from numpy.typing import ArrayLike
 from kinlab import table_io
 from kinlab.arrays import Array, frozen, real_array, rigid_transform, shaped
 from kinlab.convention import Convention, read_convention
+from kinlab.dh_link import DHLink, check_name, same_value
 from kinlab.errors import StateError, TableError
 from kinlab.files import write_text
-from kinlab.tolerances import TOLERANCES
+
+__all__ = ["DHLink", "DHTable", "link_transform"]
 
 GRAVITY = (0.0, 0.0, -9.81)
 _LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
-
-
-@dataclass(frozen=True, eq=False)
-class DHLink:
-    """One row of a DH table with the link's limits and inertia.
-
-    Attributes:
-        joint: ``"revolute"`` or ``"prismatic"``.
-        a: length along x, metres (modified: a_{i-1}).
-        alpha: twist about x, radians (modified: alpha_{i-1}).
-        d: offset along z, metres; for a prismatic joint the constant added to q.
-        theta: angle about z, radians; for a revolute joint the constant added to q.
-        flip: the joint turns or slides against z: q enters with a minus sign.
-        lower, upper: limits of q, radians or metres. Not stated: one turn (±pi), or ±1 m.
-        velocity: limit, rad/s or m/s.
-        effort: limit, N m or N.
-        mass: kg.
-        com: centre of mass in DH frame i, metres, shape (3,).
-        inertia: tensor about the centre of mass with the axes of DH frame i, kg m², (3, 3).
-        armature: rotor inertia reflected to the joint, kg m² or kg; adds to M_ii.
-        name: the joint's name; ``None`` numbers it.
-
-    Raises:
-        TableError: a value that is no number, not finite, or physically impossible.
-    """
-
-    joint: Literal["revolute", "prismatic"] = "revolute"
-    a: float = 0.0
-    alpha: float = 0.0
-    d: float = 0.0
-    theta: float = 0.0
-    flip: bool = False
-    lower: float | None = None
-    upper: float | None = None
-    velocity: float = 10.0
-    effort: float = 1000.0
-    mass: float = 0.0
-    com: ArrayLike = (0.0, 0.0, 0.0)
-    inertia: ArrayLike = field(default_factory=lambda: np.zeros((3, 3)))
-    armature: float = 0.0
-    name: str | None = None
-
-    def __post_init__(self) -> None:
-        place = f"link {self.name!r}" if self.name else "link"
-        if self.name is not None:
-            _check_name(self.name, f"{place}: name")
-        if self.joint not in ("revolute", "prismatic"):
-            raise TableError(
-                f'{place}: joint type {self.joint!r}; choose "revolute" or "prismatic"'
-            )
-        if not isinstance(self.flip, (bool, np.bool_)):
-            raise TableError(f"{place}: flip is {self.flip!r}; it must be true or false")
-        reach = math.pi if self.joint == "revolute" else 1.0
-        defaults = {"lower": -reach, "upper": reach}
-        for column in ("a", "alpha", "d", "theta", "lower", "upper", "velocity", "effort",
-                       "mass", "armature"):  # fmt: skip
-            value = getattr(self, column)
-            value = defaults[column] if value is None and column in defaults else value
-            number = float(shaped(value, (), f"{place}: {column}", TableError))
-            object.__setattr__(self, column, number)
-        com = shaped(self.com, (3,), f"{place}: com", TableError)
-        inertia = shaped(self.inertia, (3, 3), f"{place}: inertia", TableError)
-        object.__setattr__(self, "com", frozen(com))
-        object.__setattr__(self, "inertia", frozen(inertia))
-        self._check_physics(place)
-
-    def _check_physics(self, place: str) -> None:
-        assert self.lower is not None and self.upper is not None
-        if self.lower > self.upper:
-            raise TableError(f"{place}: lower {self.lower:g} is above upper {self.upper:g}")
-        for column in ("mass", "armature", "velocity", "effort"):
-            if getattr(self, column) < 0:
-                raise TableError(f"{place}: {column} is {getattr(self, column):g}; it must be >= 0")
-        check_inertia(np.asarray(self.inertia), place, TableError)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, DHLink):
-            return NotImplemented
-        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
-
-    def __hash__(self) -> int:
-        return hash((self.joint, self.a, self.alpha, self.d, self.theta, self.mass))
-
-
-def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
-    """Refuses a tensor that no distribution of mass can have.
-
-    Args:
-        inertia: (3, 3) about the centre of mass, kg m².
-        place: what to put in front of the message.
-        error: the class to raise.
-
-    Raises:
-        Exception: (the class given) not symmetric, negative, or I1 + I2 < I3 for the
-            principal moments (the triangle inequality).
-    """
-    scale = max(float(np.max(np.abs(inertia), initial=0.0)), TOLERANCES.inertia_floor)
-    skew = float(np.max(np.abs(inertia - inertia.T)))
-    if skew > TOLERANCES.inertia_symmetry * scale:
-        raise error(f"{place}: inertia is not symmetric (off by {skew:.3g} kg m^2)")
-    principal = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
-    allowance = TOLERANCES.inertia_triangle * scale
-    if principal[0] < -allowance:
-        raise error(
-            f"{place}: inertia is not positive (a principal moment is {principal[0]:.3g} kg m^2)"
-        )
-    if principal[0] + principal[1] < principal[2] - allowance:
-        raise error(
-            f"{place}: inertia breaks the triangle inequality: principal moments "
-            f"{principal[0]:.4g} + {principal[1]:.4g} < {principal[2]:.4g} kg m^2"
-        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,9 +59,9 @@ class DHTable:
     tool_name: str = "tool"
 
     def __post_init__(self) -> None:
-        _check_name(self.name, "table: name")
+        check_name(self.name, "table: name")
         place = f"table {self.name!r}"
-        _check_name(self.tool_name, f"{place}: tool_name")
+        check_name(self.tool_name, f"{place}: tool_name")
         if _LINK_NAME.fullmatch(self.tool_name):
             raise TableError(f"{place}: tool_name {self.tool_name!r} is the name of a link")
         object.__setattr__(self, "convention", read_convention(self.convention, place))
@@ -195,7 +86,7 @@ class DHTable:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DHTable):
             return NotImplemented
-        return all(_same(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+        return all(same_value(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
 
     def __hash__(self) -> int:
         return hash((self.name, self.convention, self.links))
@@ -351,14 +242,3 @@ def link_transform(
             [zero, zero, zero, one],
         ]
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
-
-
-def _check_name(name: object, place: str) -> None:
-    if not isinstance(name, str) or not name.strip() or not name.isprintable():
-        raise TableError(f"{place} is {name!r}; it must be printable text")
-
-
-def _same(one: Any, two: Any) -> bool:
-    if isinstance(one, np.ndarray):
-        return np.array_equal(one, two)
-    return bool(one == two)

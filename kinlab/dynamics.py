@@ -171,7 +171,8 @@ def _aba(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
 
 
 def _kinetic(robot: Robot, q: Array, v: Array) -> float:
-    return float(pin.computeKineticEnergy(robot.model, scratch(robot), q, v))
+    # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
+    return float(0.5 * v @ _mass_matrix(robot, q) @ v)
 
 
 def _potential(robot: Robot, q: Array) -> float:

@@ -143,7 +143,7 @@ def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Arr
     stacks = [a for a in arguments if isinstance(a, np.ndarray)]
     rest = arguments[len(stacks) :]
     if not len(first):
-        sample = single(robot, *(np.zeros(robot.n) for _ in stacks), *rest)
+        sample = single(robot, *(np.zeros(stack.shape[1:]) for stack in stacks), *rest)
         return np.empty((0, *np.shape(sample)))
     return np.stack([np.asarray(single(robot, *row, *rest)) for row in zip(*stacks, strict=True)])
 

@@ -14,15 +14,12 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab import urdf_read
+from kinlab import urdf_chain, urdf_read
 from kinlab.arrays import Array, frozen
 from kinlab.dh import DHTable
-from kinlab.errors import InertiaError, NameUnknownError, StructureError, UrdfError, near
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.tolerances import TOLERANCES
-from kinlab.urdf import EXTENSION, to_urdf
-
-_TOOL_NAMES = ("tool", "tool0", "tcp", "end_effector", "ee_link", "eef", "ee", "flange", "hand")
-"""Ends of link names that mean a tool, the best first."""
+from kinlab.urdf import to_urdf
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,21 +119,11 @@ class Robot:
             NameUnknownError: no link of that name.
         """
         text, file = urdf_read.load_source(path_or_xml)
-        place = f"urdf {file.name!r}" if file else "urdf"
-        root = urdf_read.parse(text, place)
-        name = root.get("name") or (file.stem if file else "robot")
-        place = place if file else f"urdf {name!r}"
-        base = urdf_read.check(root, place)
-        chain, tip = _chain(root, base, tool, place)
-        first = next(j for j in root.findall("joint") if j.get("name") == chain[0])
-        moved = set(urdf_read.links_behind(root, first.find("child").get("link")))
-        urdf_read.check_moved_inertias(root, moved, place)
-        model = _build(root, chain, place)
-        if not model.existFrame(tip, pin.FrameType.BODY):
-            raise UrdfError(f"{place}: Pinocchio made no frame for link {tip!r}")
-        frame = model.getFrameId(tip, pin.FrameType.BODY)
+        chain = urdf_chain.read(text, f"urdf {file.name!r}" if file else None, tool)
+        name = chain.name or (file.stem if file else "robot")
         folder = file.resolve().parent if file else None
-        return Robot(name, model, frame, text, None, folder, str(file) if file else "URDF text")
+        source = str(file) if file else "URDF text"
+        return Robot(name, chain.model, chain.tool, text, None, folder, source)
 
     @staticmethod
     def from_model(model: Any, tool: str | None = None) -> Robot:
@@ -194,115 +181,6 @@ def frame_id(robot: Robot, name: str) -> int:
         message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
         raise NameUnknownError(message)
     return int(robot.model.getFrameId(name))
-
-
-def _chain(root: Any, base: str, tool: str | None, place: str) -> tuple[list[str], str]:
-    """Names of the moving joints from root to tool, and the tool link."""
-    above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
-    links = [link.get("name") for link in root.findall("link")]
-    if tool is None:
-        tool = _default_tool(root, base, place)
-    elif tool not in links:
-        raise NameUnknownError(f"{place}: link {tool!r} does not exist; {near(tool, links)}")
-    chain = []
-    link = tool
-    while link in above:
-        joint = above[link]
-        kind = joint.get("type")
-        if kind != "fixed":
-            if kind not in urdf_read.MOVING:
-                raise StructureError(
-                    f"{place}: joint {joint.get('name')!r} is {kind}; joints with several degrees "
-                    "of freedom are not accepted between root and tool"
-                )
-            if joint.find("mimic") is not None:
-                raise StructureError(
-                    f"{place}: joint {joint.get('name')!r} mimics another joint and lies between "
-                    f"root and tool {tool!r}; name a tool in front of it"
-                )
-            chain.append(joint.get("name"))
-        link = joint.find("parent").get("link")
-    if not chain:
-        raise StructureError(f"{place}: no moving joint between {base!r} and tool {tool!r}")
-    return chain[::-1], tool
-
-
-def _default_tool(root: Any, base: str, place: str) -> str:
-    below = urdf_read.children(root)
-
-    def moving_below(link: str) -> list[Any]:
-        found = []
-        for joint in below[link]:
-            if joint.get("type") == "fixed":
-                found += moving_below(joint.find("child").get("link"))
-            else:
-                found.append(joint)
-        return found
-
-    link = base
-    while moving := moving_below(link):
-        if len(moving) > 1:
-            raise StructureError(
-                f"{place}: a tree: after link {link!r} branch the joints "
-                f"{', '.join(repr(j.get('name')) for j in moving[:6])}; name the tool, one of "
-                + ", ".join(repr(tip) for tip in _tips(below, base)[:12])
-            )
-        link = moving[0].find("child").get("link")
-    rigid = urdf_read.links_behind(root, link)
-    for end in _TOOL_NAMES:
-        for name in rigid:
-            if name == end or name.endswith(f"_{end}"):
-                return name
-    return rigid[-1]
-
-
-def _tips(below: dict[str, list[Any]], link: str) -> list[str]:
-    """Links with nothing behind them, depth first."""
-    if not below[link]:
-        return [link]
-    return [t for j in below[link] for t in _tips(below, j.find("child").get("link"))]
-
-
-def _build(root: Any, chain: list[str], place: str) -> Any:
-    from lxml import etree
-
-    extension = root.find(EXTENSION)
-    for joint in root.findall("joint"):
-        if joint.get("type") == "continuous":
-            joint.set("type", "revolute")
-            limit = joint.find("limit")
-            if limit is None:
-                limit = etree.SubElement(joint, "limit", effort="1000.0", velocity="10.0")
-            limit.set("lower", repr(-urdf_read.WIDE_TURN))
-            limit.set("upper", repr(urdf_read.WIDE_TURN))
-        mimic = joint.find("mimic")
-        if mimic is not None:
-            joint.remove(mimic)
-    if extension is not None:
-        root.remove(extension)
-    try:
-        model = pin.buildModelFromXML(etree.tostring(root, encoding="unicode"))
-    except (ValueError, RuntimeError) as problem:
-        raise UrdfError(f"{place}: Pinocchio cannot read it: {problem}") from None
-    locked = [j for j in range(1, model.njoints) if str(model.names[j]) not in chain]
-    if locked:
-        model = pin.buildReducedModel(model, locked, pin.neutral(model))
-    if extension is not None:
-        _apply_extension(model, extension, place)
-    return model
-
-
-def _apply_extension(model: Any, extension: Any, place: str) -> None:
-    where = f"{place}: <{EXTENSION}>"
-    gravity = urdf_read.numbers(extension.get("gravity"), 3, (0, 0, -9.81), f"{where} gravity")
-    model.gravity.linear = gravity
-    armature = np.zeros(model.nv)
-    for element in extension.findall("joint"):
-        if model.existJointName(element.get("name") or ""):
-            joint = model.joints[model.getJointId(element.get("name"))]
-            value = urdf_read.numbers(element.get("armature"), 1, (0.0,), f"{where} armature")
-            armature[joint.idx_v] = value[0]
-    model.armature = armature
 
 
 def _why_singular(model: Any, name: str) -> str:

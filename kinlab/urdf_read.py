@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.dh import check_inertia
 from kinlab.errors import UrdfError, near
 from kinlab.files import read_text
+from kinlab.inertia import check_inertia
 
 MOVING = ("revolute", "continuous", "prismatic")
 _MULTI = ("floating", "planar", "spherical")

@@ -1,0 +1,169 @@
+"""The comparison of a hand formula with the engine over seeded random states.
+
+The error of a state is max|hand - engine| / max(max|engine|, typical), over the entries of the
+answer; typical is the median over the states of max|engine|, so that a state where the quantity
+happens to vanish does not divide by nothing. Where the quantity vanishes in most states, it is
+its largest value, and where it vanishes in all, 1. A NaN or infinity of the hand formula counts
+as an infinite error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from kinlab.arrays import Array
+from kinlab.check.quantities import quantity as find_quantity
+from kinlab.check.quantity import Quantity
+from kinlab.errors import OptionError
+from kinlab.formula import FormulaError, function_name, state_by_state
+from kinlab.tolerances import TOLERANCES
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """A hand formula beside the engine.
+
+    Attributes:
+        quantity: the engine quantity's name.
+        robot: the mechanism's name.
+        function: the hand function's name.
+        samples, seed: how many random states, drawn with which seed.
+        arguments: the states, by argument name, (samples, ...).
+        hand, engine: both answers, (samples, ...).
+        errors: relative error of each state, (samples,); see the module's docstring.
+    """
+
+    quantity: str
+    robot: str
+    function: str
+    samples: int
+    seed: int
+    arguments: dict[str, Array] = field(repr=False)
+    hand: Array = field(repr=False)
+    engine: Array = field(repr=False)
+    errors: NDArray[np.float64] = field(repr=False)
+
+    @property
+    def max_error(self) -> float:
+        """Largest relative error over the states; infinite where the formula gave NaN."""
+        return float(np.max(self.errors))
+
+    @property
+    def worst(self) -> int:
+        """Index of the state with the largest error."""
+        return int(np.argmax(self.errors))
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the two are the same formula, to rounding."""
+        return self.max_error <= TOLERANCES.formula_agrees
+
+    def __str__(self) -> str:
+        verdict = "agrees" if self.agrees else "DIFFERS"
+        text = (
+            f"{self.function} {verdict} with {self.quantity} of {self.robot}: largest relative "
+            f"error {self.max_error:.2g} over {self.samples} states"
+        )
+        if self.agrees:
+            return text
+        k = self.worst
+        with np.printoptions(precision=6, suppress=True, linewidth=100):
+            state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
+            return f"{text}\nworst at {state}\nhand   {self.hand[k]}\nengine {self.engine[k]}"
+
+
+def compare(
+    robot: Any, quantity: str, function: Callable[..., Any], samples: int = 200, seed: int = 0
+) -> Comparison:
+    """Puts a function beside the engine over random states.
+
+    Args:
+        robot: a Robot, DHTable, name or path (for a quantity of another kind of mechanism: that
+            mechanism or its name).
+        quantity: what the function claims to be, such as ``"inverse_dynamics"``; an index picks
+            entries: ``"inverse_dynamics[0]"``. ``kinlab check --quantities`` lists all.
+        function: takes one state, the quantity's arguments in order: ``f(q, v, a)``.
+        samples: how many random states.
+        seed: the same seed gives the same states.
+
+    Returns:
+        The comparison, with the states and both answers.
+
+    Raises:
+        NameUnknownError: no such robot or quantity.
+        OptionError: samples below 1.
+        FormulaError: the function failed or answered with another shape or type.
+    """
+    found = find_quantity(quantity)
+    mechanism = found.domain.load(robot)
+    if not callable(function):
+        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    return compare_stacked(
+        mechanism, found, state_by_state(function), function_name(function), None, samples, seed
+    )
+
+
+def compare_stacked(
+    mechanism: Any,
+    quantity: Quantity,
+    function: Callable[..., Any],
+    name: str,
+    numbers: Any,
+    samples: int,
+    seed: int,
+) -> Comparison:
+    """As :func:`compare`, for a function called as ``Formula.function`` is."""
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 1:
+        raise OptionError(f"samples is {samples!r}; it must be a whole number from 1 up")
+    states = quantity.states(mechanism, int(samples), seed)
+    engine = np.asarray(quantity.engine(mechanism, *states), dtype=float)
+    hand = _read(function(numbers, *(np.array(s) for s in states)), engine, name, quantity)
+    return Comparison(
+        quantity=quantity.name,
+        robot=quantity.domain.label(mechanism),
+        function=name,
+        samples=int(samples),
+        seed=seed,
+        arguments=dict(zip(quantity.arguments, states, strict=True)),
+        hand=hand,
+        engine=engine,
+        errors=relative_errors(hand, engine),
+    )
+
+
+def relative_errors(hand: Array, engine: Array) -> Array:
+    """Error of each state, by the measure of the module's docstring.
+
+    Args:
+        hand, engine: (N, ...), of one shape.
+
+    Returns:
+        (N,).
+    """
+    count = len(engine)
+    size = np.max(np.abs(engine.reshape(count, -1)), axis=1, initial=0.0)
+    typical = float(np.median(size)) or float(np.max(size)) or 1.0
+    gap = np.max(np.abs((hand - engine).reshape(count, -1)), axis=1, initial=0.0)
+    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / np.maximum(size, typical)
+    return errors
+
+
+def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
+    values = np.asarray(answer)
+    if values.dtype.kind not in "iuf":
+        raise FormulaError(
+            f"function {name!r} answered with dtype {values.dtype}; {quantity.name!r} is real "
+            "numbers"
+        )
+    if values.shape != engine.shape:
+        raise FormulaError(
+            f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
+            f"shape {engine.shape[1:]} ({quantity.about})"
+        )
+    result: Array = values.astype(float)
+    return result

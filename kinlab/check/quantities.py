@@ -1,0 +1,69 @@
+"""The engine's quantities by name, with an index where only some entries are meant."""
+
+from __future__ import annotations
+
+import importlib
+import re
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from kinlab.check.quantity import Quantity
+from kinlab.errors import NameUnknownError, near
+
+_MODULES = ("kinlab.check.serial_quantities",)
+"""Modules whose ``QUANTITIES`` belong to the list."""
+
+_INDEXED = re.compile(r"(\w+)\[([\d:,\s-]+)\]")
+_ENTRY = re.compile(r"(-?\d+)|(-?\d+)?:(-?\d+)?")
+
+
+@cache
+def quantities() -> dict[str, Quantity]:
+    """Every quantity by name."""
+    found: dict[str, Quantity] = {}
+    for module in _MODULES:
+        for quantity in importlib.import_module(module).QUANTITIES:
+            if quantity.name in found:
+                raise AssertionError(f"two quantities are named {quantity.name!r}")
+            found[quantity.name] = quantity
+    return found
+
+
+def quantity(name: str) -> Quantity:
+    """The quantity of a name such as ``"fk"``, ``"inverse_dynamics[0]"`` or ``"fk[:3,3]"``.
+
+    Raises:
+        NameUnknownError: no such quantity, or an index that cannot be read.
+    """
+    known = quantities()
+    if name in known:
+        return known[name]
+    indexed = _INDEXED.fullmatch(name.strip())
+    if indexed is None or indexed.group(1) not in known:
+        plain = indexed.group(1) if indexed else name
+        raise NameUnknownError(f"quantity {name!r} is unknown; {near(plain, known)}")
+    whole = known[indexed.group(1)]
+    index = tuple(_entry(text.strip(), name) for text in indexed.group(2).split(","))
+
+    def engine(mechanism: Any, *stacks: Any) -> Any:
+        answer = whole.engine(mechanism, *stacks)
+        try:
+            return answer[(slice(None), *index)]
+        except IndexError:
+            raise NameUnknownError(
+                f"quantity {name!r}: the index does not fit the shape {answer.shape[1:]} of "
+                f"{whole.name!r}"
+            ) from None
+
+    return replace(whole, name=name, engine=engine)
+
+
+def _entry(text: str, name: str) -> int | slice:
+    read = _ENTRY.fullmatch(text)
+    if read is None:
+        raise NameUnknownError(f"quantity {name!r}: index {text!r} is no number or range")
+    if read.group(1) is not None:
+        return int(read.group(1))
+    start, stop = (None if part is None else int(part) for part in read.groups()[1:])
+    return slice(start, stop)

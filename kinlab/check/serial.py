@@ -1,0 +1,154 @@
+"""Serial arms as a domain: names and groups, the plain numbers, random states."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kinlab import library
+from kinlab.arrays import Array
+from kinlab.check.quantity import Domain
+from kinlab.convention import Convention
+from kinlab.dh import DHTable
+from kinlab.errors import NameUnknownError, StructureError, near
+from kinlab.notes.arm import Arm
+from kinlab.robot import Robot
+
+REACH = float(np.pi)
+"""Joint positions are drawn from the joint's range, from one turn at most."""
+
+
+def arm_of(table: DHTable) -> Arm:
+    """The plain numbers of a DH table."""
+    links = table.links
+
+    def column(name: str) -> Array:
+        return np.array([getattr(link, name) for link in links], dtype=float)
+
+    return Arm(
+        name=table.name,
+        convention=str(table.convention),
+        prismatic=np.array([link.joint == "prismatic" for link in links]),
+        a=column("a"),
+        alpha=column("alpha"),
+        d=column("d"),
+        theta=column("theta"),
+        sign=np.where([link.flip for link in links], -1.0, 1.0),
+        mass=column("mass"),
+        com=column("com"),
+        inertia=column("inertia"),
+        armature=column("armature"),
+        base=np.asarray(table.base),
+        tool=np.asarray(table.tool),
+        gravity=np.asarray(table.gravity),
+    )
+
+
+def numbers(robot: Robot) -> Arm:
+    """The plain numbers of a robot.
+
+    Raises:
+        StructureError: the robot does not come from a DH table.
+    """
+    if robot.table is None:
+        raise StructureError(
+            f"robot {robot.name!r} has no DH table; make one with kl.to_dh(robot) and load that"
+        )
+    return arm_of(robot.table)
+
+
+def load(robot: Any) -> Robot:
+    """A robot from itself, a DH table, a name or a path."""
+    if isinstance(robot, Robot):
+        return robot
+    if isinstance(robot, DHTable):
+        return Robot.from_dh(robot)
+    if isinstance(robot, (str, Path)):
+        return _named(str(robot))
+    raise NameUnknownError(
+        f"robot: {type(robot).__name__} is no Robot, DHTable, name or path of one"
+    )
+
+
+@cache
+def _named(name: str) -> Robot:
+    return library.load(name)
+
+
+@cache
+def members(name: str) -> tuple[str, ...]:
+    """Names of the robots in a group; another name stands for itself."""
+    rule = GROUPS.get(name)
+    if rule is None:
+        return (name,)
+    return tuple(one for one in library.shipped() if rule(_table(one)))
+
+
+@cache
+def _table(name: str) -> DHTable:
+    return DHTable.load(library.shipped()[name].path)
+
+
+GROUPS: dict[str, Callable[[DHTable], bool]] = {
+    "serial": lambda table: True,
+    "standard": lambda table: table.convention is Convention.STANDARD,
+    "modified": lambda table: table.convention is Convention.MODIFIED,
+    "sliding": lambda table: any(link.joint == "prismatic" for link in table.links),
+    "spatial": lambda table: any(link.alpha for link in table.links),
+}
+"""Groups of shipped robots, by a rule on the table."""
+
+
+def sample(
+    robot: Robot, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+) -> tuple[Array, ...]:
+    """Random states over the joint ranges; see :data:`DRAWS`.
+
+    Raises:
+        NameUnknownError: an argument that cannot be drawn.
+    """
+    for name in arguments:
+        if name not in DRAWS:
+            raise NameUnknownError(f"argument {name!r} cannot be drawn; {near(name, DRAWS)}")
+    return tuple(DRAWS[name](robot, count, rng) for name in arguments)
+
+
+def positions(robot: Robot, count: int, rng: np.random.Generator) -> Array:
+    """Uniform over each joint's range, of which no more than ±pi (rad or m)."""
+    lower, upper = np.maximum(robot.lower, -REACH), np.minimum(robot.upper, REACH)
+    beyond = lower > upper  # a range that lies outside one turn altogether
+    lower, upper = np.where(beyond, robot.lower, lower), np.where(beyond, robot.upper, upper)
+    return rng.uniform(lower, upper, (count, robot.n))
+
+
+def _normal(scale: float) -> Callable[[Robot, int, np.random.Generator], Array]:
+    return lambda robot, count, rng: scale * rng.standard_normal((count, robot.n))
+
+
+def _wrench(robot: Robot, count: int, rng: np.random.Generator) -> Array:
+    del robot
+    wrench: Array = rng.standard_normal((count, 6)) * [20.0, 20.0, 20.0, 5.0, 5.0, 5.0]
+    return wrench
+
+
+def _twist(robot: Robot, count: int, rng: np.random.Generator) -> Array:
+    del robot
+    return rng.standard_normal((count, 6))
+
+
+DRAWS: dict[str, Callable[[Robot, int, np.random.Generator], Array]] = {
+    "q": positions,
+    "v": _normal(2.0),
+    "a": _normal(5.0),
+    "tau": _normal(10.0),
+    "wrench": _wrench,
+    "twist": _twist,
+    "dq": _normal(0.3),
+}
+"""How each argument is drawn: rad, rad/s, rad/s², N m (m, ... for prismatic joints); N and N m."""
+
+SERIAL = Domain("serial", load, lambda robot: str(robot.name), numbers, members, sample)
