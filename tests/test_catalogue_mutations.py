@@ -27,6 +27,7 @@ HELPERS = ("kinlab.notes.frames", "kinlab.notes.mass", "kinlab.notes.arm", "kinl
 TELLING = ("stanford", "spatial3r", "panda", "planar2r", "planar2r_rods", "planar3r", "single_link")
 SAMPLES = 12
 
+
 @dataclass
 class Trial:
     """A formula on a robot with the engine's answer, ready to be run again and again."""
