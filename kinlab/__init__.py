@@ -49,6 +49,7 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
+from kinlab.sweeps import SweepResult, sweep
 from kinlab.urdf import to_urdf
 
 __version__ = "0.1.0"
@@ -61,6 +62,7 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "SweepResult",
     "__version__",
     "action",
     "centrifugal_coefficients",
@@ -98,6 +100,7 @@ __all__ = [
     "potential_energy",
     "static_wrenches",
     "statics",
+    "sweep",
     "to_dh",
     "to_urdf",
 ]
