@@ -20,9 +20,13 @@ import platform
 import resource
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import ExitStack
 from datetime import UTC, datetime
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -93,7 +97,7 @@ def rows(
                 "us_75": high,
                 "ratio": float(np.median(seconds / times["kinlab"])),
                 "apart": apart[party],
-            }  # fmt: skip
+            }
         )
     return out
 
@@ -162,74 +166,58 @@ def growth() -> list[Row]:
 
 
 def sweeps() -> list[Row]:
-    """10^6 states: pose, J, sigma_min and condition, on one worker and two, each its own process.
+    """10^6 states on one worker and two, three times each in a process of its own.
 
-    Peak memory is that of the parent or of its largest worker, whichever is more.
+    ``kept small``: pose and J are worked out, the position, sigma_min and condition kept, in
+    memory. ``kept whole``: pose, J and both in parts on disk. ``running``: as the first, on
+    worker processes that are there already (``executor=``). Peak memory is that of the parent or
+    of its largest worker.
     """
     out = []
-    for workers in (1, 2, 1, 2, 1, 2):
-        code = "import bench; bench.one_sweep({})".format(workers)
-        done = subprocess.run(
-            [sys.executable, "-c", code], cwd=Path(__file__).parent, text=True,
-            capture_output=True, check=True,
-        )  # fmt: skip
-        seconds, memory, best = json.loads(done.stdout)
-        out.append(
-            {
-                "section": "sweep",
-                "what": "pose, J, sigma_min, condition",
-                "joints": 6,
-                "party": f"{workers} worker" + "s" * (workers > 1),
-                "states": 10**6,
-                "us": seconds,
-                "us_25": seconds,
-                "us_75": seconds,
-                "memory_mb": memory,
-                "best": best,
-            }  # fmt: skip
-        )
-    assert len({row["best"] for row in out}) == 1, "workers changed the answer"
-    merged = []
-    for workers in ("1 worker", "2 workers"):
-        mine = [row for row in out if row["party"] == workers]
-        low, middle, high = np.percentile([row["us"] for row in mine], [25, 50, 75])
-        ratio = float(middle / np.median([r["us"] for r in out if r["party"] == "1 worker"]))
-        merged.append(
-            {
-                **mine[0],
-                "us": middle,
-                "us_25": low,
-                "us_75": high,
-                "ratio": ratio,
-                "memory_mb": max(row["memory_mb"] for row in mine),
-            }  # fmt: skip
-        )
-    return merged
+    for what in ("kept small", "kept small, running", "kept whole, on disk"):
+        found: dict[int, list[list[float]]] = {1: [], 2: []}
+        for _ in range(3):
+            for workers, runs in found.items():
+                code = f"import bench; bench.one_sweep({what!r}, {workers})"
+                done = subprocess.run(
+                    [sys.executable, "-c", code],
+                    cwd=Path(__file__).parent,
+                    text=True,
+                    capture_output=True,
+                    check=True,
+                )
+                runs.append(json.loads(done.stdout))
+        assert len({run[2] for runs in found.values() for run in runs}) == 1, "answers differ"
+        alone = np.median([run[0] for run in found[1]])
+        for workers, runs in found.items():
+            low, middle, high = np.percentile([run[0] for run in runs], [25, 50, 75])
+            times = {"us": middle, "us_25": low, "us_75": high, "ratio": middle / alone}
+            size = {"joints": 6, "states": 10**6, "memory_mb": max(run[1] for run in runs)}
+            party = {"section": "sweep", "what": what, "party": f"workers: {workers}"}
+            out.append({**party, **size, **times})
+    return out
 
 
-def one_sweep(workers: int) -> None:
-    """Prints seconds/10^6 states in µs a state, peak memory in MB, and a number of the answer."""
+def one_sweep(what: str, workers: int) -> None:
+    """Prints µs a state (seconds for all 10^6), peak memory in MB, and a sum over the answer."""
     robot = kl.load("ur5")
-    names = ("pose", "jacobian", "min_singular", "condition")
-    kl.sweep(robot, names, 1000, workers=1)  # kernels compiled once per machine
-    start = time.perf_counter()
-    result = kl.sweep(robot, kept, 10**6, workers=workers)
-    seconds = time.perf_counter() - start
+    whole = what.startswith("kept whole")
+    names = ("pose" if whole else "position", "min_singular", "condition")
+    names += ("jacobian",) if whole else ()
+    kl.sweep(robot, names, 1000, workers=1)  # kernels loaded, or compiled once per machine
+    with tempfile.TemporaryDirectory() as folder, ExitStack() as stack:
+        options: dict[str, Any] = {"workers": workers, "folder": folder if whole else None}
+        if what.endswith("running"):
+            pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+            options = {"executor": stack.enter_context(pool)}
+            kl.sweep(robot, names, 2**16, chunk=2**12, **options)
+        start = time.perf_counter()
+        result = kl.sweep(robot, names, 10**6, **options)
+        seconds = time.perf_counter() - start
+        total = float(result["min_singular"].sum())
     use = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     memory = max(resource.getrusage(who).ru_maxrss for who in use) / 1024
-    print(json.dumps([seconds, memory, float(result["condition"].sum())]))
-
-
-def kept(robot: kl.Robot, q: np.ndarray) -> dict[str, np.ndarray]:
-    """Pose, Jacobian and its singular values of each state; keeps what a map needs of them."""
-    pose, jac = kl.fk(robot, q), kl.jacobian(robot, q)
-    sigma = np.linalg.svd(jac, compute_uv=False)
-    return {
-        "position": pose[:, :3, 3],
-        "manipulability": np.abs(np.linalg.det(jac)),
-        "min_singular": sigma[:, -1],
-        "condition": sigma[:, 0] / sigma[:, -1],
-    }
+    print(json.dumps([seconds, memory, total]))
 
 
 def cold() -> list[Row]:

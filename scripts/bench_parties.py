@@ -116,7 +116,7 @@ def toolbox_single(table: kl.DHTable, q: np.ndarray, v: np.ndarray, a: np.ndarra
                 B=0,
                 Tc=[0, 0],
                 **constant,
-            )  # fmt: skip
+            )
         )
     base, tool = SE3(np.array(table.base)), SE3(np.array(table.tool))
     arm = rtb.DHRobot(links, gravity=np.array(table.gravity), base=base, tool=tool)
@@ -208,6 +208,6 @@ def random_table(n: int, seed: int = 0) -> kl.DHTable:
                 mass=rng.uniform(0.5, 3.0),
                 com=rng.uniform(-0.1, 0.1, 3),
                 inertia=np.diag(spread.sum() - spread),
-            )  # fmt: skip
+            )
         )
     return kl.DHTable(f"random{n}", "standard", links)
