@@ -52,6 +52,7 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
+from kinlab.sweeps import SweepResult, sweep
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 
@@ -84,6 +85,7 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "SweepResult",
     "__version__",
     "action",
     "centrifugal_coefficients",
@@ -123,6 +125,7 @@ __all__ = [
     "potential_energy",
     "static_wrenches",
     "statics",
+    "sweep",
     "to_dh",
     "to_urdf",
     "view",
