@@ -58,6 +58,7 @@ from kinlab.viewer import view
 
 if TYPE_CHECKING:
     from kinlab.inverse.batch import ik_batch
+    from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.single import ik
 
 __version__ = "0.1.0"
@@ -65,6 +66,7 @@ __version__ = "0.1.0"
 _LATER = {
     "ik": "kinlab.inverse.single",
     "ik_batch": "kinlab.inverse.batch",
+    "ik_branches": "kinlab.inverse.branches",
 }
 """Public names whose modules import heavy packages (numba): imported at first use."""
 
@@ -102,6 +104,7 @@ __all__ = [
     "hand_formula",
     "ik",
     "ik_batch",
+    "ik_branches",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
