@@ -1,5 +1,15 @@
 """kinlab: DH tables become URDF, load into Pinocchio, and stand beside your formulas."""
 
+from kinlab.analysis.design import design_isotropic
+from kinlab.analysis.ellipsoids import ellipsoid
+from kinlab.analysis.isotropy import find_isotropic
+from kinlab.analysis.lengths import characteristic_length
+from kinlab.analysis.loci import singular_loci
+from kinlab.analysis.metrics import dexterity, manipulability
+from kinlab.analysis.nearest import nearest_singularity
+from kinlab.analysis.redundancy import redundancy
+from kinlab.analysis.singularity import describe_singularity, find_singularities
+from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
 from kinlab.check.compare import Comparison, compare
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
@@ -61,9 +71,11 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "WorkspaceMap",
     "__version__",
     "action",
     "centrifugal_coefficients",
+    "characteristic_length",
     "christoffel",
     "com_accelerations",
     "com_jacobians",
@@ -71,6 +83,12 @@ __all__ = [
     "compare",
     "coriolis_coefficients",
     "coriolis_matrix",
+    "describe_singularity",
+    "design_isotropic",
+    "dexterity",
+    "ellipsoid",
+    "find_isotropic",
+    "find_singularities",
     "fk",
     "forward_dynamics",
     "gravity_torques",
@@ -90,12 +108,17 @@ __all__ = [
     "link_potential_energies",
     "link_velocities",
     "load",
+    "manipulability",
     "mass_matrix",
     "mass_matrix_derivatives",
     "mass_matrix_dot",
     "momentum",
     "momentum_rate",
+    "nearest_singularity",
     "potential_energy",
+    "redundancy",
+    "sample_workspace",
+    "singular_loci",
     "static_wrenches",
     "statics",
     "to_dh",

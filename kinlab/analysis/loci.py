@@ -79,11 +79,12 @@ def singular_loci(
     Args:
         robot: the robot.
         joints: names or indices (from 0) of two or three joints.
-        q: where the others are held, (n,); the middle of the limits where left out.
+        q: where the others are held, (n,); drawn within the limits where left out, since middles
+            and zeros are singular themselves in many arms. The answer states it.
         task: a name, a mask, or ``"auto"``.
         step: length of a step along a curve, rad (or m).
         levels: slices of the last joint, where there is one joint more.
-        seed: of the scan that finds a first point of each curve.
+        seed: of the drawn q, and of the scan that finds a first point of each curve.
 
     Raises:
         NameUnknownError, OptionError, StateError: unknown joint or task, a joint named twice, a
@@ -92,7 +93,8 @@ def singular_loci(
     space = read_reachable_task(robot, task)
     chosen = _read_joints(robot, joints)
     lower, upper = search_box(robot)
-    middle = 0.5 * (lower + upper) if q is None else joint_vector(robot, q, "q")
+    drawn = np.random.default_rng(seed).uniform(lower, upper)
+    middle = drawn if q is None else joint_vector(robot, q, "q")
     if middle.shape != (robot.n,):
         raise OptionError(f"robot {robot.name!r}: q has shape {middle.shape}; give one state")
     if not (step > 0.0 and levels >= 1):

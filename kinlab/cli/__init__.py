@@ -10,10 +10,10 @@ import sys
 
 import typer
 
-from kinlab.cli import robots
+from kinlab.cli import analysis, robots
 from kinlab.errors import KinlabError
 
-_GROUPS = (robots,)
+_GROUPS = (robots, analysis)
 
 app = typer.Typer(
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",
