@@ -71,13 +71,13 @@ def ellipsoid(
     matrix = space.jacobian(state, size)
     if kind == "dynamic":
         require_inertia(robot)
-        matrix = np.linalg.solve(mass_matrix(robot, state), matrix.T).T
-    left = np.linalg.svd(matrix)[0]
-    sigma = singular_values(matrix)
+        matrix = np.asarray(np.linalg.solve(mass_matrix(robot, state), matrix.T).T, np.float64)
+    left: Array = np.linalg.svd(matrix)[0]
+    sigma: Array = singular_values(matrix)
     if kind == "force":
         flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
-        inverse = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
-        left, sigma = left[:, ::-1], np.asarray(inverse[::-1], dtype=np.float64)
+        inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
+        left, sigma = left[:, ::-1], inverse[::-1]
     return Ellipsoid(
         kind, space.name, space.suggested, size if space.mixed else None, frozen(left),
         frozen(sigma),

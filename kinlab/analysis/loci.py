@@ -28,6 +28,10 @@ _MOST = 6000
 """Steps after which one curve is cut: a closed curve of 100 turns."""
 
 
+_ALIKE = 0.95
+"""Cosine between null vectors above which two near points are on one curve."""
+
+
 @dataclass(frozen=True)
 class Locus:
     """One curve of singular configurations.
@@ -153,12 +157,16 @@ def _trace_all(system: sets.SingularSystem, step: float, seed: int) -> tuple[Loc
     starts = sets.seeds(system, np.random.default_rng(seed), points=6)
     x, good = sets.project(system, starts)
     curves: list[Locus] = []
+    traced: list[Array] = []
     for point in x[good]:
-        if not any(_on(system, curve, point, step) for curve in curves):
-            curve = _trace(system, point, step)
-            extent = np.ptp(curve.q, axis=0).max()
-            if extent > step:  # where the rank drops by two, u alone may turn
+        if not any(_on(system, points, point, step) for points in traced):
+            points, closed = _trace(system, point, step)
+            curve = Locus(frozen(_continuous(system.space.robot, system.states(points))), closed)
+            if (
+                np.ptp(curve.q, axis=0).max() > step
+            ):  # where the rank drops by two, u may turn alone
                 curves.append(curve)
+                traced.append(points)
     return tuple(curves)
 
 
@@ -170,23 +178,24 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     return bool(np.all(sigma[:, -1] <= SINGULAR * sigma[:, 0]))
 
 
-def _on(system: sets.SingularSystem, curve: Locus, point: Array, step: float) -> bool:
-    apart = curve.q[:, list(system.moving)] - point[: len(system.moving)]
+def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:
+    """Whether ``point`` lies on a traced curve: near it in q, with the same null vector."""
+    free = len(system.moving)
+    apart = points[:, :free] - point[:free]
     turns = revolute(system.space.robot)[list(system.moving)]
     apart = np.where(turns, np.arctan2(np.sin(apart), np.cos(apart)), apart)
-    # between two points of the curve; a crossing curve closer than this has another null vector
-    return bool(np.linalg.norm(apart, axis=1).min() < 0.6 * step)
+    # sheets may run side by side closer than a step (Puma, arm folded): u tells them apart
+    alike = np.abs(points[:, free:] @ point[free:]) > _ALIKE
+    return bool(np.any((np.linalg.norm(apart, axis=1) < 0.6 * step) & alike))
 
 
-def _trace(system: sets.SingularSystem, start: Array, step: float) -> Locus:
-    """Both ways from a start, until the curve closes or leaves the limits."""
+def _trace(system: sets.SingularSystem, start: Array, step: float) -> tuple[Array, bool]:
+    """Both ways from a start, until the curve closes or leaves the limits: unknowns (K, k)."""
     forward, closed = _follow(system, start, step, 1.0)
-    points = forward
-    if not closed:
-        backward, _ = _follow(system, start, step, -1.0)
-        points = np.concatenate([backward[:0:-1], forward])
-    states = system.states(points)
-    return Locus(frozen(_continuous(system.space.robot, states)), closed)
+    if closed:
+        return forward, True
+    backward, _ = _follow(system, start, step, -1.0)
+    return np.concatenate([backward[:0:-1], forward]), False
 
 
 def _continuous(robot: Robot, states: Array) -> Array:

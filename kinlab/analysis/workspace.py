@@ -170,22 +170,23 @@ def sample_workspace(
     )  # fmt: skip
 
 
-def binned(chart: WorkspaceMap, cells: int = 120, plane: str = "") -> BinnedMap:
+def binned(chart: WorkspaceMap, cells: int = 0, plane: str = "") -> BinnedMap:
     """Bins a map over a plane.
 
     Args:
         chart: the map.
-        cells: along the longer side.
+        cells: along the longer side; 0 takes as many as the samples fill, at most 160.
         plane: ``"xy"``, ``"xz"``, ``"yz"`` or ``"rz"``; left out: xy for a planar arm, else rz.
 
     Raises:
-        NameUnknownError: another plane. OptionError: cells < 1, or an empty map.
+        NameUnknownError: another plane. OptionError: cells < 0, or an empty map.
     """
     plane = plane or ("xy" if chart.planar else "rz")
     if plane not in ("xy", "xz", "yz", "rz"):
         raise NameUnknownError(f"plane {plane!r}; choose one of 'xy', 'xz', 'yz', 'rz'")
-    if cells < 1 or not len(chart.points):
-        raise OptionError(f"cells {cells}, {len(chart.points)} points; both must be at least 1")
+    if cells < 0 or not len(chart.points):
+        raise OptionError(f"cells {cells}, {len(chart.points)} points; give cells >= 0 and points")
+    cells = cells or int(np.clip(np.sqrt(len(chart.points) / 12.0), 8, 160))
     x, y, z = chart.points.T
     named = {"x": x, "y": y, "z": z, "r": np.hypot(x, y)}
     a, b = named[plane[0]], named[plane[1]]

@@ -64,7 +64,7 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
 
         boundary = planar_boundary(robot)
         needed = abs(len(chart.rows) - robot.n) + 2
-        if needed <= robot.n:
+        if needed == robot.n:  # in a smaller slice the others would be held: not the whole set
             loci = singular_loci(robot, list(range(needed)), task=_mask(chart.rows))
             curves = [fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
     save(plot_map(chart, boundary=boundary, curves=curves, plane=plane), path)
