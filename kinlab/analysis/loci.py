@@ -32,6 +32,14 @@ _ALIKE = 0.95
 """Cosine between null vectors above which two near points are on one curve."""
 
 
+_STRAIGHT = 0.995
+"""Least cosine between neighbouring tangents: a chord then leaves its curve by at most 1.3 % of
+the step, and a bend is not cut over to a neighbouring sheet."""
+_BESIDE = 0.03
+"""Distance from a traced curve, in steps, up to which a point belongs to it. The Puma with its
+arm folded has two sheets 0.07 steps apart with one null vector, which must stay two."""
+
+
 @dataclass(frozen=True)
 class Locus:
     """One curve of singular configurations.
@@ -181,12 +189,15 @@ def _all_singular(system: sets.SingularSystem) -> bool:
 def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:
     """Whether ``point`` lies on a traced curve: near it in q, with the same null vector."""
     free = len(system.moving)
-    apart = points[:, :free] - point[:free]
+    chord = np.diff(points[:, :free], axis=0)
+    apart = point[:free] - points[:-1, :free]
     turns = revolute(system.space.robot)[list(system.moving)]
     apart = np.where(turns, np.arctan2(np.sin(apart), np.cos(apart)), apart)
-    # sheets may run side by side closer than a step (Puma, arm folded): u tells them apart
-    alike = np.abs(points[:, free:] @ point[free:]) > _ALIKE
-    return bool(np.any((np.linalg.norm(apart, axis=1) < 0.6 * step) & alike))
+    size = np.maximum(np.einsum("ki,ki->k", chord, chord), 1e-300)
+    share = np.clip(np.einsum("ki,ki->k", apart, chord) / size, 0.0, 1.0)
+    distance = np.linalg.norm(apart - share[:, np.newaxis] * chord, axis=1)
+    alike = np.abs(points[:-1, free:] @ point[free:]) > _ALIKE
+    return bool(np.any((distance < _BESIDE * step) & alike))
 
 
 def _trace(system: sets.SingularSystem, start: Array, step: float) -> tuple[Array, bool]:
@@ -236,6 +247,10 @@ def _follow(
                 break  # an end, or a point where the curve has no tangent
             continue
         new = fixed[0]
+        ahead = _tangent(system, new, direction)
+        if float(ahead @ direction) < _STRAIGHT and size > 1e-3 * step:
+            size *= 0.5
+            continue
         if np.any(new[:free] < lower) or np.any(new[:free] > upper):
             end = _end_on_limit(system, here, new, lower, upper)
             if end is not None:
@@ -243,7 +258,7 @@ def _follow(
             return np.array(points), False
         points.append(new)
         travelled += size
-        direction = _tangent(system, new, direction)
+        direction = ahead
         size = min(step, 1.5 * size)
         apart = new[:free] - start[:free]
         apart = np.where(turns, np.arctan2(np.sin(apart), np.cos(apart)), apart)
