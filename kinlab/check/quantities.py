@@ -16,7 +16,9 @@ _MODULES = (
     "kinlab.check.link_quantities",
     "kinlab.check.special_quantities",
     "kinlab.check.action_quantities",
+    "kinlab.check.table_check",
     "kinlab.check.identity",
+    "kinlab.check.fivebar_quantities",
 )
 """Modules whose ``QUANTITIES`` belong to the list."""
 
