@@ -1,5 +1,8 @@
 """kinlab: DH tables become URDF, load into Pinocchio, and stand beside your formulas."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from kinlab.check.compare import Comparison, compare
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
@@ -52,7 +55,26 @@ from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 
+if TYPE_CHECKING:
+    from kinlab.inverse.batch import ik_batch
+    from kinlab.inverse.single import ik
+
 __version__ = "0.1.0"
+
+_LATER = {
+    "ik": "kinlab.inverse.single",
+    "ik_batch": "kinlab.inverse.batch",
+}
+"""Public names whose modules import heavy packages (numba): imported at first use."""
+
+
+def __getattr__(name: str) -> Any:
+    """Imports what is in ``_LATER`` when it is first asked for, and keeps it."""
+    if name not in _LATER:
+        raise AttributeError(f"module 'kinlab' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_LATER[name]), name)
+    return value
+
 
 __all__ = [
     "Comparison",
@@ -76,6 +98,8 @@ __all__ = [
     "forward_dynamics",
     "gravity_torques",
     "hand_formula",
+    "ik",
+    "ik_batch",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",

@@ -50,6 +50,7 @@ def lower_condition(
 
 
 def _descend(space: TaskSpace, length: float | None, q: Array, start: float) -> tuple[Array, float]:
+
     lower, upper = search_box(space.robot)
     open_length = length is None and space.mixed
     x = np.append(q, np.log(start)) if open_length else q

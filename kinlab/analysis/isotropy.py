@@ -19,7 +19,6 @@ from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import (
-    TaskSpace,
     read_reachable_task,
     revolute,
     search_box,
@@ -188,16 +187,13 @@ def isotropic_families(
     for free, freedom, place, size in seen:
         matrix = space.jacobian(place, size)
         sigma = singular_values(matrix)
-        found.append(
-            IsotropicConfiguration(
-                frozen(place),
-                float(sigma[0] / sigma[-1]),
-                size if space.mixed else None,
-                tuple(names[i] for i in free),
-                freedom,
-                frozen(matrix),
-            )  # fmt: skip
+        condition = float(sigma[0] / sigma[-1])
+        used = size if space.mixed else None
+        loose = tuple(names[i] for i in free)
+        entry = IsotropicConfiguration(
+            frozen(place), condition, used, loose, freedom, frozen(matrix)
         )
+        found.append(entry)
     return tuple(sorted(found, key=lambda c: tuple(np.round(c.q, 6))))
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import read_reachable_task, search_box
@@ -17,7 +17,6 @@ from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
-
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""
@@ -65,7 +64,7 @@ def nearest_singularity(
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {here.shape}; give one state")
-    sigma = np.linalg.svd(space.jacobian(here, space.scale), compute_uv=False)
+    sigma = singular_values(space.jacobian(here, space.scale))
     system = sets.whole(space)
     starts = np.concatenate(
         [here[np.newaxis], sets.seeds(system, np.random.default_rng(seed), points)]

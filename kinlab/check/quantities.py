@@ -18,6 +18,7 @@ _MODULES = (
     "kinlab.check.action_quantities",
     "kinlab.check.table_check",
     "kinlab.check.identity",
+    "kinlab.check.fivebar_quantities",
 )
 """Modules whose ``QUANTITIES`` belong to the list."""
 

@@ -10,10 +10,10 @@ import sys
 
 import typer
 
-from kinlab.cli import check, robots, view
+from kinlab.cli import check, fivebar, robots, view
 from kinlab.errors import KinlabError
 
-_GROUPS = (robots, check, view)
+_GROUPS = (robots, check, fivebar, view)
 
 app = typer.Typer(
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",
