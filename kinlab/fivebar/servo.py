@@ -26,7 +26,6 @@ from kinlab.fivebar.rods import rod_model
 from kinlab.fivebar.room import Rectangle, read_rectangle
 from kinlab.fivebar.trajectory import LIFT, TRAVEL, Cycle, Path, follow, pick_and_place
 
-
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
