@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -100,6 +102,17 @@ def test_samples_and_function_are_checked():
             kl.compare("single_link", "gravity_torques", gravity, samples=bad)
     with pytest.raises(OptionError, match="str cannot be called"):
         kl.compare("single_link", "gravity_torques", "g")
+
+
+def test_a_file_that_changed_is_read_again(tmp_path):
+    path = tmp_path / "arm.toml"
+    table = kl.load("single_link").table
+    table.save(path)
+    assert kl.compare(path, "gravity_torques", gravity).agrees
+    heavy = replace(table, links=[replace(table.links[0], mass=5.0)])
+    heavy.save(path)
+    assert not kl.compare(path, "gravity_torques", gravity).agrees
+    assert kl.compare(str(path), "gravity_torques", lambda q: 2.0 * gravity(q)).agrees
 
 
 def test_a_function_cannot_change_the_states():

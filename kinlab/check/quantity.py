@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, frozen
 
 Sampler = Callable[[Any, tuple[str, ...], int, np.random.Generator], tuple[Array, ...]]
 
@@ -65,5 +66,26 @@ class Quantity:
 
     def states(self, mechanism: Any, samples: int, seed: int) -> tuple[Array, ...]:
         """Draws random states; the same seed gives the same ones, bit for bit."""
-        draw = self.sample or self.domain.sample
-        return draw(mechanism, self.arguments, samples, np.random.default_rng(seed))
+        return _drawn(self.sample or self.domain.sample, mechanism, self.arguments, samples, seed)
+
+    def answers(self, mechanism: Any, samples: int, seed: int) -> Array:
+        """The engine's answers at :meth:`states`, (samples, ...)."""
+        return _answered(self, mechanism, samples, seed)
+
+
+# Rows of the catalogue share states and answers (a printed and a corrected form, formulas of one
+# quantity); closing a five-bar's loop at random takes longer than any formula.
+
+
+@lru_cache(maxsize=256)
+def _drawn(
+    draw: Sampler, mechanism: Any, arguments: tuple[str, ...], samples: int, seed: int
+) -> tuple[Array, ...]:
+    stacks = draw(mechanism, arguments, samples, np.random.default_rng(seed))
+    return tuple(frozen(stack) for stack in stacks)
+
+
+@lru_cache(maxsize=128)
+def _answered(quantity: Quantity, mechanism: Any, samples: int, seed: int) -> Array:
+    states = quantity.states(mechanism, samples, seed)
+    return frozen(np.asarray(quantity.engine(mechanism, *states)))
