@@ -75,8 +75,7 @@ def ik(
     for remark in answer.remarks:
         typer.echo(f"note: {remark}")
     if history is not None and answer.history is not None:
-        from kinlab.inverse.plot import history_figure
-        from kinlab.inverse.plot import save
+        from kinlab.inverse.plot import history_figure, save
 
         save(history_figure({f"{robot.name}, {method}": answer.history}), history)
         typer.echo(f"wrote {history}")
