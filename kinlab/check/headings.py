@@ -33,3 +33,17 @@ def counts(groups: Sequence[Group]) -> str:
         f"rows, {states} random states; {misprints} misprints shown; "
     )
     return text + (f"{wrong} formulas FAIL." if wrong else "every corrected form agrees.")
+
+
+def origin(groups: Sequence[Group]) -> str:
+    """What it takes to get the same report again."""
+    from kinlab import __version__
+
+    first = groups[0].rows[0].corrected if groups else None
+    seed = f", seed {first.seed}" if first is not None else ""
+    return f"Made by kinlab {__version__}{seed}: the same seed gives the same states."
+
+
+def sentence(text: str) -> str:
+    """A line as a sentence: capital at the front, full stop at the end."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
