@@ -10,7 +10,7 @@ import pytest
 import kinlab as kl
 from kinlab.check.compare import relative_errors
 from kinlab.check.quantities import quantities
-from kinlab.errors import NameUnknownError, OptionError
+from kinlab.errors import NameUnknownError, OptionError, StructureError
 from kinlab.formula import FormulaError
 
 
@@ -143,3 +143,23 @@ def test_every_quantity_answers_with_one_entry_per_state():
         mechanism = quantity.domain.load(robot)
         answer = quantity.engine(mechanism, *quantity.states(mechanism, 3, 0))
         assert len(answer) == 3 and np.isfinite(answer).all(), name
+
+
+def test_every_quantity_refuses_an_arm_it_is_not_for_or_answers():
+    """No numpy or Pinocchio error reaches the user, whatever robot a quantity is asked of."""
+    for name, quantity in quantities().items():
+        if quantity.domain.name != "serial":
+            continue
+        for robot in ("single_link", "planar2r", "panda", "stanford", "kinova"):
+            try:
+                found = kl.compare(robot, name, lambda *state: 0.0, samples=2)
+            except (FormulaError, StructureError) as problem:
+                told = "has shape" in str(problem) or "is for" in str(problem)
+                assert told, (name, robot, problem)
+            else:
+                assert found.engine.shape == (2,), (name, robot)
+
+
+def test_a_quantity_for_two_joints_says_so():
+    with pytest.raises(StructureError, match="is for 2 joints; 'panda' has 7"):
+        kl.compare("panda", "planar_position_determinant", lambda q: 0.0)

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, frozen
+from kinlab.errors import StructureError
 
 Sampler = Callable[[Any, tuple[str, ...], int, np.random.Generator], tuple[Array, ...]]
 
@@ -53,6 +54,7 @@ class Quantity:
         domain: the kind of mechanism.
         scale: its natural size where it is zero by nature, such as 1 for a share; errors are
             measured against this at least.
+        joints: how many joints the mechanism must have, where not any number will do.
         sample: draws the states where the domain's own way does not serve (singular poses, ...).
     """
 
@@ -63,9 +65,19 @@ class Quantity:
     domain: Domain
     sample: Sampler | None = None
     scale: float = 0.0
+    joints: int | None = None
 
     def states(self, mechanism: Any, samples: int, seed: int) -> tuple[Array, ...]:
-        """Draws random states; the same seed gives the same ones, bit for bit."""
+        """Draws random states; the same seed gives the same ones, bit for bit.
+
+        Raises:
+            StructureError: the mechanism has another number of joints than the quantity needs.
+        """
+        if self.joints is not None and mechanism.n != self.joints:
+            raise StructureError(
+                f"quantity {self.name!r} is for {self.joints} joints; "
+                f"{self.domain.label(mechanism)!r} has {mechanism.n}"
+            )
         return _drawn(self.sample or self.domain.sample, mechanism, self.arguments, samples, seed)
 
     def answers(self, mechanism: Any, samples: int, seed: int) -> Array:
