@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 from kinlab.check import histogram
-from kinlab.check.headings import HOW, NOTES, counts, origin, sentence
+from kinlab.check.headings import HOW, NOTES, counts, origin, sentence, several
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import mathml
 
@@ -69,7 +69,8 @@ In the formulas <span class="key wrong">what is wrong</span> stands beside
 
 def _tally(members: Sequence[Group]) -> str:
     misprints = sum(group.printed_error is not None for group in members)
-    text = f"{len(members)} formulas" + (f", {misprints} misprints" if misprints else "")
+    text = several(len(members), "formula")
+    text += f", {several(misprints, 'misprint')}" if misprints else ""
     return f'<span class="tally">{text}</span>'
 
 
