@@ -53,10 +53,12 @@ from kinlab.mass_derivatives import (
 )
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
+from kinlab.viewer import view
 
 if TYPE_CHECKING:
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.path import ik_path
     from kinlab.inverse.single import ik
 
 __version__ = "0.1.0"
@@ -65,6 +67,7 @@ _LATER = {
     "ik": "kinlab.inverse.single",
     "ik_batch": "kinlab.inverse.batch",
     "ik_branches": "kinlab.inverse.branches",
+    "ik_path": "kinlab.inverse.path",
 }
 """Public names whose modules import heavy packages (numba): imported at first use."""
 
@@ -102,6 +105,7 @@ __all__ = [
     "ik",
     "ik_batch",
     "ik_branches",
+    "ik_path",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
@@ -127,4 +131,5 @@ __all__ = [
     "statics",
     "to_dh",
     "to_urdf",
+    "view",
 ]

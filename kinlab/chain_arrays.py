@@ -50,13 +50,35 @@ def chain(robot: Robot) -> Chain:
 
 
 def _read(robot: Robot) -> Chain:
-    model = robot.model
-    tool = model.frames[robot.tool]
+    tool = robot.model.frames[robot.tool]
     k = int(tool.parentJoint)
+    joints, prismatic, turns = joints_about_z(robot, k)
+    last = np.asarray(tool.placement.homogeneous)[:3].copy()
+    if k:
+        last = turns[-1].T @ last
+    return Chain(np.vstack([joints, last.reshape(1, 12)]), prismatic)
+
+
+def joints_about_z(robot: Robot, k: int) -> tuple[Array, Any, Array]:
+    """The first k joints, each with its frame turned so that it moves about or along z.
+
+    Args:
+        robot: the robot.
+        k: how many joints.
+
+    Returns:
+        The transforms in front of each joint (k, 12), rows of [R | p]; where it slides (k,),
+        bool; and the rotations A from each turned frame to Pinocchio's joint frame (k, 3, 3).
+
+    Raises:
+        StructureError: as :func:`chain`.
+    """
+    model = robot.model
     data = model.createData()
     pin.computeJointJacobians(model, data, np.zeros(model.nq))
-    fixed = np.empty((k + 1, 12))
+    fixed = np.empty((k, 12))
     prismatic = np.zeros(k, dtype=np.bool_)
+    turns = np.empty((k, 3, 3))
     behind = np.eye(4)
     for i in range(1, k + 1):
         jac = pin.getJointJacobian(model, data, i, pin.ReferenceFrame.LOCAL)
@@ -69,12 +91,11 @@ def _read(robot: Robot) -> Chain:
             )
         prismatic[i - 1] = slides
         turn = np.eye(4)
-        turn[:3, :3] = _z_onto(local[:3] if slides else local[3:])
+        turn[:3, :3] = turns[i - 1] = _z_onto(local[:3] if slides else local[3:])
         here = behind @ np.asarray(model.jointPlacements[i].homogeneous) @ turn
         fixed[i - 1] = here[:3].ravel()
         behind = turn.T  # no translation, so the transpose is the inverse
-    fixed[k] = (behind @ np.asarray(tool.placement.homogeneous))[:3].ravel()
-    return Chain(fixed, prismatic)
+    return fixed, prismatic, turns
 
 
 def _z_onto(axis: Array) -> Array:

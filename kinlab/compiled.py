@@ -14,7 +14,6 @@ for several seconds more.
 from __future__ import annotations
 
 import logging
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
@@ -24,6 +23,7 @@ import numba
 from numba.core import event
 
 from kinlab.errors import OptionError
+from kinlab.threads import available
 
 LOGGER = logging.getLogger("kinlab.compiled")
 """Says at level INFO when kernels are being compiled (once per machine, then cached)."""
@@ -66,15 +66,13 @@ event.register("numba:compile", _Announcer())
 
 
 def thread_count(threads: int | None) -> int:
-    """The number of threads to use: what was asked for, or the processors this process may use.
+    """The number of threads to use: what was asked for, or all this process may use.
 
     Raises:
         OptionError: not a positive whole number.
     """
     if threads is None:
-        if hasattr(os, "sched_getaffinity"):  # not on macOS and Windows
-            return len(os.sched_getaffinity(0))
-        return os.cpu_count() or 1
+        return available()
     if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
         raise OptionError(f"threads is {threads!r}; give a whole number of at least 1")
     return threads

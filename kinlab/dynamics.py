@@ -6,14 +6,19 @@ are not in any of these.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from kinlab import batches
 from kinlab.arrays import Array
 from kinlab.kinematics import each_state, statics
 from kinlab.robot import Robot, require_inertia, scratch
-from kinlab.states import joint_vector, joint_vectors
+from kinlab.states import finite_answer, joint_vector, joint_vectors, plain
+
+_INF = math.inf
 
 
 def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
@@ -31,7 +36,12 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
         InertiaError: a joint moves no inertia.
     """
     require_inertia(robot)
-    return each_state(robot, _mass_matrix, joint_vector(robot, q, "q"))
+    q = joint_vector(robot, q, "q")
+    if q.ndim == 1:
+        return _mass_matrix(robot, q)
+    return (
+        batches.mass_matrices(robot, q) if batches.large(q) else each_state(robot, _mass_matrix, q)
+    )
 
 
 def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
@@ -50,7 +60,10 @@ def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    return each_state(robot, _coriolis, *joint_vectors(robot, q=q, v=v))
+    q, v = joint_vectors(robot, q=q, v=v)
+    if batches.large(q):
+        return batches.coriolis_matrices(robot, q, v)
+    return each_state(robot, _coriolis, q, v)
 
 
 def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
@@ -67,7 +80,11 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    return each_state(robot, _gravity, joint_vector(robot, q, "q"))
+    q = joint_vector(robot, q, "q")
+    if q.ndim == 1:
+        return _gravity(robot, q)
+    rest = np.zeros_like(q)
+    return batches.inverse_dynamics(robot, q, rest, rest)
 
 
 def inverse_dynamics(
@@ -88,9 +105,18 @@ def inverse_dynamics(
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
+    if wrench is None and plain(robot, q, v, a):
+        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+        if tau.dot(tau) < _INF:  # one product sees NaN or infinity in any of q, v, a
+            return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-    tau = each_state(robot, _rnea, q, v, a)
-    return tau if wrench is None else tau + statics(robot, q, wrench)
+    if q.ndim == 1:
+        tau = pin.rnea(robot.model, scratch(robot), q, v, a)
+    else:
+        tau = batches.inverse_dynamics(robot, q, v, a)
+    if wrench is not None:
+        tau = tau + statics(robot, q, wrench)
+    return finite_answer(robot, tau, "inverse_dynamics")
 
 
 def forward_dynamics(
@@ -110,8 +136,18 @@ def forward_dynamics(
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
+    if wrench is None and plain(robot, q, v, tau):
+        a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
+        if a.dot(a) < _INF:
+            return a
     q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
-    return each_state(robot, _aba, q, v, tau if wrench is None else tau - statics(robot, q, wrench))
+    if wrench is not None:
+        tau = tau - statics(robot, q, wrench)
+    if q.ndim == 1:
+        a = pin.aba(robot.model, scratch(robot), q, v, tau)
+    else:
+        a = batches.forward_dynamics(robot, q, v, tau)
+    return finite_answer(robot, a, "forward_dynamics")
 
 
 def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
@@ -128,7 +164,13 @@ def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    return each_state(robot, _kinetic, *joint_vectors(robot, q=q, v=v))
+    q, v = joint_vectors(robot, q=q, v=v)
+    # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
+    inertia = mass_matrix(robot, q)
+    if q.ndim == 1:
+        return float(finite_answer(robot, np.float64(0.5 * v @ inertia @ v), "kinetic_energy"))
+    energy: Array = 0.5 * np.einsum("ij,ijk,ik->i", v, inertia, v)
+    return finite_answer(robot, energy, "kinetic_energy")
 
 
 def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
@@ -145,34 +187,30 @@ def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    return each_state(robot, _potential, joint_vector(robot, q, "q"))
+    q = joint_vector(robot, q, "q")
+    return (
+        batches.potential_energies(robot, q)
+        if batches.large(q)
+        else each_state(robot, _potential, q)
+    )
+
+
+# Pinocchio's bindings return these by value, so nothing here needs copying out of the scratch data.
 
 
 def _mass_matrix(robot: Robot, q: Array) -> Array:
-    upper = pin.crba(robot.model, scratch(robot), q)
-    full: Array = np.triu(upper) + np.triu(upper, 1).T
+    full: Array = pin.crba(robot.model, scratch(robot), q)  # both triangles, from Python
     return full
 
 
 def _coriolis(robot: Robot, q: Array, v: Array) -> Array:
-    return np.array(pin.computeCoriolisMatrix(robot.model, scratch(robot), q, v))
+    matrix: Array = pin.computeCoriolisMatrix(robot.model, scratch(robot), q, v)
+    return matrix
 
 
 def _gravity(robot: Robot, q: Array) -> Array:
-    return np.array(pin.computeGeneralizedGravity(robot.model, scratch(robot), q))
-
-
-def _rnea(robot: Robot, q: Array, v: Array, a: Array) -> Array:
-    return np.array(pin.rnea(robot.model, scratch(robot), q, v, a))
-
-
-def _aba(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
-    return np.array(pin.aba(robot.model, scratch(robot), q, v, tau))
-
-
-def _kinetic(robot: Robot, q: Array, v: Array) -> float:
-    # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
-    return float(0.5 * v @ _mass_matrix(robot, q) @ v)
+    torques: Array = pin.computeGeneralizedGravity(robot.model, scratch(robot), q)
+    return torques
 
 
 def _potential(robot: Robot, q: Array) -> float:

@@ -17,13 +17,14 @@ import inspect
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from kinlab.errors import KinlabError, OptionError
 
 Function = Callable[..., Any]
+Marked = TypeVar("Marked", bound=Function)
 
 _ID = re.compile(r"\d{3}\.[A-Za-z0-9.]+")
 
@@ -63,7 +64,7 @@ class Formula:
             where only some entries are meant: ``"inverse_dynamics[0]"``.
         robots: names of mechanisms, or of groups (``"serial"``: every one shipped).
         function: the corrected form; see the module's docstring for how it is called.
-        latex: the corrected form, typeset. What was corrected stands in ``\\right{...}``.
+        latex: the corrected form, typeset. What was corrected stands in ``\\fixed{...}``.
         printed: the note's own form where that is wrong.
         remark: what the note leaves unsaid, or says wrongly in words only.
     """
@@ -100,13 +101,13 @@ def formula(
     printed: Printed | None = None,
     part: str = "",
     remark: str = "",
-) -> Callable[[Function], Function]:
+) -> Callable[[Marked], Marked]:
     """Marks a function of the notes as a hand formula; the arguments are those of Formula.
 
     The function stays the plain function it is; the record is its ``formulas`` attribute.
     """
 
-    def mark(function: Function) -> Function:
+    def mark(function: Marked) -> Marked:
         record = Formula(
             id=id,
             title=first_line(function),
@@ -126,7 +127,7 @@ def formula(
 
 def hand_formula(
     quantity: str, robot: str | Iterable[str], *, latex: str = "", source: str = ""
-) -> Callable[[Function], Function]:
+) -> Callable[[Marked], Marked]:
     """Marks a function in a user's file for ``kinlab check my_formulas.py``.
 
     The function takes one state, the quantity's arguments in order, and returns what the
@@ -149,7 +150,7 @@ def hand_formula(
     if not robots:
         raise OptionError("hand_formula: no robot named; give a name or path, or several")
 
-    def mark(function: Function) -> Function:
+    def mark(function: Marked) -> Marked:
         record = Formula(
             id=function_name(function),
             title=first_line(function),
@@ -164,7 +165,7 @@ def hand_formula(
     return mark
 
 
-def attach(function: Function, record: Formula) -> Function:
+def attach(function: Marked, record: Formula) -> Marked:
     """Adds a record to a function; one function may carry several."""
     known = getattr(function, "formulas", ())
     function.formulas = (*known, record)  # type: ignore[attr-defined]

@@ -13,6 +13,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from kinlab import batches
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, StateError, near
 from kinlab.robot import Robot, scratch
@@ -41,7 +42,10 @@ def fk(robot: Robot, q: ArrayLike) -> Array:
     Raises:
         StateError: q of the wrong shape or type, or not finite.
     """
-    return each_state(robot, _fk, joint_vector(robot, q, "q"))
+    q = joint_vector(robot, q, "q")
+    if q.ndim == 1:
+        return _fk(robot, q)
+    return batches.poses(robot, q) if batches.large(q) else each_state(robot, _fk, q)
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
@@ -59,7 +63,13 @@ def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
         StateError: as :func:`fk`.
         NameUnknownError: another frame.
     """
-    return each_state(robot, _jacobian, joint_vector(robot, q, "q"), reference(frame))
+    q = joint_vector(robot, q, "q")
+    axes = reference(frame)
+    if q.ndim == 1:
+        return _jacobian(robot, q, axes)
+    if batches.large(q):
+        return batches.jacobians(robot, q, frame)
+    return each_state(robot, _jacobian, q, axes)
 
 
 def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") -> Array:

@@ -147,7 +147,7 @@ def _com_jacobians(robot: Robot, q: Array) -> Array:
     frame = pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
     answers = []
     for j in _joints(robot):
-        jacobian = pin.getJointJacobian(robot.model, data, j, frame)
+        jacobian = pin.getJointJacobian(robot.model, data, j, frame).reshape(6, robot.n)
         arm = data.oMi[j].rotation @ robot.model.inertias[j].lever
         jacobian[:3] += np.cross(jacobian[3:], arm, axisa=0, axisc=0)
         answers.append(jacobian)

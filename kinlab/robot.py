@@ -160,6 +160,14 @@ def scratch(robot: Robot) -> Any:
         return robot._scratch.data
 
 
+def model_pool(robot: Robot, threads: int) -> Any:
+    """The ``pin.ModelPool`` of this robot for this thread, for calls on so many threads."""
+    pools: dict[int, Any] = robot._scratch.__dict__.setdefault("pools", {})
+    if threads not in pools:
+        pools[threads] = pin.ModelPool(robot.model, threads)
+    return pools[threads]
+
+
 def require_inertia(robot: Robot) -> None:
     """Refuses dynamics of a robot whose mass matrix is singular.
 

@@ -3,7 +3,8 @@
 The error of a state is max|hand - engine| / max(max|engine|, typical), over the entries of the
 answer; typical is the median over the states of max|engine|, so that a state where the quantity
 happens to vanish does not divide by nothing. Where the quantity vanishes in most states, it is
-its largest value, and where it vanishes in all, 1. A NaN or infinity of the hand formula counts
+its largest value, where it vanishes in all (below :data:`VANISHES`) 1, and never less than the
+quantity's own ``scale``. A NaN or infinity of the hand formula counts
 as an infinite error.
 """
 
@@ -22,6 +23,9 @@ from kinlab.check.quantity import Quantity
 from kinlab.errors import OptionError
 from kinlab.formula import FormulaError, function_name, state_by_state
 from kinlab.tolerances import TOLERANCES
+
+VANISHES = 1e-12
+"""SI units. What an engine returns for zero is rounding residue of this size or less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,24 +136,25 @@ def compare_stacked(
         arguments=dict(zip(quantity.arguments, states, strict=True)),
         hand=hand,
         engine=engine,
-        errors=relative_errors(hand, engine),
+        errors=relative_errors(hand, engine, quantity.scale),
     )
 
 
-def relative_errors(hand: Array, engine: Array) -> Array:
+def relative_errors(hand: Array, engine: Array, scale: float = 0.0) -> Array:
     """Error of each state, by the measure of the module's docstring.
 
     Args:
         hand, engine: (N, ...), of one shape.
+        scale: natural size of a quantity that is zero by nature.
 
     Returns:
         (N,).
     """
     count = len(engine)
     size = np.max(np.abs(engine.reshape(count, -1)), axis=1, initial=0.0)
-    typical = float(np.median(size)) or float(np.max(size)) or 1.0
+    typical = next((x for x in (float(np.median(size)), float(np.max(size))) if x > VANISHES), 1.0)
     gap = np.max(np.abs((hand - engine).reshape(count, -1)), axis=1, initial=0.0)
-    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / np.maximum(size, typical)
+    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / np.maximum(size, max(typical, scale))
     return errors
 
 

@@ -11,7 +11,15 @@ from typing import Any
 from kinlab.check.quantity import Quantity
 from kinlab.errors import NameUnknownError, near
 
-_MODULES = ("kinlab.check.serial_quantities",)
+_MODULES = (
+    "kinlab.check.serial_quantities",
+    "kinlab.check.link_quantities",
+    "kinlab.check.special_quantities",
+    "kinlab.check.action_quantities",
+    "kinlab.check.table_check",
+    "kinlab.check.identity",
+    "kinlab.check.fivebar_quantities",
+)
 """Modules whose ``QUANTITIES`` belong to the list."""
 
 _INDEXED = re.compile(r"(\w+)\[([\d:,\s-]+)\]")

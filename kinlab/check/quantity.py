@@ -50,6 +50,8 @@ class Quantity:
         engine: ``engine(mechanism, *stacks)`` gives a stack of answers.
         about: shape, unit and frame, in one line.
         domain: the kind of mechanism.
+        scale: its natural size where it is zero by nature, such as 1 for a share; errors are
+            measured against this at least.
         sample: draws the states where the domain's own way does not serve (singular poses, ...).
     """
 
@@ -59,6 +61,7 @@ class Quantity:
     about: str
     domain: Domain
     sample: Sampler | None = None
+    scale: float = 0.0
 
     def states(self, mechanism: Any, samples: int, seed: int) -> tuple[Array, ...]:
         """Draws random states; the same seed gives the same ones, bit for bit."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -13,13 +14,14 @@ from kinlab import library
 from kinlab.arrays import Array
 from kinlab.check.quantity import Domain
 from kinlab.convention import Convention
-from kinlab.dh import DHTable
-from kinlab.errors import NameUnknownError, StructureError, near
+from kinlab.dh import DHLink, DHTable
+from kinlab.errors import NameUnknownError, near
+from kinlab.extract import to_dh
 from kinlab.notes.arm import Arm
 from kinlab.robot import Robot
 
 REACH = float(np.pi)
-"""Joint positions are drawn from the joint's range, from one turn at most."""
+"""Joint positions are drawn from the joint's range, from ± this about its middle at most."""
 
 
 def arm_of(table: DHTable) -> Arm:
@@ -49,16 +51,8 @@ def arm_of(table: DHTable) -> Arm:
 
 
 def numbers(robot: Robot) -> Arm:
-    """The plain numbers of a robot.
-
-    Raises:
-        StructureError: the robot does not come from a DH table.
-    """
-    if robot.table is None:
-        raise StructureError(
-            f"robot {robot.name!r} has no DH table; make one with kl.to_dh(robot) and load that"
-        )
-    return arm_of(robot.table)
+    """The plain numbers of a robot's DH table, extracted where it comes from a URDF."""
+    return arm_of(to_dh(robot) if robot.table is None else robot.table)
 
 
 def load(robot: Any) -> Robot:
@@ -76,7 +70,24 @@ def load(robot: Any) -> Robot:
 
 @cache
 def _named(name: str) -> Robot:
-    return library.load(name)
+    special = SPECIAL.get(name)
+    return library.load(name) if special is None else Robot.from_dh(special())
+
+
+def _isotropic_2r() -> DHTable:
+    second = 0.4
+    first = float(np.sqrt(2.0)) * second
+    rods = (
+        DHLink(a=0.0, mass=1.0, com=(0.2, 0.0, 0.0)),
+        DHLink(a=first, mass=1.0, com=(0.1, 0, 0)),
+    )
+    tool = np.eye(4)
+    tool[0, 3] = second
+    return DHTable("planar2r_isotropic", "modified", rods, tool=tool, gravity=(0.0, -9.81, 0.0))
+
+
+SPECIAL = {"planar2r_isotropic": _isotropic_2r}
+"""Arms that only a formula of the notes asks for."""
 
 
 @cache
@@ -98,7 +109,7 @@ GROUPS: dict[str, Callable[[DHTable], bool]] = {
     "standard": lambda table: table.convention is Convention.STANDARD,
     "modified": lambda table: table.convention is Convention.MODIFIED,
     "sliding": lambda table: any(link.joint == "prismatic" for link in table.links),
-    "spatial": lambda table: any(link.alpha for link in table.links),
+    "spatial": lambda table: any(abs(math.sin(link.alpha)) > 1e-6 for link in table.links),
 }
 """Groups of shipped robots, by a rule on the table."""
 
@@ -118,11 +129,10 @@ def sample(
 
 
 def positions(robot: Robot, count: int, rng: np.random.Generator) -> Array:
-    """Uniform over each joint's range, of which no more than ±pi (rad or m)."""
-    lower, upper = np.maximum(robot.lower, -REACH), np.minimum(robot.upper, REACH)
-    beyond = lower > upper  # a range that lies outside one turn altogether
-    lower, upper = np.where(beyond, robot.lower, lower), np.where(beyond, robot.upper, upper)
-    return rng.uniform(lower, upper, (count, robot.n))
+    """Uniform over each joint's range, of which no more than one turn about its middle."""
+    half = np.minimum(0.5 * (robot.upper - robot.lower), REACH)
+    middle = 0.5 * (robot.upper + robot.lower)
+    return rng.uniform(middle - half, middle + half, (count, robot.n))
 
 
 def _normal(scale: float) -> Callable[[Robot, int, np.random.Generator], Array]:

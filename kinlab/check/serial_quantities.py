@@ -25,6 +25,13 @@ def planar_jacobian(robot: Robot, q: Any) -> Array:
     return rows
 
 
+def tip_speed_squared(robot: Robot, q: Any, v: Any) -> Array:
+    """|J_v qdot|² of the tool origin."""
+    speed = np.einsum("aij,aj->ai", kinematics.jacobian(robot, q)[:, :3], v)
+    squared: Array = np.linalg.norm(speed, axis=1) ** 2
+    return squared
+
+
 def coriolis_torques(robot: Robot, q: Any, v: Any) -> Array:
     """C(q, v) v: what is left of the torque without gravity and acceleration."""
     still = np.zeros_like(np.asarray(q))
@@ -50,6 +57,7 @@ QUANTITIES = (
     _serial("jacobian_dot", "q v", kinematics.jacobian_dot, "its time derivative, base, (6, n)"),
     _serial("planar_pose", "q", planar_pose, "x, y, cos phi, sin phi of a planar arm's tool, (4,)"),
     _serial("planar_jacobian", "q", planar_jacobian, "rows vx, vy, wz of the Jacobian, (3, n)"),
+    _serial("tip_speed_squared", "q v", tip_speed_squared, "|v|² of the tool, m²/s², a number"),
     _serial(
         "statics", "q wrench", kinematics.statics,
         "joint torques J^T F of a wrench (f, n) that the tool exerts, base axes, (n,)",

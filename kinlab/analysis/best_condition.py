@@ -1,0 +1,90 @@
+"""The least condition number an arm can reach, by smooth minimisation from many starts.
+
+The condition number has kinks where singular values cross, and its minimisers sit on them. The
+p-norm condition number (trace (J J^T)^p * trace (J J^T)^-p)^(1/2p) is smooth, bounds it from
+above and tends to it as p grows.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.optimize import minimize
+
+from kinlab.analysis.metrics import condition_number, singular_values
+from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box
+from kinlab.arrays import Array
+from kinlab.kinematics import jacobian
+
+_POWERS = (1.0, 4.0, 16.0, 64.0, 256.0, 1024.0)
+"""Each minimisation starts where the one before ended; at 1024 the surrogate of six equal
+singular values is 0.2 % above the condition number, and its minimiser as near."""
+_STARTS = 24
+"""The best conditioned seeds that are minimised; the others lie in the same basins."""
+
+
+def lower_condition(
+    space: TaskSpace, length: float | None, q: Array, lengths: Array
+) -> tuple[Array, Array, Array]:
+    """Local minima of the condition number within the limits.
+
+    Args:
+        space: the task.
+        length: the given characteristic length, or ``None`` to minimise over it too.
+        q: starts, (N, n). lengths: their lengths, (N,).
+
+    Returns:
+        q (K, n), lengths (K,), condition numbers (K,).
+    """
+    lower, upper = search_box(space.robot)
+    q = np.clip(q, lower, upper)
+    condition = condition_number(singular_values(space.jacobian(q, lengths)))
+    order = np.argsort(condition, kind="stable")[:_STARTS]
+    states, sizes, reached = [], [], []
+    for number in order:
+        state, size = _descend(space, length, q[number], float(lengths[number]))
+        sigma = singular_values(space.jacobian(state, size))
+        states.append(state)
+        sizes.append(size)
+        reached.append(float(condition_number(sigma)))
+    return np.array(states), np.array(sizes), np.array(reached)
+
+
+def _descend(space: TaskSpace, length: float | None, q: Array, start: float) -> tuple[Array, float]:
+
+    lower, upper = search_box(space.robot)
+    open_length = length is None and space.mixed
+    x = np.append(q, np.log(start)) if open_length else q
+    centre = np.log(space.scale)
+    bounds = list(zip(lower, upper, strict=True))
+    if open_length:
+        bounds.append((centre - 7.0, centre + 7.0))
+    for power in _POWERS:
+        answer = minimize(
+            _surrogate, x, args=(space, power, open_length, start), jac=True,
+            method="L-BFGS-B", bounds=bounds, options={"maxiter": 300, "ftol": 1e-15},
+        )  # fmt: skip
+        x = answer.x
+    return x[: space.robot.n], float(np.exp(x[-1])) if open_length else start
+
+
+def _surrogate(
+    x: Array, space: TaskSpace, power: float, open_length: bool, length: float
+) -> tuple[float, Array]:
+    """ln of the p-norm condition number, and its gradient."""
+    q = x[: space.robot.n]
+    size = float(np.exp(x[-1])) if open_length else length
+    full = jacobian(space.robot, q)
+    matrix = space.select(full, size)
+    change = space.select(jacobian_derivative(full), size)
+    if open_length:
+        change = np.concatenate([change, (-matrix * space.metres)[np.newaxis]])
+    left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
+    if sigma[-1] < 1e-12 * sigma[0]:
+        return 60.0, np.zeros(len(x))  # a singular start stays where it is, and is never best
+    log = np.log(sigma)
+    slope = np.einsum("mi,kmn,in->ki", left, change, right) / sigma  # d ln sigma_i / dx_k
+    high, low = 2.0 * power * (log - log[0]), -2.0 * power * (log - log[-1])
+    top, bottom = np.exp(high), np.exp(low)
+    value = (np.log(top.sum()) + np.log(bottom.sum())) / (2.0 * power) + log[0] - log[-1]
+    gradient = slope @ (top / top.sum()) - slope @ (bottom / bottom.sum())
+    return float(value), gradient

@@ -1,0 +1,71 @@
+"""A batched Levenberg-Marquardt for many small systems at once, square or not.
+
+Damping in proportion to the residual (Fan & Yuan, Computing 74, 2005) keeps the convergence
+quadratic on solutions that are not isolated, as curves and surfaces of singularities are. Steps
+are the shortest ones, by singular values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from kinlab.arrays import Array
+
+System = Callable[[Array], tuple[Array, Array]]
+"""x (N, k) to residuals (N, p) and their derivatives (N, p, k)."""
+
+
+def solve(
+    system: System, start: Array, *, iterations: int = 60, goal: float = 1e-15
+) -> tuple[Array, Array]:
+    """Reduces each row's residual as far as it goes.
+
+    Args:
+        system: residuals and derivatives, both of order one.
+        start: (N, k).
+        iterations: most steps.
+        goal: norm of the residual at which a row is left alone.
+
+    Returns:
+        x (N, k) and the norms (N,) reached.
+    """
+    x = np.array(start, dtype=np.float64)
+    if not len(x):
+        return x, np.empty(0)
+    residual, slope = system(x)
+    norm = np.linalg.norm(residual, axis=1)
+    damping = np.full(len(x), 1e-2)
+    stalled = np.zeros(len(x), dtype=np.int64)
+    for _ in range(iterations):
+        active = np.flatnonzero((norm > goal) & (stalled < 8))
+        if not len(active):
+            break
+        step = _step(residual[active], slope[active], damping[active] * norm[active])
+        trial = x[active] + step
+        trial_residual, trial_slope = system(trial)
+        trial_norm = np.linalg.norm(trial_residual, axis=1)
+        better = trial_norm < norm[active]
+        won, lost = active[better], active[~better]
+        x[won], residual[won], slope[won] = (
+            trial[better],
+            trial_residual[better],
+            trial_slope[better],
+        )
+        norm[won] = trial_norm[better]
+        damping[won] *= 0.2
+        damping[lost] *= 6.0
+        stalled[won] = 0
+        stalled[lost] += 1
+    return x, norm
+
+
+def _step(residual: Array, slope: Array, damping: Array) -> Array:
+    left, values, right = np.linalg.svd(slope, full_matrices=False)
+    # the floor only keeps 0/0 away; values this small carry no direction
+    floor = 1e-15 * np.maximum(values[:, :1], 1e-300)
+    gain = values / (values**2 + damping[:, np.newaxis] + floor**2)
+    projected = np.einsum("npi,np->ni", left, residual)
+    step: Array = -np.einsum("nik,ni->nk", right, gain * projected)
+    return step

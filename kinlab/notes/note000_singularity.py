@@ -1,0 +1,139 @@
+"""Note 000, sections 五 and 六: singular and isotropic poses of planar arms."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from kinlab.formula import Printed, formula
+from kinlab.notes.arm import Arm, Array, columns, lengths, matrix, turn
+
+
+@formula(
+    "000.sing",
+    part="3R",
+    source="note 000, section 五",
+    quantity="planar_determinant",
+    robots="planar3r",
+    latex=r"\det J = l_1 l_2 s_2",
+    remark="a determinant needs a square J; rank and the smallest singular value serve any shape",
+)
+def planar_3r_determinant(arm: Arm, q: Array) -> Any:
+    """det J of the planar 3R arm: singular where it is stretched or folded."""
+    l1, l2, _ = lengths(arm)
+    return l1 * l2 * np.sin(columns(q)[1])
+
+
+@formula(
+    "000.sing",
+    part="2R",
+    source="note 000, section 五",
+    quantity="planar_position_determinant",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"\det J_{xy} = l_1 l_2 s_2",
+)
+def planar_2r_determinant(arm: Arm, q: Array) -> Any:
+    """det J of the planar 2R arm, the tool's angle left out."""
+    l1, l2 = lengths(arm)
+    return l1 * l2 * np.sin(columns(q)[1])
+
+
+def tip_jacobian(arm: Arm, q: Array) -> Array:
+    """^3J of the planar 2R arm, (..., 2, 2)."""
+    l1, l2 = lengths(arm)
+    q2 = columns(q)[1]
+    return matrix([l1 * np.sin(q2), 0.0], [l1 * np.cos(q2) + l2, l2])
+
+
+def _rows_gram(arm: Arm, q: Array) -> Array:
+    jacobian = tip_jacobian(arm, q)
+    return jacobian @ turn(jacobian)
+
+
+@formula(
+    "000.iso",
+    source="note 000, section 六",
+    quantity="column_products",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"\text{columns orthogonal and equal: } \fixed{J^T J} = a I",
+    printed=Printed(
+        _rows_gram,
+        "columns orthogonal and of equal length is J^T J = a I; J J^T = a I speaks of the rows "
+        "(the same thing only for square J at the isotropic pose itself)",
+        r"\text{columns orthogonal and equal: } \wrong{J J^T} = a I",
+    ),
+)
+def column_products(arm: Arm, q: Array) -> Array:
+    """Scalar products of the columns of J."""
+    jacobian = tip_jacobian(arm, q)
+    return turn(jacobian) @ jacobian
+
+
+@formula(
+    "000.iso2r",
+    part="3J",
+    source="note 000, section 六",
+    quantity="jacobian_tool[:2]",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"{}^3J = \begin{pmatrix} l_1 s_2 & 0 \\ l_1 c_2 + l_2 & l_2 \end{pmatrix}",
+)
+def planar_2r_tip_jacobian(arm: Arm, q: Array) -> Array:
+    """Jacobian of the planar 2R arm in the tip's axes."""
+    return tip_jacobian(arm, q)
+
+
+@formula(
+    "000.iso2r",
+    part="orthogonal",
+    source="note 000, section 六.1",
+    quantity="orthogonal_columns_cosine",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"c_2 = -\frac{l_2}{l_1}",
+)
+def orthogonal_cosine(arm: Arm, q: Array) -> Array:
+    """cos theta2 where the columns are orthogonal."""
+    l1, l2 = lengths(arm)
+    return np.full(np.shape(q)[:-1], -l2 / l1)
+
+
+@formula(
+    "000.iso2r",
+    part="equal",
+    source="note 000, section 六.2",
+    quantity="equal_columns_cosine",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"c_2 = -\frac{l_1}{2 l_2}",
+)
+def equal_cosine(arm: Arm, q: Array) -> Array:
+    """cos theta2 where the columns are equally long."""
+    l1, l2 = lengths(arm)
+    return np.full(np.shape(q)[:-1], -l1 / (2.0 * l2))
+
+
+def _one_angle(arm: Arm, q: Array) -> Array:
+    _, l2 = lengths(arm)
+    known = np.sin(columns(q)[1]) > 0.0
+    return np.where(known[..., None, None], l2 * np.eye(2), np.nan)
+
+
+@formula(
+    "000.iso2r",
+    part="135 degrees",
+    source="note 000, section 六",
+    quantity="isotropic_jacobian",
+    robots="planar2r_isotropic",
+    latex=r"l_1 = \sqrt2\, l_2,\ \theta_2 = \fixed{\pm} 135^\circ \Rightarrow"
+    r" {}^3J = \begin{pmatrix} \fixed{\pm} l_2 & 0 \\ 0 & l_2 \end{pmatrix}",
+    printed=Printed(
+        _one_angle,
+        "theta2 = -135° is isotropic too and not mentioned (there the printed form gives nothing)",
+        r"l_1 = \sqrt2\, l_2,\ \theta_2 = \wrong{135^\circ} \Rightarrow"
+        r" {}^3J = \begin{pmatrix} l_2 & 0 \\ 0 & l_2 \end{pmatrix}",
+    ),
+)
+def isotropic_jacobian(arm: Arm, q: Array) -> Array:
+    """The isotropic 2R arm: l1 = √2 l2 and theta2 = ±135°."""
+    _, l2 = lengths(arm)
+    side = np.sign(np.sin(columns(q)[1]))
+    return matrix([side * l2, 0.0], [0.0, l2])

@@ -1,0 +1,229 @@
+"""Note 001: Lagrange's equation of the planar 2R arm, term by term, and the D coefficients.
+
+As in :mod:`kinlab.notes.note001_energies`; a1, a2 are the joint accelerations.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from kinlab.formula import Printed, formula
+from kinlab.notes.arm import Arm, Array, columns
+from kinlab.notes.note001_energies import ARM, SECTION, numbers
+
+
+@formula(
+    "001.dLdd1",
+    source=SECTION,
+    quantity="momentum[0]",
+    robots=ARM,
+    latex=r"\frac{\partial L}{\partial \dot\theta_1} = (m_1 + m_2) l_1^2 \dot\theta_1"
+    r" + m_2 l_2^2 \dot\theta_1 + m_2 l_2^2 \dot\theta_2 + 2 m_2 l_1 l_2 c_2 \dot\theta_1"
+    r" + m_2 l_1 l_2 c_2 \dot\theta_2",
+)
+def momentum_1(arm: Arm, q: Array, v: Array) -> Any:
+    """dL/dd1."""
+    m1, m2, l1, l2, _ = numbers(arm)
+    c2 = np.cos(columns(q)[1])
+    d1, d2 = columns(v)
+    return (
+        (m1 + m2) * l1**2 * d1
+        + m2 * l2**2 * d1
+        + m2 * l2**2 * d2
+        + 2 * m2 * l1 * l2 * c2 * d1
+        + m2 * l1 * l2 * c2 * d2
+    )
+
+
+def _rate_1_printed(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    m1, m2, l1, l2, _ = numbers(arm)
+    q2 = columns(q)[1]
+    a1, a2 = columns(a)
+    return (
+        ((m1 + m2) * l1**2 + m2 * l2 + 2 * m2 * l1 * l2 * np.cos(q2)) * a1
+        + (m2 * l2 + m2 * l1 * l2 * np.cos(q2)) * a2
+        - 2 * m2 * l1 * l2 * np.sin(q2) * a1 * a2
+        - m2 * l1 * l2 * np.sin(q2) * a2**2
+    )
+
+
+@formula(
+    "001.ddt1",
+    source=SECTION,
+    quantity="momentum_rate[0]",
+    robots=ARM,
+    latex=r"\frac{d}{dt}\frac{\partial L}{\partial \fixed{\dot\theta_1}} ="
+    r" [(m_1 + m_2) l_1^2 + \fixed{m_2 l_2^2} + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
+    r" + (\fixed{m_2 l_2^2} + m_2 l_1 l_2 c_2)\ddot\theta_2"
+    r" - 2 m_2 l_1 l_2 s_2 \fixed{\dot\theta_1\dot\theta_2} - m_2 l_1 l_2 s_2"
+    r" \fixed{\dot\theta_2^2}",
+    printed=Printed(
+        _rate_1_printed,
+        "m2 l2 for m2 l2² (twice), accelerations for velocities in the last two terms, and L is "
+        "differentiated by theta_ddot on the left",
+        r"\frac{d}{dt}\frac{\partial L}{\partial \wrong{\ddot\theta_1}} ="
+        r" [(m_1 + m_2) l_1^2 + \wrong{m_2 l_2} + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
+        r" + (\wrong{m_2 l_2} + m_2 l_1 l_2 c_2)\ddot\theta_2"
+        r" - 2 m_2 l_1 l_2 s_2 \wrong{\ddot\theta_1\ddot\theta_2} - m_2 l_1 l_2 s_2"
+        r" \wrong{\ddot\theta_2^2}",
+    ),
+)
+def momentum_rate_1(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    """d/dt dL/dd1."""
+    m1, m2, l1, l2, _ = numbers(arm)
+    q2 = columns(q)[1]
+    d1, d2 = columns(v)
+    a1, a2 = columns(a)
+    return (
+        ((m1 + m2) * l1**2 + m2 * l2**2 + 2 * m2 * l1 * l2 * np.cos(q2)) * a1
+        + (m2 * l2**2 + m2 * l1 * l2 * np.cos(q2)) * a2
+        - 2 * m2 * l1 * l2 * np.sin(q2) * d1 * d2
+        - m2 * l1 * l2 * np.sin(q2) * d2**2
+    )
+
+
+@formula(
+    "001.dLdt1",
+    source=SECTION,
+    quantity="lagrangian_gradient[0]",
+    robots=ARM,
+    latex=r"\frac{\partial L}{\partial \theta_1} = -(m_1 + m_2) g l_1 c_1 - m_2 g l_2 c_{12}",
+)
+def gradient_1(arm: Arm, q: Array, v: Array) -> Any:
+    """dL/dtheta1."""
+    del v
+    m1, m2, l1, l2, g = numbers(arm)
+    q1, q2 = columns(q)
+    return -(m1 + m2) * g * l1 * np.cos(q1) - m2 * g * l2 * np.cos(q1 + q2)
+
+
+def _tau_1_printed(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    m1, m2, l1, l2, g = numbers(arm)
+    q1, q2 = columns(q)
+    d1, d2 = columns(v)
+    a1, a2 = columns(a)
+    return (
+        ((m1 + m2) * l1**2 + m2 * l2**2 + m2 * l2**2 + 2 * m2 * l1 * l2 * np.cos(q2)) * a1
+        + (m2 * l2**2 + m2 * l1 * l2 * np.cos(q2)) * a2**2
+        - 2 * m2 * l1 * l2 * np.sin(q2) * d1 * d2
+        - m2 * l1 * l2 * np.sin(q2) * d2**2
+        + (m1 + m2) * g * l1 * np.cos(q1)
+        + m2 * g * l2 * np.cos(q1 + q2)
+    )
+
+
+_TAU1 = (
+    r" - 2 m_2 l_1 l_2 s_2 \dot\theta_1\dot\theta_2 - m_2 l_1 l_2 s_2 \dot\theta_2^2"
+    r" + (m_1 + m_2) g l_1 c_1 + m_2 g l_2 c_{12}"
+)
+
+
+@formula(
+    "001.tau1",
+    source=SECTION,
+    quantity="inverse_dynamics[0]",
+    robots=ARM,
+    latex=r"\tau_1 = [(m_1 + m_2) l_1^2 + \fixed{m_2 l_2^2} + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
+    r" + (m_2 l_2^2 + m_2 l_1 l_2 c_2)\fixed{\ddot\theta_2}" + _TAU1,
+    printed=Printed(
+        _tau_1_printed,
+        "m2 l2² is counted twice and theta2_ddot is squared: printed - true = "
+        "m2 l2 (l2 a1 + (l2 + l1 c2)(a2² - a2))",
+        r"\tau_1 = [(m_1 + m_2) l_1^2 + \wrong{m_2 l_2^2 + m_2 l_2^2}"
+        r" + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
+        r" + (m_2 l_2^2 + m_2 l_1 l_2 c_2)\wrong{\ddot\theta_2^2}" + _TAU1,
+    ),
+)
+def tau_1(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    """Torque of joint 1."""
+    m1, m2, l1, l2, g = numbers(arm)
+    q1, q2 = columns(q)
+    d1, d2 = columns(v)
+    a1, a2 = columns(a)
+    return (
+        ((m1 + m2) * l1**2 + m2 * l2**2 + 2 * m2 * l1 * l2 * np.cos(q2)) * a1
+        + (m2 * l2**2 + m2 * l1 * l2 * np.cos(q2)) * a2
+        - 2 * m2 * l1 * l2 * np.sin(q2) * d1 * d2
+        - m2 * l1 * l2 * np.sin(q2) * d2**2
+        + (m1 + m2) * g * l1 * np.cos(q1)
+        + m2 * g * l2 * np.cos(q1 + q2)
+    )
+
+
+@formula(
+    "001.dLdd2",
+    source=SECTION,
+    quantity="momentum[1]",
+    robots=ARM,
+    latex=r"\frac{\partial L}{\partial \dot\theta_2} = m_2 l_2^2 \dot\theta_1"
+    r" + m_2 l_2^2 \dot\theta_2 + m_2 l_1 l_2 c_2 \dot\theta_1",
+)
+def momentum_2(arm: Arm, q: Array, v: Array) -> Any:
+    """dL/dd2."""
+    _, m2, l1, l2, _ = numbers(arm)
+    d1, d2 = columns(v)
+    return m2 * l2**2 * d1 + m2 * l2**2 * d2 + m2 * l1 * l2 * np.cos(columns(q)[1]) * d1
+
+
+@formula(
+    "001.ddt2",
+    source=SECTION,
+    quantity="momentum_rate[1]",
+    robots=ARM,
+    latex=r"\frac{d}{dt}\frac{\partial L}{\partial \dot\theta_2} = m_2 l_2^2 \ddot\theta_1"
+    r" + m_2 l_2^2 \ddot\theta_2 + m_2 l_1 l_2 c_2 \ddot\theta_1"
+    r" - m_2 l_1 l_2 s_2 \dot\theta_1\dot\theta_2",
+    remark="the left side is printed with L differentiated by theta2_ddot",
+)
+def momentum_rate_2(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    """d/dt dL/dd2."""
+    _, m2, l1, l2, _ = numbers(arm)
+    q2 = columns(q)[1]
+    d1, d2 = columns(v)
+    a1, a2 = columns(a)
+    return (
+        m2 * l2**2 * a1
+        + m2 * l2**2 * a2
+        + m2 * l1 * l2 * np.cos(q2) * a1
+        - m2 * l1 * l2 * np.sin(q2) * d1 * d2
+    )
+
+
+@formula(
+    "001.dLdt2",
+    source=SECTION,
+    quantity="lagrangian_gradient[1]",
+    robots=ARM,
+    latex=r"\frac{\partial L}{\partial \theta_2} ="
+    r" -m_2 l_1 l_2 s_2(\dot\theta_1^2 + \dot\theta_1\dot\theta_2) - m_2 g l_2 c_{12}",
+)
+def gradient_2(arm: Arm, q: Array, v: Array) -> Any:
+    """dL/dtheta2."""
+    _, m2, l1, l2, g = numbers(arm)
+    q1, q2 = columns(q)
+    d1, d2 = columns(v)
+    return -m2 * l1 * l2 * np.sin(q2) * (d1**2 + d1 * d2) - m2 * g * l2 * np.cos(q1 + q2)
+
+
+@formula(
+    "001.tau2",
+    source=SECTION,
+    quantity="inverse_dynamics[1]",
+    robots=ARM,
+    latex=r"\tau_2 = (m_2 l_2^2 + m_2 l_1 l_2 c_2)\ddot\theta_1 + m_2 l_2^2 \ddot\theta_2"
+    r" + m_2 l_1 l_2 s_2 \dot\theta_1^2 + m_2 l_2 g c_{12}",
+)
+def tau_2(arm: Arm, q: Array, v: Array, a: Array) -> Any:
+    """Torque of joint 2."""
+    _, m2, l1, l2, g = numbers(arm)
+    q1, q2 = columns(q)
+    d1, _ = columns(v)
+    a1, a2 = columns(a)
+    return (
+        (m2 * l2**2 + m2 * l1 * l2 * np.cos(q2)) * a1
+        + m2 * l2**2 * a2
+        + m2 * l1 * l2 * np.sin(q2) * d1**2
+        + m2 * l2 * g * np.cos(q1 + q2)
+    )

@@ -1,0 +1,73 @@
+"""How many threads a batch may use.
+
+A batch splits its states over the processor's cores. Inside the worker of a sweep it must not:
+the workers fill the cores already, so a block of a sweep runs under :func:`one_thread`.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from kinlab.errors import OptionError
+
+VARIABLE = "KINLAB_THREADS"
+"""Environment variable that limits the threads of a batch."""
+
+_STATES_PER_THREAD = 256
+"""A thread that gets fewer states than this costs more than it saves."""
+
+_local = threading.local()
+
+
+def thread_count(states: int) -> int:
+    """Number of threads for a batch of so many states.
+
+    Args:
+        states: N.
+
+    Returns:
+        At least 1; at most the cores this process may use, or ``KINLAB_THREADS``.
+
+    Raises:
+        OptionError: ``KINLAB_THREADS`` is not a whole number above zero.
+    """
+    most = max(1, states // _STATES_PER_THREAD)
+    return 1 if most == 1 else min(most, available())
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Keeps every batch of the calling thread on that thread."""
+    before = getattr(_local, "limit", None)
+    _local.limit = 1
+    try:
+        yield
+    finally:
+        _local.limit = before
+
+
+def available() -> int:
+    """Number of threads a batch of this thread may use, however long it is.
+
+    Raises:
+        OptionError: as :func:`thread_count`.
+    """
+    limit = getattr(_local, "limit", None)
+    if limit is not None:
+        return int(limit)
+    text = os.environ.get(VARIABLE)
+    if text is None:
+        return cores()
+    if not text.isdecimal() or int(text) < 1:
+        raise OptionError(f"{VARIABLE} is {text!r}; it must be a whole number above zero")
+    return int(text)
+
+
+def cores() -> int:
+    """Cores this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,66 @@
+"""``kl.view``: a robot in the browser, or inline in a notebook, with one call."""
+
+from __future__ import annotations
+
+import os
+import sys
+import webbrowser
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from kinlab.robot import Robot
+
+if TYPE_CHECKING:
+    from kinlab.viewer.scene import Scene
+
+
+def view(robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> Scene:
+    """Shows a robot: inline in a notebook, otherwise in the browser.
+
+    The browser page is served on loopback in the background until the program ends; its address
+    is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
+
+    Args:
+        robot: the robot.
+        q: joint positions at the start, (n,); left out, zero.
+        meshes: draw the URDF's meshes; otherwise rods from joint to joint.
+
+    Returns:
+        The scene, to which frames, paths, clouds and ghosts can be added.
+
+    Raises:
+        StateError: q of another shape, or not finite.
+    """
+    from kinlab.viewer.scene import Scene
+
+    scene = Scene(robot, q, meshes=meshes)
+    if not in_notebook():
+        server = scene.serve()
+        print(f"{robot.name}: {server.url}")
+        open_browser(server.url)
+    return scene
+
+
+def in_notebook() -> bool:
+    """Whether this runs in a Jupyter kernel, which shows what a cell returns."""
+    shell = sys.modules.get("IPython")
+    running = shell.get_ipython() if shell is not None else None
+    return running is not None and hasattr(running, "kernel")
+
+
+def open_browser(url: str) -> bool:
+    """Opens the user's graphical browser, where there is one.
+
+    Returns:
+        Whether one was found. A browser in the terminal would take the terminal over, so
+        without a display none is tried.
+    """
+    wants_display = sys.platform not in ("darwin", "win32")
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    if wants_display and not any(os.environ.get(key) for key in displays):
+        return False
+    try:
+        return webbrowser.open(url)
+    except webbrowser.Error:
+        return False
