@@ -62,7 +62,8 @@ def main() -> None:
     lines = [
         f"`python scripts/ik_convergence.py`: {ROBOT}, {options.count} targets each, one start "
         "0.2 rad away in every joint, at most 20,000 iterations (given up when the "
-        "squared error has not halved in 10, 1000 or 5 of Newton, gradient or LM), tolerance 1e-6 m and 1e-6 rad.",
+        "squared error has not halved in 10, 1000 or 5 of Newton, gradient or LM), tolerance "
+        "1e-6 m and 1e-6 rad.",
         "",
         "| start and target | method | solved % | median iterations | worst growth of the error | "
         "largest step, rad |",

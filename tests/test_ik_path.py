@@ -66,15 +66,15 @@ def test_paths_at_the_door():
 def test_the_command_prints_the_solution(tmp_path):
     figure = tmp_path / "search.png"
     done = RUN.invoke(
-        app, "ik puma560 --xyz .4 .3 -.2 --rpy 0 pi 0 --history".split() + [str(figure)]
+        app, "ik puma560 --xyz .5 .2 .3 --rpy 0 pi/2 0 --history".split() + [str(figure)]
     )
     assert done.exit_code == 0, done.output
     assert "converged: position error" in done.output and "mm" in done.output
     assert figure.stat().st_size > 5000
     values = [float(line.split()[1]) for line in done.output.splitlines()[:6]]
     pose = kl.fk(kl.load("puma560"), values)
-    np.testing.assert_allclose(pose[:3, 3], [0.4, 0.3, -0.2], atol=2e-6)
-    np.testing.assert_allclose(pose[:3, :3], np.diag([-1, 1, -1]), atol=2e-6)
+    np.testing.assert_allclose(pose[:3, 3], [0.5, 0.2, 0.3], atol=2e-6)
+    np.testing.assert_allclose(pose[:3, :3], [[0, 0, 1], [0, 1, 0], [-1, 0, 0]], atol=2e-6)
 
 
 def test_the_command_warns_of_a_pose_met_only_outside_the_limits():

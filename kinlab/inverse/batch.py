@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
 from kinlab.compiled import over_rows
 from kinlab.inverse import kernel, methods
+from kinlab.inverse.failed import failure, look_again
 from kinlab.inverse.request import (
     RESTARTS,
     read_guess,
@@ -19,8 +19,7 @@ from kinlab.inverse.request import (
     whole,
 )
 from kinlab.inverse.result import IKBatch, IKStatus
-from kinlab.inverse.setup import STARTS, Setup, setup
-from kinlab.inverse.single import failure, lm_numbers
+from kinlab.inverse.setup import STARTS, lm_numbers, setup
 from kinlab.inverse.verify import measure_all
 from kinlab.robot import Robot
 from kinlab.tasks import task_rows
@@ -82,12 +81,17 @@ def ik_batch(
 
     def verify(first: int, last: int) -> None:
         part = slice(first, last)
-        _settle(arm, flat[part], q[part], outcome[part, 0])
+        ends = outcome[part, 0]
+        failed = first + np.flatnonzero((ends != kernel.CONVERGED) & (ends != kernel.OUTSIDE))
+        if len(failed):
+            closest, codes = q[failed], outcome[failed, 0]
+            look_again(arm, targets[failed], closest, codes, searches, tolerances)
+            q[failed], outcome[failed, 0] = closest, codes
         measure_all(robot, q[part], targets[part], arm.weight, errors[part])
 
     over_rows(
         kernel.search_rows, count, *arm[:4], arm.wide, arm.weight,
-        lm_numbers(arm, tolerances, iterations, searches), arm.table, arm.starts, flat,
+        lm_numbers(arm.reach, tolerances, iterations, searches), arm.table, arm.starts, flat,
         guesses.reshape(-1, robot.n), q0 is not None, q, outcome,
         threads=threads, grain=_GRAIN, then=verify,
     )  # fmt: skip
@@ -104,14 +108,3 @@ def ik_batch(
         q, success, status, position, rotation, outcome[:, 1].copy(), outcome[:, 2] - 1,
         tuple(remarks),
     )  # fmt: skip
-
-
-def _settle(arm: Setup, targets: Array, q: Array, ends: Any) -> None:
-    """Brings the failed rows of q to rest at the closest pose, in place."""
-    failed = np.flatnonzero((ends != kernel.CONVERGED) & (ends != kernel.OUTSIDE))
-    if len(failed):
-        part = q[failed]
-        kernel.settle_rows(
-            *arm[:4], arm.weight, methods.SETTLE, targets[failed], part, 0, len(part)
-        )
-        q[failed] = part

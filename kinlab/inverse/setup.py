@@ -10,6 +10,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.chain_arrays import chain
+from kinlab.inverse import methods
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 from kinlab.tasks import TASKS, require_task
@@ -116,3 +117,20 @@ def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Arr
     half = np.where(slides, length, math.pi)
     middle = np.clip(0.0, np.minimum(lower + half, upper), np.maximum(upper - half, lower))
     return np.maximum(lower, middle - half), np.minimum(upper, middle + half)
+
+
+def lm_numbers(
+    reach: float, tolerances: tuple[float, float], iterations: int, searches: int
+) -> Array:
+    """The kernel's ``numbers``, in its order."""
+    return np.array(
+        (*tolerances, methods.DAMPING, methods.FLOOR, iterations, searches,
+         methods.PATIENCE["lm"], reach)
+    )  # fmt: skip
+
+
+def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
+    """Whether the target is farther from the first joint than the arm is long."""
+    asked = arm.weight[:3] > 0.0
+    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
+    return float(np.linalg.norm(away)) > arm.reach + tolerance
