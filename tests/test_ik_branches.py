@@ -206,3 +206,23 @@ def test_linear_trig():
             assert a * math.cos(x) + b * math.sin(x) == pytest.approx(c)
     assert len(linear_trig(3.0, 4.0, 5.0)) == 1 and linear_trig(0.0, 0.0, 0.0) == []
     assert linear_trig(1.0, 0.0, 1.1) == []
+
+
+@pytest.mark.parametrize("name", ["puma560", "stanford", "erd:kinova"])
+def test_the_status_of_a_search_is_what_the_closed_form_says(name):
+    """Random poses, reachable or not: success, only outside the limits, or not at all."""
+    robot = kl.load(name)
+    rng = np.random.default_rng(16)
+    T = kl.fk(robot, rng.uniform(robot.lower, robot.upper, (150, 6)))
+    T[:, :3, :3] = T[rng.permutation(150), :3, :3]  # each position with another orientation
+    answer = kl.ik_batch(robot, T)
+    seen = set()
+    for pose, success, status in zip(T, answer.success, answer.status, strict=True):
+        found = kl.ik_branches(robot, pose)
+        if found.within_limits.any():
+            expected = "converged"
+        else:
+            expected = "converged_outside_limits" if len(found) else "unreachable_suspected"
+        seen.add(expected)
+        assert status == expected and success == (expected == "converged")
+    assert {"converged", "converged_outside_limits"} <= seen

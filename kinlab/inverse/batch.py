@@ -19,10 +19,9 @@ from kinlab.inverse.request import (
     whole,
 )
 from kinlab.inverse.result import IKBatch, IKStatus
-from kinlab.inverse.setup import STARTS, lm_numbers, setup
+from kinlab.inverse.setup import STARTS, lm_numbers, rows_of, setup
 from kinlab.inverse.verify import measure_all
 from kinlab.robot import Robot
-from kinlab.tasks import task_rows
 
 _GRAIN = 32
 """Poses worth handing to a thread: some 0.2 ms of work."""
@@ -66,7 +65,7 @@ def ik_batch(
     tolerances = read_tolerances(tol_position, tol_rotation)
     searches = 1 + whole(restarts, "restarts", 0)
     seed = whole(seed, "seed", 0)
-    arm = setup(robot, task_rows(task), seed, max(searches, STARTS))
+    arm = setup(robot, rows_of(robot, task), seed, max(searches, STARTS))
     count = len(targets)
     remarks: list[str] = []
     guesses = arm.centre

@@ -13,7 +13,7 @@ from kinlab.chain_arrays import chain
 from kinlab.inverse import methods
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
-from kinlab.tasks import TASKS, require_task
+from kinlab.tasks import TASKS, require_task, task_rows
 
 STARTS = 256
 """States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to
@@ -84,6 +84,19 @@ def setup(robot: Robot, rows: tuple[int, ...], seed: int, starts: int = STARTS) 
             kept.clear()
         found = kept[key] = _work_out(robot, *key)
     return found
+
+
+def rows_of(robot: Robot, task: Any) -> tuple[int, ...]:
+    """The rows of a task; ``"auto"`` is the largest that suits the arm.
+
+    Raises:
+        NameUnknownError, OptionError: as :func:`kinlab.tasks.task_rows`.
+    """
+    if isinstance(task, str) and task == "auto":
+        from kinlab.analysis.task_space import read_task
+
+        return read_task(robot, task).rows
+    return task_rows(task)
 
 
 def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Setup:

@@ -20,10 +20,9 @@ from kinlab.inverse.request import (
     whole,
 )
 from kinlab.inverse.result import IKHistory, IKResult, IKStatus
-from kinlab.inverse.setup import STARTS, Setup, lm_numbers, setup
+from kinlab.inverse.setup import STARTS, Setup, lm_numbers, rows_of, setup
 from kinlab.inverse.verify import measure
 from kinlab.robot import Robot
-from kinlab.tasks import task_rows
 
 TOL_STEP = 1e-13
 """||q_{k+1} - q_k|| below which the readable search stops, where the caller gives none."""
@@ -61,8 +60,8 @@ def ik(
         tol_rotation: radians, of the rotation vector log(R_d R^T) in the base's axes, in the
             coordinates of the task.
         seed: of the table of starts.
-        task: a name of :data:`kinlab.tasks.TASKS` or a mask of six booleans. With ``"pose"``,
-            an arm of fewer joints than six meets only those T that lie on its way.
+        task: a name of :data:`kinlab.tasks.TASKS`, a mask of six booleans, or ``"auto"``.
+            With ``"pose"``, an arm of fewer than six joints meets only those T on its way.
         restarts: searches after the first.
         max_iterations: of one search; left out, 60 (gradient: 5000).
         tol_step: also stop where ||q_{k+1} - q_k|| is below this, rad or m.
@@ -85,7 +84,7 @@ def ik(
     searches = 1 + whole(restarts, "restarts", 0)
     seed = whole(seed, "seed", 0)
     step = methods.choose(method, alpha)
-    arm = setup(robot, task_rows(task), seed, max(searches, STARTS))
+    arm = setup(robot, rows_of(robot, task), seed, max(searches, STARTS))
     remarks: list[str] = []
     start: Array | None = None
     if q0 is not None:
