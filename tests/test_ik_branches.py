@@ -34,7 +34,8 @@ def wrist_arm(seed, convention, third="revolute", kind="general"):
         (length[0], 0.7 if kind == "parallel" else rng.choice([0.0, 0.7])),
         (length[1], HALF),
     ]
-    wrist = [(0.0, -HALF), (0.0, HALF), (0.0, 0.0)]
+    bend = HALF if seed % 2 else 1.2  # an oblique wrist cannot turn everywhere
+    wrist = [(0.0, -bend), (0.0, bend + 0.1 * (bend < HALF)), (0.0, 0.0)]
     shifts = [length[2], rng.uniform(-0.2, 0.2), 0.1, length[3], 0.0, 0.08]
     if convention == "modified":  # there a and alpha stand in front of the joint
         rows = [(0.0, 0.0), *rows]
