@@ -71,6 +71,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.path import ik_path
     from kinlab.inverse.single import ik
 
 __version__ = "0.1.0"
@@ -94,6 +95,7 @@ _LATER = {
     "redundancy": "kinlab.analysis.redundancy",
     "sample_workspace": "kinlab.analysis.workspace",
     "singular_loci": "kinlab.analysis.loci",
+    "ik_path": "kinlab.inverse.path",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""
@@ -142,6 +144,7 @@ __all__ = [
     "ik",
     "ik_batch",
     "ik_branches",
+    "ik_path",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
