@@ -47,7 +47,9 @@ def test_measures_against_eigenvalues_and_products():
     assert np.allclose(kl.manipulability(robot, q, "min_singular") ** 2, eigen[:, 0], rtol=1e-8)
     lam = np.linalg.inv(jac @ np.linalg.inv(mass) @ jac.swapaxes(1, 2))
     inertia = np.linalg.eigvalsh(0.5 * (lam + lam.swapaxes(1, 2)))
-    assert np.allclose(kl.manipulability(robot, q, "asada"), inertia[:, 0] / inertia[:, -1], rtol=1e-7)
+    assert np.allclose(
+        kl.manipulability(robot, q, "asada"), inertia[:, 0] / inertia[:, -1], rtol=1e-7
+    )
     means = np.prod(eigen, axis=1) ** (1 / 6) / eigen.mean(axis=1)
     assert np.allclose(kl.manipulability(robot, q, "isotropy"), means, rtol=1e-8)
 
@@ -75,14 +77,20 @@ def test_suggested_task(name, task):
     assert space.name == task and space.suggested
 
 
-@given(seed=st.integers(0, 10_000), n=st.integers(1, 7), convention=st.sampled_from(["standard", "modified"]))
+@given(
+    seed=st.integers(0, 10_000),
+    n=st.integers(1, 7),
+    convention=st.sampled_from(["standard", "modified"]),
+)
 def test_jacobian_derivative_is_pinocchios_hessian(seed, n, convention):
     robot = kl.Robot.from_dh(random_table(seed, n, convention))
     rng = np.random.default_rng(seed)
     q, v = rng.uniform(-2, 2, n), rng.normal(size=n)
     derivative = jacobian_derivative(kl.jacobian(robot, q))
     # J_dot = sum_k dJ/dq_k v_k, by Pinocchio's own recursion
-    assert np.allclose(np.einsum("k,kij->ij", v, derivative), kl.jacobian_dot(robot, q, v), atol=1e-12)
+    assert np.allclose(
+        np.einsum("k,kij->ij", v, derivative), kl.jacobian_dot(robot, q, v), atol=1e-12
+    )
 
 
 def test_ellipsoids_against_samples():

@@ -105,10 +105,16 @@ def test_planar_arms_in_closed_form():
 def test_double_root_is_found():
     # Stanford's det J has the factor q3^2, where sigma_min touches zero without crossing it
     table = kl.load("stanford").table
-    links = [replace(link, lower=-1.0, upper=1.0) if i == 2 else link for i, link in enumerate(table.links)]
+    links = [
+        replace(link, lower=-1.0, upper=1.0) if i == 2 else link
+        for i, link in enumerate(table.links)
+    ]
     robot = kl.Robot.from_dh(replace(table, links=tuple(links)))
     search = kl.find_singularities(robot)
-    assert any(abs(found.q[2]) < 1e-5 and engine_ratio(robot, found.q, found.rows) <= 1e-10 for found in search)
+    assert any(
+        abs(found.q[2]) < 1e-5 and engine_ratio(robot, found.q, found.rows) <= 1e-10
+        for found in search
+    )
 
 
 def test_same_seed_same_answer():
