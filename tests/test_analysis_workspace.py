@@ -6,6 +6,7 @@ import builtins
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -257,3 +258,23 @@ def test_commands_bad_input_is_one_line(arguments, word, tmp_path):
     result = run(*arguments, cwd=tmp_path)
     assert result.returncode == 2
     assert word in result.stderr and len(result.stderr.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("script", "more", "word"),
+    [
+        ("find_singularities.py", [], "elbow"),
+        ("find_isotropy.py", [], "1.414213562"),
+        ("map_workspace.py", ["--samples", "5000"], "radius 1.150000"),
+        ("watch_manipulability.py", [], "characteristic length"),
+    ],
+)
+def test_the_scripts_run(script, more, word, tmp_path):
+    root = Path(__file__).resolve().parent.parent
+    environment = {**os.environ, "PYTHONPATH": str(root)}
+    result = subprocess.run(
+        [sys.executable, str(root / "scripts" / script), *more, "--output", "picture.png"],
+        capture_output=True, text=True, cwd=tmp_path, env=environment, check=False,
+    )  # fmt: skip
+    assert result.returncode == 0, result.stderr
+    assert word in result.stdout and (tmp_path / "picture.png").stat().st_size > 3000

@@ -14,9 +14,9 @@ from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_bo
 from kinlab.arrays import Array
 from kinlab.kinematics import jacobian
 
-_POWERS = (1.0, 8.0, 64.0, 1024.0)
-"""Each minimisation starts where the one before ended; at 1024 the surrogate of six equal
-singular values is 0.2 % above the condition number, and its minimiser as near."""
+_POWERS = (1.0, 8.0, 64.0, 512.0, 4096.0, 3.2e4, 2.6e5, 2e6, 2e7)
+"""Each minimisation starts where the one before ended. At 2e7 the surrogate of six equal
+singular values is 1e-7 above the condition number, and its minimiser as near."""
 _STARTS = 12
 """The best conditioned seeds that are minimised, of those with different singular values: the
 same values mean the same pose up to a symmetry of the arm."""
