@@ -52,6 +52,7 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
+from kinlab.sweeps import SweepResult, sweep
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 
@@ -69,6 +70,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.singularity import describe_singularity, find_singularities
     from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
+    from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.single import ik
 
 __version__ = "0.1.0"
@@ -85,6 +87,7 @@ _LATER = {
     "find_singularities": "kinlab.analysis.singularity",
     "ik": "kinlab.inverse.single",
     "ik_batch": "kinlab.inverse.batch",
+    "ik_branches": "kinlab.inverse.branches",
     "manipulability": "kinlab.analysis.metrics",
     "nearest_singularity": "kinlab.analysis.nearest",
     "planar_boundary": "kinlab.analysis.boundary",
@@ -112,6 +115,7 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "SweepResult",
     "WorkspaceMap",
     "__version__",
     "action",
@@ -137,6 +141,7 @@ __all__ = [
     "hand_formula",
     "ik",
     "ik_batch",
+    "ik_branches",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
@@ -166,6 +171,7 @@ __all__ = [
     "singular_loci",
     "static_wrenches",
     "statics",
+    "sweep",
     "to_dh",
     "to_urdf",
     "view",
