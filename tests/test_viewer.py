@@ -147,7 +147,7 @@ def test_ellipsoid_axes():
         (lambda s: s.show([[0.0] * 6] * 2), StateError, "one pose"),
         (lambda s: s.show([np.nan] * 6), StateError, "finite"),
         (lambda s: s.frame("f", np.zeros((4, 4))), StateError, "frame 'f'"),
-        (lambda s: s.frame("a/b", np.eye(4)), OptionError, "without '/'"),
+        (lambda s: s.frame("", np.eye(4)), OptionError, "must have a name"),
         (lambda s: s.path("p", [[0, 0, 0]]), StateError, "N at least 2"),
         (lambda s: s.path("p", [[0, 0], [1, 1]]), StateError, "shape (2, 2)"),
         (lambda s: s.points("p", np.empty((0, 3))), StateError, "N at least 1"),
@@ -268,6 +268,7 @@ def test_view_in_a_notebook_serves_nothing(monkeypatch):
     assert cell.startswith("<iframe srcdoc=")
     inside = html.unescape(re.search(r'srcdoc="([^"]*)"', cell)[1])
     assert '"q": [0.1, 0.2]' in inside
+    assert "five-bar" in kl.view(kl.FiveBar.load("isotropic"))._repr_html_()
 
 
 def test_view_serves_and_says_where(monkeypatch, capsys):

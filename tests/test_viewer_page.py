@@ -260,13 +260,17 @@ def test_five_bar_stops_at_type_two(tab, tmp_path):  # noqa: F811
 
 @pytest.mark.parametrize("name", ["ur5", "talos_arm", "kinova"])
 def test_meshes_are_shown(tab, tmp_path, name):  # noqa: F811
-    """Collada and STL: the meshes are in the scene, and larger than nothing."""
+    """Collada and STL: the meshes are in the scene, and every part has a material to show it."""
     page = open_file(tab, Scene(kl.load(f"erd:{name}")), tmp_path)
     count = page.evaluate(
         """() => {
           let triangles = 0;
           kinlab.node(page.spec.body).traverse(o => {
             if (!o.geometry) return;
+            for (const material of [o.material].flat()) {
+              if (!material || !material.isMaterial) throw new Error("a part is invisible");
+            }
+            if ([o.material].flat(9).length !== [o.material].flat().length) throw new Error("nested");
             const g = o.geometry;
             triangles += (g.index ? g.index.count : g.attributes.position.count) / 3;
           });

@@ -227,7 +227,7 @@ const kinlab = (() => {
     const size = Math.abs(value);
     if (size < 1e-12) return "0";
     const plain = size >= 1e-3 && size < 1e5;
-    return plain ? String(Number(value.toPrecision(digits))) : value.toExponential(digits - 2);
+    return plain ? String(Number(value.toPrecision(digits))) : value.toExponential(Math.max(0, digits - 2));
   }
 
   const node = (path) => viewer.scene_tree.find(path.split("/").filter((x) => x)).object;
@@ -308,6 +308,15 @@ const kinlab = (() => {
     place(entry.path, [...T, 0, 0, 0, 1]);
   }
 
+  // meshcat merges the parts of a Collada file and gives each part one slot for its material; a
+  // part that has several materials itself would stay invisible. It gets the first of them.
+  function mendMaterials(root) {
+    root.traverse((object) => {
+      if (!Array.isArray(object.material)) return;
+      object.material = object.material.map((material) => [material].flat()[0]);
+    });
+  }
+
   // Fades the arm's bodies, so that lines inside them can be seen.
   const asLoaded = new WeakMap();
   function setOpacity(path, opacity) {
@@ -358,6 +367,7 @@ const kinlab = (() => {
     const overlay = document.getElementById("labels");
     const sliders = [];
     const report = {};
+    const boxes = {};
     const trace = [];
 
     function setJoints(wanted, { tell = true } = {}) {
@@ -414,6 +424,7 @@ const kinlab = (() => {
     function show(group, on) {
       if (on) active.add(group);
       else active.delete(group);
+      if (boxes[group]) boxes[group].checked = on;
       const seen = new Set([...active].flatMap((name) => spec.groups[name] || []));
       for (const path of Object.values(spec.groups).flat()) node(path).visible = seen.has(path);
       if (group === "trace") {
@@ -531,7 +542,7 @@ const kinlab = (() => {
     function check(group, text) {
       const box = element("input", { type: "checkbox",
         onchange: (event) => show(group, event.target.checked) });
-      box.checked = active.has(group);
+      boxes[group] = box;
       return element("label", { class: "check" }, box, text);
     }
 
@@ -576,7 +587,7 @@ const kinlab = (() => {
           element("span", { class: "swatch", style: `background: ${color}` }));
       }
       return element("div", { class: "line legend" }, element("span", {}, name),
-        element("span", {}, number(low), element("i"), number(high)));
+        element("span", {}, number(low, 2), element("i"), number(high, 2)));
     }
 
     // -- a live page tells its server where the sliders stand, and draws what the script adds
@@ -627,6 +638,7 @@ const kinlab = (() => {
       ...spec.legend.map(legend),
       ...dhTable(),
     );
+    mendMaterials(viewer.scene);
     for (const group of spec.shown) show(group, true);
 
     const [x, y, z] = spec.camera.position, target = spec.camera.target;

@@ -190,9 +190,9 @@ class Page:
         self._recorder.tell({"reload": True})
 
     def _node(self, name: str) -> str:
-        if not name or "/" in name:
-            raise OptionError(f"name {name!r}: give a word without '/'")
-        return f"{self._spec['root']}/added/{name}"
+        if not name.strip():
+            raise OptionError(f"name {name!r}: what is drawn must have a name")
+        return f"{self._spec['root']}/added/{name.replace('/', '_')}"
 
     def _points(self, name: str, points: ArrayLike, least: int = 1) -> Array:
         array = real_array(points, f"points {name!r}")
