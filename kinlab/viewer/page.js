@@ -258,7 +258,7 @@ const kinlab = (() => {
       old.geometry.dispose();
     }
     if (Math.abs(theta) < 1e-3) return;
-    const ring = new THREE.TorusGeometry(row.radius, row.radius / 18, 8, 40, Math.abs(theta));
+    const ring = new THREE.TorusGeometry(row.radius, row.radius / 24, 8, 40, Math.abs(theta));
     const paint = new THREE.MeshBasicMaterial({ color: row.color, side: THREE.DoubleSide });
     const mesh = new THREE.Mesh(ring, paint);
     mesh.scale.y = Math.sign(theta);
