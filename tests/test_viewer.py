@@ -145,7 +145,7 @@ def test_ellipsoid_axes():
     ("call", "error", "words"),
     [
         (lambda s: s.show([0.0]), StateError, "q has shape"),
-        (lambda s: s.show([[0.0] * 6] * 2), StateError, "one pose"),
+        (lambda s: s.show([[0.0] * 6] * 2), StateError, "give one pose"),
         (lambda s: s.show([np.nan] * 6), StateError, "finite"),
         (lambda s: s.frame("f", np.zeros((4, 4))), StateError, "frame 'f'"),
         (lambda s: s.frame("", np.eye(4)), OptionError, "must have a name"),
