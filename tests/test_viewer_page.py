@@ -301,3 +301,11 @@ def test_meshes_are_shown(tab, tmp_path, name):  # noqa: F811
         }"""
     )
     assert count > 5000
+
+
+def test_notebook_cell_works_inside_its_frame(tab):  # noqa: F811
+    tab.set_content(f"<h1>cell</h1>{Scene(kl.load('planar2r'))._repr_html_()}")
+    cell = tab.frames[1]
+    ready(cell)
+    slide(cell, 0, 0.5)
+    assert cell.evaluate("page.q") == [0.5, 0.0]
