@@ -11,6 +11,9 @@ from kinlab.check.headings import HOW, NOTES, counts
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import mathml
 
+LONG = 110
+"""Characters of LaTeX above which a form gets the whole width."""
+
 _STYLE = Path(__file__).with_name("report.css")
 
 
@@ -90,7 +93,8 @@ def _card(group: Group) -> str:
 
 def _form(name: str, latex: str) -> str:
     caption = f"<figcaption>{name}</figcaption>" if name else ""
-    return f'<figure class="{name or "only"}">{caption}{mathml(latex)}</figure>'
+    width = " long" if len(latex) > LONG else ""
+    return f'<figure class="{name or "only"}{width}">{caption}{mathml(latex)}</figure>'
 
 
 def _robots(group: Group) -> str:
@@ -109,10 +113,13 @@ def _robots(group: Group) -> str:
     if len(group.rows) <= 3:
         return table
     worst = group.worst
-    summary = f"{len(group.rows)} robots; largest error {size(worst.corrected.max_error)}"
+    summary = (
+        f"{len(group.rows)} robots; largest error {size(worst.corrected.max_error)} "
+        f"({escape(worst.robot)})"
+    )
     if printed:
         summary += f"; printed form off by {size(group.printed_error)} or more"
-    return f"<details><summary>{summary} ({escape(worst.robot)})</summary>{table}</details>"
+    return f"<details><summary>{summary}</summary>{table}</details>"
 
 
 def _sentence(text: str) -> str:

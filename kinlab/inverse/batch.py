@@ -78,14 +78,20 @@ def ik_batch(
         iterations = whole(max_iterations, "max_iterations", 1)
     flat = np.ascontiguousarray(targets[:, :3]).reshape(count, 12)
     q, outcome = np.empty((count, robot.n)), np.empty((count, 3), dtype=np.int64)
+    errors = np.empty((count, 2))
+
+    def verify(first: int, last: int) -> None:
+        part = slice(first, last)
+        _settle(arm, flat[part], q[part], outcome[part, 0])
+        measure_all(robot, q[part], targets[part], arm.weight, errors[part])
+
     over_rows(
         kernel.search_rows, count, *arm[:4], arm.wide, arm.weight,
-        lm_numbers(arm, tolerances, iterations, searches), arm.table, arm.starts,
-        flat, guesses.reshape(-1, robot.n),
-        q0 is not None, q, outcome, threads=threads, grain=_GRAIN,
+        lm_numbers(arm, tolerances, iterations, searches), arm.table, arm.starts, flat,
+        guesses.reshape(-1, robot.n), q0 is not None, q, outcome,
+        threads=threads, grain=_GRAIN, then=verify,
     )  # fmt: skip
-    _settle(arm, flat, q, outcome[:, 0], threads)
-    position, rotation = measure_all(robot, q, targets, arm.weight)
+    position, rotation = errors[:, 0].copy(), errors[:, 1].copy()
     met = (position <= tolerances[0]) & (rotation <= tolerances[1])
     success = met & (outcome[:, 0] != kernel.OUTSIDE)
     status = np.full(count, IKStatus.CONVERGED.value, dtype="<U24")
@@ -100,13 +106,12 @@ def ik_batch(
     )  # fmt: skip
 
 
-def _settle(arm: Setup, targets: Array, q: Array, ends: Any, threads: int | None) -> None:
+def _settle(arm: Setup, targets: Array, q: Array, ends: Any) -> None:
     """Brings the failed rows of q to rest at the closest pose, in place."""
     failed = np.flatnonzero((ends != kernel.CONVERGED) & (ends != kernel.OUTSIDE))
     if len(failed):
         part = q[failed]
-        over_rows(
-            kernel.settle_rows, len(failed), *arm[:4], arm.weight, methods.SETTLE,
-            targets[failed], part, threads=threads, grain=_GRAIN,
-        )  # fmt: skip
+        kernel.settle_rows(
+            *arm[:4], arm.weight, methods.SETTLE, targets[failed], part, 0, len(part)
+        )
         q[failed] = part

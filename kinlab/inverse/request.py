@@ -39,6 +39,15 @@ def _sound(pose, miss):  # type: ignore[no-untyped-def]
     return last and det > 0.0
 
 
+@kernel
+def _first_unsound(poses, miss):  # type: ignore[no-untyped-def]
+    """Index of the first of (N, 4, 4) that is no rigid transform; N where all are."""
+    for row in range(poses.shape[0]):
+        if not _sound(poses[row], miss):
+            return row
+    return poses.shape[0]
+
+
 def read_target(robot: Robot, pose: ArrayLike) -> Array:
     """A copy of one rigid transform, (4, 4).
 
@@ -68,9 +77,9 @@ def read_targets(robot: Robot, poses: ArrayLike) -> Array:
         raise StateError(f"{where}: shape {array.shape}; expected (N, 4, 4)")
     real_array(array, where)
     copy = np.array(array, dtype=np.float64, order="C")
-    for row, pose in enumerate(copy):
-        if not _sound(pose, TOLERANCES.orthonormal):
-            rigid_transform(pose, f"{where}[{row}]")
+    bad = int(_first_unsound(copy, TOLERANCES.orthonormal))
+    if bad < len(copy):
+        rigid_transform(copy[bad], f"{where}[{bad}]")
     return copy
 
 

@@ -45,9 +45,9 @@ def task_errors(pose, target, weight):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _errors_of_rows(poses, targets, weight, position, rotation):  # type: ignore[no-untyped-def]
+def _errors_of_rows(poses, targets, weight, errors):  # type: ignore[no-untyped-def]
     for row in range(poses.shape[0]):
-        position[row], rotation[row] = task_errors(poses[row], targets[row], weight)
+        errors[row, 0], errors[row, 1] = task_errors(poses[row], targets[row], weight)
 
 
 def measure(robot: Robot, q: Array, target: Array, weight: Array) -> tuple[float, float]:
@@ -66,16 +66,15 @@ def measure(robot: Robot, q: Array, target: Array, weight: Array) -> tuple[float
     return errors
 
 
-def measure_all(robot: Robot, q: Array, targets: Array, weight: Array) -> tuple[Array, Array]:
-    """As :func:`measure` for q (N, n) and targets (N, 4, 4): two arrays (N,)."""
+def measure_all(robot: Robot, q: Array, targets: Array, weight: Array, errors: Array) -> None:
+    """As :func:`measure` for q (N, n) and targets (N, 4, 4); errors (N, 2) is written."""
     model, data, tool = robot.model, scratch(robot), robot.tool
+    forward, place = pin.forwardKinematics, pin.updateFramePlacement
     poses = np.empty((len(q), 4, 4))
     for row, values in enumerate(q):
-        pin.forwardKinematics(model, data, values)
-        poses[row] = pin.updateFramePlacement(model, data, tool).homogeneous
-    position, rotation = np.empty(len(q)), np.empty(len(q))
-    _errors_of_rows(poses, targets, weight, position, rotation)
-    return position, rotation
+        forward(model, data, values)
+        poses[row] = place(model, data, tool).homogeneous
+    _errors_of_rows(poses, targets, weight, errors)
 
 
 def _pose(robot: Robot, q: Array) -> Array:
