@@ -52,10 +52,23 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
+from kinlab.sweeps import SweepResult, sweep
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 
 if TYPE_CHECKING:
+    from kinlab.analysis.boundary import planar_boundary
+    from kinlab.analysis.design import design_isotropic
+    from kinlab.analysis.determinant import factored_determinant
+    from kinlab.analysis.ellipsoids import ellipsoid
+    from kinlab.analysis.isotropy import find_isotropic
+    from kinlab.analysis.lengths import characteristic_length
+    from kinlab.analysis.loci import singular_loci
+    from kinlab.analysis.metrics import dexterity, manipulability
+    from kinlab.analysis.nearest import nearest_singularity
+    from kinlab.analysis.redundancy import redundancy
+    from kinlab.analysis.singularity import describe_singularity, find_singularities
+    from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
@@ -64,12 +77,28 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _LATER = {
+    "WorkspaceMap": "kinlab.analysis.workspace",
+    "characteristic_length": "kinlab.analysis.lengths",
+    "describe_singularity": "kinlab.analysis.singularity",
+    "design_isotropic": "kinlab.analysis.design",
+    "dexterity": "kinlab.analysis.metrics",
+    "ellipsoid": "kinlab.analysis.ellipsoids",
+    "factored_determinant": "kinlab.analysis.determinant",
+    "find_isotropic": "kinlab.analysis.isotropy",
+    "find_singularities": "kinlab.analysis.singularity",
     "ik": "kinlab.inverse.single",
     "ik_batch": "kinlab.inverse.batch",
     "ik_branches": "kinlab.inverse.branches",
     "ik_path": "kinlab.inverse.path",
+    "manipulability": "kinlab.analysis.metrics",
+    "nearest_singularity": "kinlab.analysis.nearest",
+    "planar_boundary": "kinlab.analysis.boundary",
+    "redundancy": "kinlab.analysis.redundancy",
+    "sample_workspace": "kinlab.analysis.workspace",
+    "singular_loci": "kinlab.analysis.loci",
 }
-"""Public names whose modules import heavy packages (numba): imported at first use."""
+"""Public names that few programs need, or whose modules import heavy packages (numba, sympy,
+scipy): imported at first use."""
 
 
 def __getattr__(name: str) -> Any:
@@ -88,9 +117,12 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "SweepResult",
+    "WorkspaceMap",
     "__version__",
     "action",
     "centrifugal_coefficients",
+    "characteristic_length",
     "christoffel",
     "com_accelerations",
     "com_jacobians",
@@ -98,6 +130,13 @@ __all__ = [
     "compare",
     "coriolis_coefficients",
     "coriolis_matrix",
+    "describe_singularity",
+    "design_isotropic",
+    "dexterity",
+    "ellipsoid",
+    "factored_determinant",
+    "find_isotropic",
+    "find_singularities",
     "fk",
     "forward_dynamics",
     "gravity_torques",
@@ -121,14 +160,21 @@ __all__ = [
     "link_potential_energies",
     "link_velocities",
     "load",
+    "manipulability",
     "mass_matrix",
     "mass_matrix_derivatives",
     "mass_matrix_dot",
     "momentum",
     "momentum_rate",
+    "nearest_singularity",
+    "planar_boundary",
     "potential_energy",
+    "redundancy",
+    "sample_workspace",
+    "singular_loci",
     "static_wrenches",
     "statics",
+    "sweep",
     "to_dh",
     "to_urdf",
     "view",

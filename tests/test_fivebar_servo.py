@@ -53,8 +53,10 @@ def test_worst_case_is_an_upper_bound_that_is_reached(fivebar):
         "torque": (sizing.torque.value, fivebar.inverse_dynamics),
         "note": (
             sizing.torque_note.value,
-            lambda xy, v, a: rotorless.inverse_dynamics(xy, 0 * v, a, model="massless")
-            - rotorless.inverse_dynamics(xy, 0 * v, 0 * a, model="massless"),
+            lambda xy, v, a: (
+                rotorless.inverse_dynamics(xy, 0 * v, a, model="massless")
+                - rotorless.inverse_dynamics(xy, 0 * v, 0 * a, model="massless")
+            ),
         ),
     }
     for name, (found, quantity) in pairs.items():

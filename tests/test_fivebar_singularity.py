@@ -184,7 +184,8 @@ def test_rectangle_with_a_bound_on_the_condition_number():
 def test_signed_distances():
     fivebar = LINKAGES["equal_links"]
     stretched = np.array([0.0, np.sqrt(0.09**2 - 0.031**2)])  # rods along x
-    above, below = stretched + [0, 1e-3], stretched - [0, 1e-3]
+    up = np.array([0.0, 1e-3])
+    above, below = stretched + up, stretched - up
     mode = (1, -1)
     far, near = distances(fivebar, above, mode), distances(fivebar, below, mode)
     assert np.sign(far.rods) == -np.sign(near.rods) != 0

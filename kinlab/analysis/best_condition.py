@@ -8,7 +8,6 @@ above and tends to it as p grows.
 from __future__ import annotations
 
 import numpy as np
-from scipy.optimize import minimize
 
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box
@@ -50,6 +49,8 @@ def lower_condition(
 
 
 def _descend(space: TaskSpace, length: float | None, q: Array, start: float) -> tuple[Array, float]:
+
+    from scipy.optimize import minimize  # `import kinlab` does not wait for scipy
 
     lower, upper = search_box(space.robot)
     open_length = length is None and space.mixed

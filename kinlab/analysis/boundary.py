@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from itertools import pairwise, product
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from kinlab.analysis.structure import Axes
 from kinlab.analysis.task_space import search_box
@@ -130,8 +129,8 @@ def _planar_chain(robot: Robot) -> _Chain:
     upright = np.abs(np.abs(axes.direction[:, 2]) - 1.0) < 1e-9
     if not (axes.turns.all() and upright.all()) or robot.n > _MOST_JOINTS:
         raise OptionError(
-            f"robot {robot.name!r}: the boundary in closed form is for 1 to {_MOST_JOINTS} revolute "
-            "joints about axes parallel to the base's z; other arms: workspace()"
+            f"robot {robot.name!r}: the boundary in closed form is for 1 to {_MOST_JOINTS} "
+            "revolute joints about axes parallel to the base's z; other arms: sample_workspace()"
         )
     tip = fk(robot, np.zeros(robot.n))[:2, 3]
     corners = np.concatenate([axes.point[:, :2], tip[np.newaxis]]) @ np.array([1.0, 1.0j])
@@ -258,6 +257,8 @@ def _joined(pieces: list[Arc]) -> list[Arc]:
 
 def _reachable(chain: _Chain, points: Array) -> Array:
     """Which points (P, 2) the tool can reach: Newton within the limits from the nearest samples."""
+    from scipy.spatial import cKDTree  # `import kinlab` does not wait for scipy
+
     n, targets = len(chain.links), points @ np.array([1.0, 1.0j])
     drawn = np.random.default_rng(0).uniform(chain.lower, chain.upper, (40_000, n))
     placed = chain.tool(drawn)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.task_space import read_length, read_task
 from kinlab.arrays import Array, frozen
 from kinlab.dynamics import mass_matrix
@@ -71,12 +71,12 @@ def ellipsoid(
     matrix = space.jacobian(state, size)
     if kind == "dynamic":
         require_inertia(robot)
-        matrix = np.linalg.solve(mass_matrix(robot, state), matrix.T).T
-    left, values, _ = np.linalg.svd(matrix)
-    sigma: Array = np.pad(np.asarray(values, dtype=np.float64), (0, space.m - len(values)))
+        matrix = np.asarray(np.linalg.solve(mass_matrix(robot, state), matrix.T).T, np.float64)
+    left: Array = np.linalg.svd(matrix)[0]
+    sigma: Array = singular_values(matrix)
     if kind == "force":
         flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
-        inverse = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
+        inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
         left, sigma = left[:, ::-1], inverse[::-1]
     return Ellipsoid(
         kind, space.name, space.suggested, size if space.mixed else None, frozen(left),

@@ -62,7 +62,7 @@ class IsotropySearch:
     """Answer of :func:`find_isotropic`.
 
     Attributes:
-        robot: its name. task: the task. suggested: kinlab chose the task.
+        robot: its name. task: the task. rows: its rows. suggested: kinlab chose the task.
         length: ``given``, ``optimal`` or ``none needed``.
         configurations: isotropic configurations, families listed once. Empty: none was found.
         best_q: the best conditioned configuration, isotropic or not, (n,).
@@ -75,6 +75,7 @@ class IsotropySearch:
 
     robot: str
     task: str
+    rows: tuple[int, ...]
     suggested: bool
     length: str
     configurations: tuple[IsotropicConfiguration, ...]
@@ -154,8 +155,8 @@ def find_isotropic(
         spread = (float(low), float(middle), float(high))
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     return IsotropySearch(
-        robot.name, space.name, space.suggested, how, configurations, best_q, best_condition,
-        best_length, seeds, seed, int(isotropic.sum()), spread,
+        robot.name, space.name, space.rows, space.suggested, how, configurations, best_q,
+        best_condition, best_length, seeds, seed, int(isotropic.sum()), spread,
     )  # fmt: skip
 
 

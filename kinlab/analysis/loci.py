@@ -28,6 +28,18 @@ _MOST = 6000
 """Steps after which one curve is cut: a closed curve of 100 turns."""
 
 
+_ALIKE = 0.95
+"""Cosine between null vectors above which two near points are on one curve."""
+
+
+_STRAIGHT = 0.995
+"""Least cosine between neighbouring tangents: a chord then leaves its curve by at most 1.3 % of
+the step, and a bend is not cut over to a neighbouring sheet."""
+_BESIDE = 0.03
+"""Distance from a traced curve, in steps, up to which a point belongs to it. The Puma with its
+arm folded has two sheets 0.07 steps apart with one null vector, which must stay two."""
+
+
 @dataclass(frozen=True)
 class Locus:
     """One curve of singular configurations.
@@ -79,11 +91,12 @@ def singular_loci(
     Args:
         robot: the robot.
         joints: names or indices (from 0) of two or three joints.
-        q: where the others are held, (n,); the middle of the limits where left out.
+        q: where the others are held, (n,); drawn within the limits where left out, since middles
+            and zeros are singular themselves in many arms. The answer states it.
         task: a name, a mask, or ``"auto"``.
         step: length of a step along a curve, rad (or m).
         levels: slices of the last joint, where there is one joint more.
-        seed: of the scan that finds a first point of each curve.
+        seed: of the drawn q, and of the scan that finds a first point of each curve.
 
     Raises:
         NameUnknownError, OptionError, StateError: unknown joint or task, a joint named twice, a
@@ -92,7 +105,8 @@ def singular_loci(
     space = read_reachable_task(robot, task)
     chosen = _read_joints(robot, joints)
     lower, upper = search_box(robot)
-    middle = 0.5 * (lower + upper) if q is None else joint_vector(robot, q, "q")
+    drawn = np.random.default_rng(seed).uniform(lower, upper)
+    middle = drawn if q is None else joint_vector(robot, q, "q")
     if middle.shape != (robot.n,):
         raise OptionError(f"robot {robot.name!r}: q has shape {middle.shape}; give one state")
     if not (step > 0.0 and levels >= 1):
@@ -151,12 +165,16 @@ def _trace_all(system: sets.SingularSystem, step: float, seed: int) -> tuple[Loc
     starts = sets.seeds(system, np.random.default_rng(seed), points=6)
     x, good = sets.project(system, starts)
     curves: list[Locus] = []
+    traced: list[Array] = []
     for point in x[good]:
-        if not any(_on(system, curve, point, step) for curve in curves):
-            curve = _trace(system, point, step)
-            extent = np.ptp(curve.q, axis=0).max()
-            if extent > step:  # where the rank drops by two, u alone may turn
+        if not any(_on(system, points, point, step) for points in traced):
+            points, closed = _trace(system, point, step)
+            curve = Locus(frozen(_continuous(system.space.robot, system.states(points))), closed)
+            if (
+                np.ptp(curve.q, axis=0).max() > step
+            ):  # where the rank drops by two, u may turn alone
                 curves.append(curve)
+                traced.append(points)
     return tuple(curves)
 
 
@@ -168,23 +186,27 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     return bool(np.all(sigma[:, -1] <= SINGULAR * sigma[:, 0]))
 
 
-def _on(system: sets.SingularSystem, curve: Locus, point: Array, step: float) -> bool:
-    apart = curve.q[:, list(system.moving)] - point[: len(system.moving)]
+def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:
+    """Whether ``point`` lies on a traced curve: near it in q, with the same null vector."""
+    free = len(system.moving)
+    chord = np.diff(points[:, :free], axis=0)
+    apart = point[:free] - points[:-1, :free]
     turns = revolute(system.space.robot)[list(system.moving)]
     apart = np.where(turns, np.arctan2(np.sin(apart), np.cos(apart)), apart)
-    # between two points of the curve; a crossing curve closer than this has another null vector
-    return bool(np.linalg.norm(apart, axis=1).min() < 0.6 * step)
+    size = np.maximum(np.einsum("ki,ki->k", chord, chord), 1e-300)
+    share = np.clip(np.einsum("ki,ki->k", apart, chord) / size, 0.0, 1.0)
+    distance = np.linalg.norm(apart - share[:, np.newaxis] * chord, axis=1)
+    alike = np.abs(points[:-1, free:] @ point[free:]) > _ALIKE
+    return bool(np.any((distance < _BESIDE * step) & alike))
 
 
-def _trace(system: sets.SingularSystem, start: Array, step: float) -> Locus:
-    """Both ways from a start, until the curve closes or leaves the limits."""
+def _trace(system: sets.SingularSystem, start: Array, step: float) -> tuple[Array, bool]:
+    """Both ways from a start, until the curve closes or leaves the limits: unknowns (K, k)."""
     forward, closed = _follow(system, start, step, 1.0)
-    points = forward
-    if not closed:
-        backward, _ = _follow(system, start, step, -1.0)
-        points = np.concatenate([backward[:0:-1], forward])
-    states = system.states(points)
-    return Locus(frozen(_continuous(system.space.robot, states)), closed)
+    if closed:
+        return forward, True
+    backward, _ = _follow(system, start, step, -1.0)
+    return np.concatenate([backward[:0:-1], forward]), False
 
 
 def _continuous(robot: Robot, states: Array) -> Array:
@@ -225,6 +247,10 @@ def _follow(
                 break  # an end, or a point where the curve has no tangent
             continue
         new = fixed[0]
+        ahead = _tangent(system, new, direction)
+        if float(ahead @ direction) < _STRAIGHT and size > 1e-3 * step:
+            size *= 0.5
+            continue
         if np.any(new[:free] < lower) or np.any(new[:free] > upper):
             end = _end_on_limit(system, here, new, lower, upper)
             if end is not None:
@@ -232,7 +258,7 @@ def _follow(
             return np.array(points), False
         points.append(new)
         travelled += size
-        direction = _tangent(system, new, direction)
+        direction = ahead
         size = min(step, 1.5 * size)
         apart = new[:free] - start[:free]
         apart = np.where(turns, np.arctan2(np.sin(apart), np.cos(apart)), apart)

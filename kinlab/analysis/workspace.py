@@ -34,7 +34,7 @@ class WorkspaceMap:
     """Tool positions with a measure at each.
 
     Attributes:
-        robot: its name. task: the task of the measure. metric: the measure.
+        robot: its name. task: the task of the measure. rows: its rows. metric: the measure.
         length: characteristic length in metres; the measure depends on it for mixed tasks.
         points: tool positions in the base, (N, 3), metres.
         values: the measure, (N,).
@@ -45,6 +45,7 @@ class WorkspaceMap:
 
     robot: str
     task: str
+    rows: tuple[int, ...]
     metric: str
     length: float
     points: Array = field(repr=False)
@@ -82,6 +83,7 @@ class WorkspaceMap:
                 raise FileError(f"{path}: a workspace map of another version")
             if points.shape != (len(values), 3):
                 raise FileError(f"{path}: {points.shape} points and {values.shape} values")
+            about["rows"] = tuple(about["rows"])
             return WorkspaceMap(points=points, values=values, **about)
         except FileError:
             raise
@@ -91,7 +93,7 @@ class WorkspaceMap:
             raise FileError(f"{path}: not a workspace map (.npz written by save)") from None
 
 
-_TEXT = ("robot", "task", "metric", "length", "sampling", "seed", "complete", "planar")
+_TEXT = ("robot", "task", "rows", "metric", "length", "sampling", "seed", "complete", "planar")
 
 
 @dataclass(frozen=True)
@@ -114,7 +116,7 @@ class BinnedMap:
     mean: Array
 
 
-def workspace(
+def sample_workspace(
     robot: Robot,
     task: Any = "auto",
     metric: str = "inverse_condition",
@@ -163,27 +165,28 @@ def workspace(
     except KeyboardInterrupt:
         pass  # what was computed is the answer, and says that it is a part
     return WorkspaceMap(
-        robot.name, space.name, metric, size, frozen(points[:done]), frozen(values[:done]),
-        sampling, seed, done == len(states), stays_in_plane(space),
+        robot.name, space.name, space.rows, metric, size, frozen(points[:done]),
+        frozen(values[:done]), sampling, seed, done == len(states), stays_in_plane(space),
     )  # fmt: skip
 
 
-def binned(chart: WorkspaceMap, cells: int = 120, plane: str = "") -> BinnedMap:
+def binned(chart: WorkspaceMap, cells: int = 0, plane: str = "") -> BinnedMap:
     """Bins a map over a plane.
 
     Args:
         chart: the map.
-        cells: along the longer side.
+        cells: along the longer side; 0 takes as many as the samples fill, at most 160.
         plane: ``"xy"``, ``"xz"``, ``"yz"`` or ``"rz"``; left out: xy for a planar arm, else rz.
 
     Raises:
-        NameUnknownError: another plane. OptionError: cells < 1, or an empty map.
+        NameUnknownError: another plane. OptionError: cells < 0, or an empty map.
     """
     plane = plane or ("xy" if chart.planar else "rz")
     if plane not in ("xy", "xz", "yz", "rz"):
         raise NameUnknownError(f"plane {plane!r}; choose one of 'xy', 'xz', 'yz', 'rz'")
-    if cells < 1 or not len(chart.points):
-        raise OptionError(f"cells {cells}, {len(chart.points)} points; both must be at least 1")
+    if cells < 0 or not len(chart.points):
+        raise OptionError(f"cells {cells}, {len(chart.points)} points; give cells >= 0 and points")
+    cells = cells or int(np.clip(np.sqrt(len(chart.points) / 12.0), 8, 160))
     x, y, z = chart.points.T
     named = {"x": x, "y": y, "z": z, "r": np.hypot(x, y)}
     a, b = named[plane[0]], named[plane[1]]

@@ -10,10 +10,10 @@ import sys
 
 import typer
 
-from kinlab.cli import check, fivebar, ik, robots, view
+from kinlab.cli import analysis, check, fivebar, ik, robots, view
 from kinlab.errors import KinlabError
 
-_GROUPS = (robots, ik, check, fivebar, view)
+_GROUPS = (robots, ik, check, analysis, fivebar, view)
 
 app = typer.Typer(
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",

@@ -31,6 +31,10 @@ _CONDITION = 3.0
 """Bound on the condition number of the workspace that `size` takes where none is given."""
 
 
+_RIGHT_ANGLE = 1e-5
+"""Pressure angle, rad, up to which a pose is called fully isotropic."""
+
+
 def register(app: typer.Typer) -> None:
     """Adds the commands of this file under ``kinlab fivebar``."""
     group = typer.Typer(
@@ -100,19 +104,22 @@ def analyse(
         f"l1 {_pair(fivebar.l1)} m, l2 {_pair(fivebar.l2)} m, e {fivebar.e:.6g} m; "
         f"reachable area {reachable_area(fivebar):.6g} m²"
     )
-    table = _table("mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic poses, m",
-                   left=(0, 3))  # fmt: skip
+    table = _table("mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic", left=(0,))
+    poses = {each: isotropic_poses(fivebar, each) for each in MODES}
     for each in MODES:
-        poses = [f"({_fixed(p.xy[0])}, {_fixed(p.xy[1])})" for p in isotropic_poses(fivebar, each)]
-        areas = workspace_map(fivebar, each).area
-        table.add_row(_signs(each), *(f"{a:.4g}" for a in areas), ", ".join(poses) or "none")
+        areas = (f"{area:.4g}" for area in workspace_map(fivebar, each).area)
+        table.add_row(_signs(each), *areas, str(len(poses[each])))
     console.print(table)
+    for pose in poses[signs]:
+        place = f"({_fixed(pose.xy[0])}, {_fixed(pose.xy[1])}) m"
+        full = ", fully (pressure angles 0)" if max(pose.pressure) < _RIGHT_ANGLE else ""
+        console.print(f"isotropic in mode {_signs(signs)}: {place}{full}")
     circle = largest_circle(fivebar, signs, assembly)
     box = largest_rectangle(fivebar, signs, assembly)
     console.print(f"free of singularities in mode {_signs(signs)}, assembly {assembly:+d}:")
     console.print(
         f"  largest circle: radius {circle.radius:.6g} m about "
-        f"({circle.centre[0]:.6g}, {circle.centre[1]:.6g}) m"
+        f"({_fixed(circle.centre[0])}, {_fixed(circle.centre[1])}) m"
     )
     console.print(
         f"  largest rectangle: x {box.x_min:.6g} to {box.x_max:.6g}, "
@@ -172,11 +179,10 @@ def size(
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = Console(highlight=False)
+    box = workspace or largest_rectangle(fivebar, signs, max_condition=_CONDITION)
     if workspace is None:
-        box = largest_rectangle(fivebar, signs, max_condition=_CONDITION)
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
-        workspace = tuple(box)
-    sizing = fivebar.size_servo(workspace, v_max, a_max, motor, gear_ratio, signs, efficiency)
+    sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
@@ -222,15 +228,15 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
 
 def _fits(sizing: ServoSizing) -> Table:
     table = _table(
-        "motor", "gear", "gear ≤", "peak N m", "RMS N m", "r/min", "inertia", "margin",
-        "limited by", left=(0, 8),
+        "motor", "gear", "peak N m", "RMS N m", "r/min", "inertia", "margin", "limited by",
+        left=(0, 7),
     )  # fmt: skip
     for fit in sizing.fits:
+        margin = f"{fit.margin:.3g}"
         table.add_row(
-            fit.motor.name, f"{fit.gear_ratio:.4g}", f"{fit.gear_ratio_bound:.4g}",
-            f"{fit.peak:.4g}", f"{fit.rms:.4g}", f"{fit.speed:.4g}", f"{fit.inertia_ratio:.3g}",
-            f"{fit.margin:.3g}" if fit.fits else f"[red]{fit.margin:.3g}[/red]",
-            fit.limit,
+            fit.motor.name, f"{fit.gear_ratio:.3g}", f"{fit.peak:.3g}", f"{fit.rms:.3g}",
+            f"{fit.speed:.0f}", f"{fit.inertia_ratio:.3g}",
+            margin if fit.fits else f"[red]{margin}[/red]", fit.limit,
         )  # fmt: skip
     return table
 

@@ -56,7 +56,7 @@ def workspace_picture(
     _loci(axes, linkage, mode)
     ring = _circle(circle.centre, circle.radius)
     axes.plot(
-        *ring.T, color="white", lw=1.8, label=f"largest free circle, r = {circle.radius:.3g} m"
+        *ring.T, color="black", lw=1.6, label=f"largest free circle, r = {circle.radius:.3g} m"
     )
     box = largest_rectangle(linkage, mode, assembly)
     _box(axes, box, f"largest free rectangle, {box.area:.3g} m²")
@@ -127,7 +127,7 @@ def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     rms = cycle.rms_torque.max()
     torque.axhline(rms, color="0.4", lw=1.0, ls=":")
     torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
-    torque.legend(fontsize=8, loc="best")
+    figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
         f"{linkage.name}: {60 / cycle.path.duration:.0f} cycles a minute, "
         f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
@@ -150,27 +150,22 @@ def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     arms = arms - np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
     best = np.sqrt(sizing.eta[np.isfinite(sizing.eta)])
     low = 0.5 * min([sizing.sigma[0], *best])
-    high = 2.0 * max([sizing.sigma[1], *best])
-    sigma = np.geomspace(low, high, 400)
+    high = 1.5 * max([sizing.sigma[1], *best])
+    sigma = np.linspace(low, high, 400)
     for leg, (arm, eta) in enumerate(zip(arms, sizing.eta, strict=True)):
-        same = leg == 1 and arm == arms[0]
-        if same:
-            continue
+        if leg == 1 and arm == arms[0]:
+            continue  # the same curve again
         name = "both cranks" if arms[0] == arms[1] else f"crank {leg + 1}"
-        axes.plot(sigma, arm * sigma + linkage.payload / sigma, color=_LEGS[leg], label=name)
+        label = f"{name}: η = m/I$_A$ = {eta:.3g} m⁻²"
+        axes.plot(sigma, arm * sigma + linkage.payload / sigma, color=_LEGS[leg], label=label)
         if np.isfinite(eta) and eta > 0:
-            axes.plot(
-                np.sqrt(eta), 2.0 * np.sqrt(arm * linkage.payload), marker="o", color=_LEGS[leg]
-            )
-            axes.annotate(
-                f"√η = {np.sqrt(eta):.3g}, η = m/I$_A$ = {eta:.3g} m⁻²",
-                (np.sqrt(eta), 2.0 * np.sqrt(arm * linkage.payload)),
-                textcoords="offset points", xytext=(0, -16), ha="center", fontsize=9,
-            )  # fmt: skip
+            least = 2.0 * np.sqrt(arm * linkage.payload)
+            label = f"least at σ = √η = {np.sqrt(eta):.3g} rad/m"
+            axes.plot(np.sqrt(eta), least, "o", color=_LEGS[leg], label=label)
     axes.axvspan(*sizing.sigma, color="tab:green", alpha=0.18, label="J in the workspace")
-    axes.set(xscale="log", yscale="log", title=f"{linkage.name}: torque per acceleration")
+    axes.set(title=f"{linkage.name}: torque per acceleration")
     axes.set(xlabel="singular value σ of J, rad/m", ylabel="I$_A$ σ + m/σ, kg m")
-    axes.margins(y=0.2)
+    axes.set_ylim(bottom=0.0)
     axes.legend(fontsize=9)
     return figure
 
@@ -206,7 +201,7 @@ def _circle(centre: tuple[float, float], radius: float) -> Array:
     return np.array(centre) + radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
 
 
-def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "white") -> None:
+def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
     x, y = box[:2], box[2:]
     axes.plot([x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]],
               color=colour, lw=1.8, ls="-.", label=label)  # fmt: skip

@@ -88,5 +88,5 @@ def plot_ellipse(
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
     axes.grid(alpha=0.25)
-    axes.legend(loc="best", fontsize=9)
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
     return axes

@@ -73,7 +73,7 @@ def plot_loci(robot: Robot, loci: Loci, axes: Any = None) -> Any:
     for curve in loci.curves:
         angles = np.degrees(curve.q[:, list(loci.joints)])
         wrapped = np.where(
-            upper - lower >= 360.0 - 1e-6, np.mod(angles + 180.0, 360.0) - 180.0, angles
+            upper - lower >= 360.0 - 1e-6, np.mod(angles + 180.001, 360.0) - 180.001, angles
         )
         jumps = np.abs(np.diff(wrapped, axis=0)).max(axis=1) > 180.0
         for piece in np.split(wrapped, np.flatnonzero(jumps) + 1):

@@ -24,7 +24,7 @@ def plot_map(
     boundary: PlanarBoundary | None = None,
     curves: Sequence[Array] = (),
     plane: str = "",
-    cells: int = 120,
+    cells: int = 0,
     axes: Any = None,
 ) -> Any:
     """The best measure in each cell of a plane.
@@ -56,7 +56,7 @@ def plot_map(
 
 
 def plot_cloud(chart: WorkspaceMap, *, most: int = 6000, axes: Any = None) -> Any:
-    """The samples as a cloud in space, coloured by the measure.
+    """The samples as a cloud in space, coloured by the measure, cut open towards the viewer.
 
     Args:
         chart: the map. most: points drawn, evenly taken.
@@ -66,9 +66,11 @@ def plot_cloud(chart: WorkspaceMap, *, most: int = 6000, axes: Any = None) -> An
         The axes.
     """
     axes = axes if axes is not None else new_axes(f"{chart.robot}: task {chart.task}", three_d=True)
-    each = max(1, len(chart.values) // most)
-    x, y, z = chart.points[::each].T
-    shown = axes.scatter(x, y, z, c=chart.values[::each], s=3, cmap="viridis", vmin=0.0, lw=0)
+    behind = np.flatnonzero(~((chart.points[:, 0] > 0.0) & (chart.points[:, 1] < 0.0)))
+    chosen = behind[:: max(1, len(behind) // most)]
+    x, y, z = chart.points[chosen].T
+    shown = axes.scatter(x, y, z, c=chart.values[chosen], s=6, depthshade=False,
+                          cmap="viridis", vmin=0.0, lw=0)  # fmt: skip
     axes.figure.colorbar(shown, ax=axes, label=_METRICS[chart.metric], shrink=0.7, pad=0.1)
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
@@ -90,7 +92,7 @@ def _lines(
             axes.plot(*arc.points(200).T, color="black", lw=1.4, ls="--",
                       label=None if i else "boundary")  # fmt: skip
     if labelled or boundary is not None:
-        axes.legend(loc="upper right", fontsize=9)
+        axes.figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
 
 
 def _in_plane(curve: Array, plane: str) -> tuple[Array, Array]:

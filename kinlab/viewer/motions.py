@@ -188,7 +188,8 @@ def _on_locus(robot: Robot, det: Callable[[Array], Array], rng: np.random.Genera
             one = middle
         else:
             two = middle
-    return one
+    found: Array = one
+    return found
 
 
 def _slope(det: Callable[[Array], Array], q: Array) -> Array:
