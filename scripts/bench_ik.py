@@ -150,6 +150,9 @@ def parties(robot: kl.Robot, count: int) -> dict[str, tuple[Callable[[], Any], i
             answer = kl.ik(robot, pose, **options)
             return answer.q if answer.success else None
 
+        away = np.eye(4)
+        away[:3, 3] = 100.0
+        solve(away)  # compiles what only a failed search runs
         return solve
 
     found: dict[str, tuple[Callable[[], Any], int, str]] = {
