@@ -295,7 +295,7 @@ def markdown(report: dict[str, Any]) -> str:
         f"time of the calling thread, for ik_batch wall time on {report['processors']} processors. "
         f"Peers: {', '.join(f'{k} {v}' for k, v in report['peers'].items()) or 'none'}.",
         "",
-        "| arm | party | poses | success % | false | worst mm | median µs | mean µs | p99 µs |",
+        "| arm | party | poses | success % | false * | worst mm | median µs | mean µs | p99 µs |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for name, arm in report["arms"].items():
@@ -310,6 +310,8 @@ def markdown(report: dict[str, Any]) -> str:
                 row.get("p99_us", ""),
             ]  # fmt: skip
             lines.append("| " + " | ".join(map(str, cells)) + " |")
+    lines += ["", "\\* Called solved, but outside the limits or the tolerance. Modern Robotics and "
+              "ikpy's least squares do not look at limits."]  # fmt: skip
     if report["ratios"]:
         lines += [
             "",
