@@ -143,6 +143,14 @@ def test_nearest_on_arms_where_it_is_known():
     assert redundant.distance == pytest.approx(np.hypot(0.9, 0.5), abs=1e-9)
 
 
+def test_nearest_counts_turns_of_a_wide_joint():
+    robot = kl.load("puma560")  # joint 4 goes to 266°
+    q = np.array([0.1, 0.3, -0.8, 4.2, 0.05, 0.1])
+    near = kl.nearest_singularity(robot, q)
+    assert near.distance == pytest.approx(0.05, abs=1e-9) and near.singularity.kind == "wrist"
+    assert near.singularity.q[3] == pytest.approx(4.2, abs=1e-9)
+
+
 def test_nearest_is_no_farther_than_a_dense_scan_of_the_factors():
     robot = kl.load("puma560")
     q = np.array([-0.21, 0.26, 0.714, 1.369, -0.647, 0.446])

@@ -42,8 +42,8 @@ def ik(
 ) -> None:
     """Find joint positions that bring the tool to a pose.
 
-    Exit code 1 where the pose is not met; one that is met only outside the limits is printed
-    with a warning.
+    Exit code 1 where the pose is not met within the limits; the closest pose found, or one that
+    is met only outside the limits, is printed all the same.
     """
     import numpy as np
 
@@ -94,7 +94,7 @@ def ik(
     ]
     if broken:
         typer.echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
-    elif not answer.success:
+    if not answer.success:
         raise typer.Exit(1)
 
 
