@@ -52,7 +52,6 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
-from kinlab.sweeps import SweepResult, sweep
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 
@@ -71,11 +70,14 @@ if TYPE_CHECKING:
     from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.path import ik_path
     from kinlab.inverse.single import ik
+    from kinlab.sweeps.run import SweepResult, sweep
 
 __version__ = "0.1.0"
 
 _LATER = {
+    "SweepResult": "kinlab.sweeps.run",
     "WorkspaceMap": "kinlab.analysis.workspace",
     "characteristic_length": "kinlab.analysis.lengths",
     "describe_singularity": "kinlab.analysis.singularity",
@@ -94,6 +96,8 @@ _LATER = {
     "redundancy": "kinlab.analysis.redundancy",
     "sample_workspace": "kinlab.analysis.workspace",
     "singular_loci": "kinlab.analysis.loci",
+    "ik_path": "kinlab.inverse.path",
+    "sweep": "kinlab.sweeps.run",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""
@@ -142,6 +146,7 @@ __all__ = [
     "ik",
     "ik_batch",
     "ik_branches",
+    "ik_path",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",

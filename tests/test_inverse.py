@@ -353,6 +353,16 @@ def test_tasks_an_arm_cannot_have():
         kl.ik(kl.load("planar3r"), GOOD, task="position")
 
 
+def test_the_task_that_suits_the_arm():
+    for name, task in (("planar2r", "xy"), ("planar3r", "xytheta"), ("puma560", "pose")):
+        robot = kl.load(name)
+        _, T = poses(robot, 3, 17)
+        for pose in T:
+            assert np.array_equal(
+                kl.ik(robot, pose, task="auto").q, kl.ik(robot, pose, task=task).q
+            )
+
+
 def test_no_robot_and_a_floating_base():
     with pytest.raises(StructureError, match=r"kl\.load"):
         kl.ik(pin.Model(), GOOD)

@@ -71,7 +71,7 @@ def skew_residue(robot: Robot, q: Any, v: Any) -> Array:
     twice = 2.0 * dynamics.coriolis_matrix(robot, q, v)
     size = np.max(np.abs(dynamics.mass_matrix(robot, q)), axis=(1, 2)) * np.max(np.abs(v), axis=1)
     part = (rate - twice) + np.swapaxes(rate - twice, -1, -2)
-    share: Array = part / np.where(size > 0.0, size, 1.0)[:, None, None]
+    share: Array = part / size[:, None, None]
     return share
 
 

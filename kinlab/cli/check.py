@@ -136,12 +136,14 @@ def _print_failures(console: Console, done: Sequence[Row]) -> None:
 
 
 def _print_closing(console: Console, done: Sequence[Row], formulas: int) -> None:
+    from kinlab.check.headings import several
+
     wrong = sum(not row.ok for row in done)
     misprints = len({id(row.formula) for row in done if row.printed is not None})
     agree = sum(row.corrected.agrees for row in done)
-    text = f"\n{formulas} formulas, {len(done)} rows: {agree} agree to 1e-9"
+    text = f"\n{several(formulas, 'formula')}, {several(len(done), 'row')}: {agree} agree to 1e-9"
     if misprints:
-        text += f", {misprints} misprints shown"
+        text += f", {several(misprints, 'misprint')} shown"
     console.print(text + (f", {wrong} WRONG" if wrong else ""), highlight=False)
 
 

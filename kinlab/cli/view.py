@@ -125,6 +125,8 @@ def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
     if port not in (0, server.port):
         typer.echo(f"port {port} is taken; using {server.port}")
     typer.echo(f"{name}: {server.url}   (Ctrl-C ends)")
+    if host not in ("127.0.0.1", "::1", "localhost"):
+        typer.echo(f"note: {host} is not loopback; others on the network can open this page")
     if os.environ.get("SSH_CONNECTION"):
         typer.echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
     if browser and not open_browser(server.url):

@@ -15,7 +15,7 @@ from kinlab.arrays import Array
 from kinlab.inverse import kernel
 from kinlab.inverse.methods import Step
 from kinlab.inverse.result import IKHistory
-from kinlab.inverse.setup import Setup
+from kinlab.inverse.setup import Setup, beyond_reach
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 
@@ -93,13 +93,6 @@ def search(
             if energy < best:
                 best, best_q, best_end = energy, q, end
     return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
-
-
-def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
-    """Whether the target is farther from the first joint than the arm is long."""
-    asked = arm.weight[:3] > 0.0
-    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
-    return float(np.linalg.norm(away)) > arm.reach + tolerance
 
 
 def _one_search(

@@ -8,6 +8,7 @@ import signal
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import (
+    ALL_COMPLETED,
     FIRST_COMPLETED,
     BrokenExecutor,
     Executor,
@@ -97,15 +98,15 @@ def spread(
     deaths = 0
     try:
         while waiting or flying:
+            broken = False
             try:
                 while waiting and len(flying) < pool.in_flight:
                     flying[pool.executor.submit(run_chunk, *arguments(waiting[0]))] = waiting[0]
                     waiting.popleft()
-                broken = False
             except BrokenExecutor:
                 broken = True
-            done = wait(flying, return_when=FIRST_COMPLETED).done
-            for future in done:
+            # a broken pool ends all its futures at once: collect them before it is renewed
+            for future in wait(flying, None, ALL_COMPLETED if broken else FIRST_COMPLETED).done:
                 run = flying.pop(future)
                 try:
                     columns = future.result()
@@ -115,12 +116,9 @@ def spread(
                 else:
                     deaths = 0
                     yield run, columns
-            if broken:
+            if broken and not flying:
                 deaths += 1
-                lost = [*flying.values()]
-                waiting.extendleft(reversed(lost))
-                flying.clear()
-                pool.renew(deaths, sorted(waiting)[: max(1, len(lost))])
+                pool.renew(deaths, sorted(waiting))
     finally:
         for future in flying:
             future.cancel()

@@ -170,7 +170,7 @@ def sweep(
             first = {name: column[:1] for name, column in columns.items()}
             parts.write(run, columns)
             advance(_rows(run, source.count))
-    assert first is not None
+    assert first is not None and not missing(parts.runs(), blocks, blocks)
     return SweepResult(tuple(first), source, parts)
 
 
