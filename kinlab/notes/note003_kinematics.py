@@ -54,7 +54,8 @@ def _c_printed(loop: Loop, theta: Array, xy: Array) -> Any:
     printed=Printed(
         _c_printed,
         "the term 2 s e x is missing",
-        r"2(s e - x) l_1 \cos\theta - 2 y l_1 \sin\theta = l_2^2 - l_1^2 - e^2 - x^2 - y^2",
+        r"2(s e - x) l_1 \cos\theta - 2 y l_1 \sin\theta = l_2^2 - l_1^2 - e^2 - x^2 - y^2"
+        r" \wrong{\text{ (} 2 s e x \text{ missing)}}",
         robots=("isotropic", "unequal", "plotclock", "equal_links"),
     ),
     remark="With e = 0 the missing term is nothing.",

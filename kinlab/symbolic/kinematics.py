@@ -43,17 +43,7 @@ def jacobian(arm: SymbolicArm, frame: str = "base") -> sympy.Matrix:
     Raises:
         NameUnknownError: another frame.
     """
-    if frame not in FRAMES:
-        raise NameUnknownError(f"frame {frame!r} is unknown; {near(str(frame), FRAMES)}")
-    tool = tool_frame(arm)
-    point = column(tool, 3)
-    if frame == "spatial":
-        point = [arm.trig.ring.zero] * 3
-    rows = jacobian_at(arm, point)
-    if frame == "tool":
-        turn = [[tool[c][r] for c in range(3)] for r in range(3)]
-        rows = [*product(arm, turn, rows[:3]), *product(arm, turn, rows[3:])]
-    return as_matrix(arm, rows)
+    return as_matrix(arm, jacobian_grid(arm, frame))
 
 
 @lru_cache(maxsize=32)
@@ -79,6 +69,21 @@ def axes(arm: SymbolicArm, placed: list[Grid]) -> list[tuple[list[Poly], list[Po
         axis = [-z if link.flip else z for z in column(frame, 2)]
         out.append((axis, column(frame, 3), link.joint == "revolute"))
     return out
+
+
+def jacobian_grid(arm: SymbolicArm, frame: str) -> Grid:
+    """:func:`jacobian` as polynomials."""
+    if frame not in FRAMES:
+        raise NameUnknownError(f"frame {frame!r} is unknown; {near(str(frame), FRAMES)}")
+    tool = tool_frame(arm)
+    point = column(tool, 3)
+    if frame == "spatial":
+        point = [arm.trig.ring.zero] * 3
+    rows = jacobian_at(arm, point)
+    if frame == "tool":
+        turn = [[tool[c][r] for c in range(3)] for r in range(3)]
+        rows = [*product(arm, turn, rows[:3]), *product(arm, turn, rows[3:])]
+    return rows
 
 
 def jacobian_at(arm: SymbolicArm, point: list[Poly], upto: int | None = None) -> Grid:

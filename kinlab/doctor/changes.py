@@ -1,0 +1,87 @@
+"""A reading: one thing that people take differently, and what the engine says if one does.
+
+A reading changes one of four things on the way to an answer: the robot (a table read in the
+other convention), the arguments (degrees), the engine's question (another frame), or the answer
+(transposed). Two readings in different places, or two robots' changes, can be combined.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from kinlab.arrays import Array
+from kinlab.check.quantity import Quantity
+from kinlab.robot import Robot
+
+Stage = Literal["robot", "arguments", "engine", "answer"]
+Arguments = dict[str, Array]
+Engine = Callable[[Robot, Arguments], Array]
+
+
+@dataclass(frozen=True)
+class Reading:
+    """One known confusion.
+
+    Attributes:
+        kind: its name in the table of readings: ``"degrees"``, ``"frame"``, ...
+        sentence: what the formula does, in plain words, to follow "the formula ".
+        stage: what it changes.
+        apply: by stage: Robot -> Robot; arguments -> arguments; engine -> engine;
+            answer -> answer (both with the leading axis of states).
+        cost: how far-fetched it is.
+        place: the link, joint or row it is about; ``""`` for the whole.
+    """
+
+    kind: str
+    sentence: str
+    stage: Stage
+    apply: Callable[[Any], Any]
+    cost: float = 1.0
+    place: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """What readings need to know of a comparison.
+
+    Attributes:
+        robot: the robot.
+        quantity: the whole quantity, without an index.
+        arguments: the states, by name, (N, ...).
+        hand: the hand formula's answers, (N, ...).
+        index: which entries of the quantity the hand formula is.
+    """
+
+    robot: Robot
+    quantity: Quantity
+    arguments: Arguments
+    hand: Array
+    index: tuple[Any, ...] = ()
+
+    def engine(self, robot: Robot, arguments: Arguments) -> Array:
+        """The engine's whole answer."""
+        answer: Array = self.quantity.engine(robot, *arguments.values())
+        return answer
+
+    def few(self, count: int) -> Case:
+        """The first states only."""
+        short = {name: stack[:count] for name, stack in self.arguments.items()}
+        return Case(self.robot, self.quantity, short, self.hand[:count], self.index)
+
+    def answer(self, readings: tuple[Reading, ...]) -> Array:
+        """What the engine says under the readings; entries outside the index are cut away."""
+        robot, arguments, engine = self.robot, self.arguments, self.engine
+        for reading in readings:
+            if reading.stage == "robot":
+                robot = reading.apply(robot)
+            elif reading.stage == "arguments":
+                arguments = reading.apply(arguments)
+            elif reading.stage == "engine":
+                engine = reading.apply(engine)
+        values = engine(robot, arguments)
+        for reading in readings:
+            if reading.stage == "answer":
+                values = reading.apply(values)
+        return values[(slice(None), *self.index)]

@@ -1,0 +1,184 @@
+"""The engine's quantities as derived formulas, entry by entry, for arms with a DH table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+import sympy
+
+from kinlab.arrays import Array
+from kinlab.dh import DHTable
+from kinlab.doctor import tree
+from kinlab.doctor.tree import Node
+from kinlab.symbolic import dynamics, fourier, kinematics
+from kinlab.symbolic.arm import SymbolicArm, arm
+from kinlab.symbolic.trig import Poly
+
+_DYNAMIC_JOINTS = 3
+"""More joints make the expressions of M, C, g and tau too long to search for a slip in."""
+_KINEMATIC_JOINTS = 7
+_LONGEST = 1500
+"""Terms of one entry above which it is not searched."""
+
+
+def _jacobian(frame: str) -> Callable[[SymbolicArm], Any]:
+    return lambda a: kinematics.jacobian_grid(a, frame)
+
+
+def _column(grid: Any) -> Any:
+    return [row[0] for row in grid]
+
+
+def _planar_pose(a: SymbolicArm) -> Any:
+    pose = kinematics.tool_frame(a)
+    return [pose[0][3], pose[1][3], pose[0][0], pose[1][0]]
+
+
+def _circling(a: SymbolicArm) -> Any:
+    speeds = [[a.trig.gens[s.name]] for s in a.qd]
+    return _column(kinematics.product(a, dynamics.coriolis_grid(a), speeds))
+
+
+_KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
+    "fk": kinematics.tool_frame,
+    "jacobian": _jacobian("base"),
+    "jacobian_tool": _jacobian("tool"),
+    "jacobian_spatial": _jacobian("spatial"),
+    "planar_pose": _planar_pose,
+    "planar_jacobian": lambda a: [_jacobian("base")(a)[r] for r in (0, 1, 5)],
+}
+_DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
+    "mass_matrix": dynamics.mass_grid,
+    "coriolis_matrix": dynamics.coriolis_grid,
+    "coriolis_torques": _circling,
+    "gravity_torques": lambda a: _column(dynamics.gravity_column(a)),
+    "inverse_dynamics": lambda a: _column(dynamics.torque_column(a)),
+    "kinetic_energy": dynamics.kinetic_poly,
+    "potential_energy": dynamics.potential_poly,
+}
+
+LETTERS = {"q": "q", "v": "qd", "a": "qdd"}
+"""Arguments of the quantities and the letters of their symbols."""
+
+
+@dataclass(frozen=True, eq=False)
+class Derivation:
+    """A quantity of one arm, derived.
+
+    Attributes:
+        arm: the arm with its names.
+        polys: the polynomials, an object array of the quantity's shape.
+    """
+
+    arm: SymbolicArm
+    polys: Any
+
+    def tree(self, poly: Poly) -> Node:
+        """One entry as a sum of terms."""
+        return tree.from_sympy(self.arm.expression(poly))
+
+    def collected(self, poly: Poly) -> Node:
+        """One entry by speeds and accelerations: (m2*l2**2 + m2*l1*l2*cos(q2))*qdd2 + ..."""
+        return collected(self.arm, poly)
+
+    def grouped(self, poly: Poly) -> Node:
+        """One entry with equal joint functions collected: (m1 + m2)*l1**2*qdd1 + ..."""
+        return grouped(self.arm, poly)
+
+
+@lru_cache(maxsize=64)
+def derivation(table: DHTable, quantity: str) -> Derivation | None:
+    """The quantity (without index) derived for the table, or None where none is offered."""
+    if quantity in _KINEMATIC and table.n <= _KINEMATIC_JOINTS:
+        make = _KINEMATIC[quantity]
+    elif quantity in _DYNAMIC and table.n <= _DYNAMIC_JOINTS:
+        make = _DYNAMIC[quantity]
+    else:
+        return None
+    named = arm(table)
+    return Derivation(named, _objects(make(named)))
+
+
+def searchable(poly: Poly) -> bool:
+    """Whether an entry is short enough to look for slips in."""
+    return len(poly) <= _LONGEST
+
+
+def environment(derived: Derivation, states: dict[str, Array]) -> dict[str, Array]:
+    """Values of every name: the joints' from the states, the parameters' from the table."""
+    count = len(next(iter(states.values())))
+    at = {name: np.full(count, derived.arm.values[name]) for name in derived.arm.trig.parameters}
+    for argument, stack in states.items():
+        if argument in LETTERS:
+            for i in range(derived.arm.n):
+                at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+    return at
+
+
+def grouped(a: SymbolicArm, poly: Poly) -> Node:
+    """Sums the parameters in front of each product of joint functions, common factors outside."""
+    parameters = {str(name) for name in a.trig.parameters}
+    fronts: dict[Any, list[Any]] = {}
+    for term, factor in fourier.terms(a.trig, poly, a.groups).items():
+        joint: list[Any] = []
+        front: list[Any] = [factor]
+        for part in term.as_ordered_factors():
+            inside = {s.name for s in part.free_symbols}
+            (front if inside <= parameters else joint).append(part)
+        key = tuple(sorted(joint, key=str))
+        fronts.setdefault(key, []).append(front)
+    return tree.add(*(_outside(key, rows) for key, rows in fronts.items()))
+
+
+def collected(a: SymbolicArm, poly: Poly) -> Node:
+    """Sums what stands in front of each product of speeds and accelerations."""
+    rates = {s.name for s in (*a.qd, *a.qdd)}
+    fronts: dict[Any, list[Node]] = {}
+    for term, factor in fourier.terms(a.trig, poly, a.groups).items():
+        parts = [p for p in term.as_ordered_factors() if {s.name for s in p.free_symbols} & rates]
+        rest = tree.from_sympy(factor * term / sympy.Mul(*parts))
+        fronts.setdefault(tuple(sorted(parts, key=str)), []).append(rest)
+    pieces = []
+    for parts, rests in fronts.items():
+        whole, speeds = tree.add(*rests), [tree.from_sympy(p) for p in parts]
+        pieces += [tree.mul(whole, *speeds)] if speeds else rests
+    return tree.add(*pieces)
+
+
+def _outside(joint: tuple[Any, ...], rows: list[list[Any]]) -> Node:
+    """Common factors * (sum) * joint functions."""
+    common = [f for f in rows[0] if all(f in row for row in rows[1:])]
+    inner = []
+    for row in rows:
+        rest = list(row)
+        for factor in common:
+            rest.remove(factor)
+        inner.append(tree.mul(*(tree.from_sympy(f) for f in rest)) if rest else tree.num(1))
+    factors = [tree.from_sympy(f) for f in (*common, *joint)]
+    whole = tree.add(*inner)
+    return tree.mul(whole, *factors) if factors else whole
+
+
+def _objects(value: Any) -> Any:
+    shape: list[int] = []
+    inner = value
+    while isinstance(inner, list):
+        shape.append(len(inner))
+        inner = inner[0]
+    flat: list[Any] = []
+
+    def walk(part: Any) -> None:
+        if isinstance(part, list):
+            for one in part:
+                walk(one)
+        else:
+            flat.append(part)
+
+    walk(value)
+    out = np.empty(len(flat), dtype=object)
+    out[:] = flat
+    return out.reshape(shape)

@@ -1,0 +1,123 @@
+"""What the doctor answers: a verdict, ranked causes with their evidence, the corrected formula."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One explanation that accounts for every state.
+
+    Attributes:
+        sentence: what is wrong, in plain words.
+        kinds: the names of the confusions or slips in it.
+        places: the links, rows or entries they are at.
+        error_after: relative error that is left once it is repaired; at most 1e-9.
+        cost: how far-fetched it is; causes are ranked by it.
+        corrected: the right formulas by entry, where they are known.
+    """
+
+    sentence: str
+    kinds: tuple[str, ...]
+    places: tuple[str, ...]
+    error_after: float
+    cost: float
+    corrected: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """A hand formula, judged.
+
+    Attributes:
+        quantity, robot, function: what was compared.
+        agrees: whether the formula is the engine's, to rounding.
+        error_before: its largest relative error over the states.
+        causes: what explains the difference, the simplest first; empty where nothing does.
+        partial: entries that are explained where others are not.
+        worst_entry: the entry that is furthest off.
+        worst_state: the state where, by argument.
+        hand, engine: both answers there.
+    """
+
+    quantity: str
+    robot: str
+    function: str
+    agrees: bool
+    error_before: float
+    causes: tuple[Cause, ...] = ()
+    partial: tuple[str, ...] = ()
+    worst_entry: str = ""
+    worst_state: dict[str, Array] = field(default_factory=dict, repr=False)
+    hand: Array | None = field(default=None, repr=False)
+    engine: Array | None = field(default=None, repr=False)
+
+    @property
+    def verdict(self) -> str:
+        """``"agrees"``, ``"differs"`` or ``"differs, cause unknown"``."""
+        if self.agrees:
+            return "agrees"
+        return "differs" if self.causes else "differs, cause unknown"
+
+    @property
+    def sentence(self) -> str:
+        """The diagnosis in one sentence."""
+        if self.agrees:
+            return f"{self.function} is {self.quantity} of {self.robot}"
+        if self.causes:
+            return self.causes[0].sentence
+        return f"{self.function} is not {self.quantity} of {self.robot}; no known slip explains it"
+
+    def __str__(self) -> str:
+        lines = [f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"]
+        if self.agrees:
+            return f"{lines[0]}, largest relative error {self.error_before:.2g}"
+        if self.causes:
+            best = self.causes[0]
+            lines.append(f"  {best.sentence}")
+            lines.append(
+                f"  relative error before {self.error_before:.3g}, after {best.error_after:.2g}"
+            )
+            lines += [f"  correct: {name} = {text}" for name, text in best.corrected.items()]
+            lines += [f"  or: {cause.sentence}" for cause in self.causes[1:4]]
+            return "\n".join(lines)
+        lines += [f"  explained: {text}" for text in self.partial]
+        with np.printoptions(precision=6, suppress=True, linewidth=100):
+            state = ", ".join(f"{name} = {value}" for name, value in self.worst_state.items())
+            lines.append(f"  relative error {self.error_before:.3g}; worst entry {self.worst_entry}"
+                         f" at {state}: hand {self.hand}, engine {self.engine}")  # fmt: skip
+        return "\n".join(lines)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "quantity": self.quantity,
+            "robot": self.robot,
+            "function": self.function,
+            "verdict": self.verdict,
+            "diagnosis": self.sentence,
+            "error_before": _finite(self.error_before),
+            "causes": [
+                {
+                    "sentence": c.sentence,
+                    "kinds": list(c.kinds),
+                    "places": list(c.places),
+                    "error_after": _finite(c.error_after),
+                    "corrected": c.corrected,
+                }
+                for c in self.causes
+            ],
+            "explained_entries": list(self.partial),
+            "worst_entry": self.worst_entry,
+            "worst_state": {name: np.ravel(v).tolist() for name, v in self.worst_state.items()},
+        }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,289 @@
+"""The examination: compare, try the readings, look for slips in the entries, rank what explains.
+
+Nothing is named that does not account for every state to 1e-9; what accounts equally well is
+named too, the simplest first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.compare import relative_errors
+from kinlab.check.quantities import quantity as find_quantity
+from kinlab.check.serial import SERIAL
+from kinlab.doctor import terms
+from kinlab.doctor.changes import Case, Reading
+from kinlab.doctor.derived import derivation
+from kinlab.doctor.diagnosis import Cause, Diagnosis
+from kinlab.doctor.entries import Entry, entries, split_name
+from kinlab.doctor.readings import readings
+from kinlab.doctor.terms import Slip
+from kinlab.doctor.tree import Node
+from kinlab.errors import KinlabError, OptionError
+from kinlab.formula import function_name, state_by_state
+from kinlab.tolerances import TOLERANCES
+
+_SCREEN = 3
+"""States on which a reading is tried first."""
+_NAMED = 8
+"""Causes that are kept."""
+_RIVALS = 2
+"""Entries that differ up to which slips are looked for beside a reading that explains them."""
+_PATIENCE = 2
+"""Entries without an explanation after which the rest are not tried."""
+_TIED = 3
+"""Slips of one entry that are kept as alternatives."""
+
+
+def diagnose(
+    robot: Any, quantity: str, function: Callable[..., Any], samples: int = 200, seed: int = 0
+) -> Diagnosis:
+    """Says whether a hand-derived function is what it claims to be, and if not, what is wrong.
+
+    Args:
+        robot: a Robot, DHTable, name or path.
+        quantity: what the function claims to be, such as ``"inverse_dynamics"``; an index picks
+            entries: ``"inverse_dynamics[0]"``.
+        function: takes one state, the quantity's arguments in order: ``f(q, v, a)``.
+        samples: how many random states must be explained.
+        seed: the same seed gives the same states.
+
+    Returns:
+        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
+
+    Raises:
+        NameUnknownError: no such robot or quantity.
+        OptionError: samples below 10, or the quantity is not one of a serial arm.
+        FormulaError: the function failed.
+    """
+    if not callable(function):
+        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    plain, index = split_name(quantity)
+    case, engine = _case(robot, plain, index, samples, seed)
+    stacked = state_by_state(function)
+    hand = np.asarray(stacked(None, *case.arguments.values()))
+    return examine(case, hand, engine, quantity, function_name(function), {})
+
+
+def examine(
+    case: Case, hand: Any, engine: Array, quantity: str, name: str, written: dict[str, Node]
+) -> Diagnosis:
+    """Judges answers that are known already; ``written`` holds entries given as text.
+
+    Raises:
+        OptionError: the answers are not real numbers.
+    """
+    values = _read(hand, engine, name, quantity)
+    case = Case(case.robot, case.quantity, case.arguments, values, case.index)
+    same = values.shape == engine.shape
+    errors = relative_errors(values, engine) if same else np.full(len(values), np.inf)
+    worst = float(np.max(errors))
+    label = str(case.robot.name)
+    if worst <= TOLERANCES.formula_agrees:
+        return Diagnosis(quantity, label, name, True, worst)
+    tried = readings(case)
+    causes = [*_singly(case, tried)]
+    partial: tuple[str, ...] = ()
+    off = [e for e in entries(case, engine) if not e.agrees] if same else []
+    if off and (not causes or len(off) <= _RIVALS):
+        found, partial = _slips(case, off, written)
+        causes += found
+    if not causes:
+        causes = [*_in_pairs(case, tried)]
+    if not causes and same:
+        causes = [*_reading_and_slips(case, tried, engine)]
+    ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
+    k = int(np.argmax(errors))
+    where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
+    return Diagnosis(
+        quantity, label, name, False, worst, tuple(ranked), partial if not ranked else (), where,
+        {n: stack[k] for n, stack in case.arguments.items()},
+        values[(k, *furthest)], engine[(k, *furthest)],
+    )  # fmt: skip
+
+
+def _case(
+    robot: Any, plain: str, index: tuple[Any, ...], samples: int, seed: int
+) -> tuple[Case, Array]:
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 10:
+        raise OptionError(f"samples is {samples!r}; it must be a whole number from 10 up")
+    found = find_quantity(plain)
+    if found.domain is not SERIAL:
+        raise OptionError(
+            f"quantity {plain!r} belongs to {found.domain.name!r}; the doctor knows serial arms "
+            "(kinlab check compares the others)"
+        )
+    mechanism = SERIAL.load(robot)
+    states = found.states(mechanism, int(samples), seed)
+    arguments = dict(zip(found.arguments, states, strict=True))
+    case = Case(mechanism, found, arguments, np.empty(0), index)
+    return case, np.asarray(case.answer(()), dtype=float)
+
+
+def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
+    values = np.asarray(hand)
+    if values.dtype.kind not in "iuf":
+        raise OptionError(f"{name}: answered with dtype {values.dtype}; {quantity!r} is numbers")
+    values = values.astype(float)
+    if values.shape != engine.shape and values.size == engine.size:
+        squeezed = [s for s in values.shape[1:] if s != 1]
+        if squeezed == [s for s in engine.shape[1:] if s != 1]:
+            return values.reshape(engine.shape)
+    return values
+
+
+def _matches(case: Case, chosen: tuple[Reading, ...]) -> float | None:
+    """The error that is left under the readings, or None where they do not apply."""
+    try:
+        with np.errstate(all="ignore"):
+            answer = case.answer(chosen)
+    except (KinlabError, np.linalg.LinAlgError):
+        return None  # the changed robot cannot be built or has no inertia: not what was meant
+    if answer.shape != case.hand.shape:
+        return None
+    error = float(np.max(relative_errors(case.hand, answer)))
+    return error if error <= TOLERANCES.formula_agrees else None
+
+
+def _singly(case: Case, tried: list[Reading]) -> Iterator[Cause]:
+    few = case.few(_SCREEN)
+    for reading in tried:
+        if _matches(few, (reading,)) is not None:
+            error = _matches(case, (reading,))
+            if error is not None:
+                yield _as_cause((reading,), error)
+
+
+def _in_pairs(case: Case, tried: list[Reading]) -> Iterator[Cause]:
+    few = case.few(_SCREEN)
+    answers = [r for r in tried if r.stage == "answer"]
+    before = [r for r in tried if r.stage != "answer"]
+    yield from _found(case, ((one, two) for one, two in combinations(answers, 2)
+                             if _apart(one, two) and _seems(few, (one, two))))  # fmt: skip
+    for k, first in enumerate(before):
+        changed, rest = _begun(few, first)
+        if changed is None:
+            continue
+        partners = [r for r in (*before[k + 1 :], *answers) if _apart(first, r)]
+        chosen = ((first, second) for second in partners if _seems(changed, (*rest, second)))
+        yield from _found(case, chosen)
+
+
+def _begun(few: Case, first: Reading) -> tuple[Case | None, tuple[Reading, ...]]:
+    """A case with the robot changed already, so that it is built once for all partners."""
+    if first.stage != "robot":
+        return few, (first,)
+    try:
+        return replace(few, robot=first.apply(few.robot)), ()
+    except KinlabError:
+        return None, ()
+
+
+def _seems(few: Case, chosen: tuple[Reading, ...]) -> bool:
+    return _matches(few, chosen) is not None
+
+
+def _apart(one: Reading, two: Reading) -> bool:
+    return (one.kind, one.place) != (two.kind, two.place)
+
+
+def _found(case: Case, chosen: Iterable[tuple[Reading, ...]]) -> Iterator[Cause]:
+    for readings_ in chosen:
+        error = _matches(case, readings_)
+        if error is not None:
+            yield _as_cause(readings_, error)
+
+
+def _as_cause(chosen: tuple[Reading, ...], error: float) -> Cause:
+    told = " and ".join(r.sentence for r in chosen)
+    return Cause(
+        f"the formula {told}", tuple(r.kind for r in chosen), tuple(r.place for r in chosen),
+        error, sum(r.cost for r in chosen),
+    )  # fmt: skip
+
+
+def _slips(
+    case: Case, off: list[Entry], written: dict[str, Node]
+) -> tuple[list[Cause], tuple[str, ...]]:
+    """Causes that are slips of the pen in the entries that are off, or what is known of some."""
+    per_entry: list[list[Slip]] = []
+    for entry in off:
+        per_entry.append(_of_entry(case, entry, written.get(entry.label))[:_TIED])
+        if sum(not found for found in per_entry) >= _PATIENCE:
+            break
+    if not all(per_entry):
+        return [], tuple(found[0].sentence for found in per_entry if found)
+    # alternatives are told for one entry at a time; all of all would be a flood
+    sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
+    return [_slip_cause(chosen) for chosen in sets], ()
+
+
+def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
+    return Cause(
+        "; ".join(s.sentence for s in slips), tuple(k for s in slips for k in s.kinds),
+        tuple(s.entry for s in slips), max(s.error for s in slips), sum(s.cost for s in slips),
+        {s.entry: s.corrected for s in slips if s.corrected},
+    )  # fmt: skip
+
+
+def _of_entry(case: Case, entry: Entry, text: Node | None) -> list[Slip]:
+    table = case.robot.table
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None:
+        return []
+    poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+    arguments = case.quantity.arguments
+    if text is not None:
+        found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
+    else:
+        others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
+        found = terms.in_function(entry.label, entry.hand, entry.engine, derived, poly, arguments,
+                                  case.arguments, others[:12])  # fmt: skip
+    good = []
+    for slip in found:
+        left = entry.engine if slip.repaired else entry.hand
+        error = entry.error(slip.values, left)
+        if error <= TOLERANCES.formula_agrees:
+            good.append(slip.with_error(error))
+    return good
+
+
+def _reading_and_slips(case: Case, tried: list[Reading], engine: Array) -> Iterator[Cause]:
+    """A whole-answer reading undone, and slips in what is left."""
+    before = sum(not e.agrees for e in entries(case, engine))
+    for reading in tried:
+        if reading.stage != "answer" or reading.kind not in _UNDONE or case.index:
+            continue
+        undone = reading.apply(case.hand)
+        if undone.shape != engine.shape:
+            continue
+        if reading.kind == "factor":
+            undone = case.hand * (case.hand / np.where(undone, undone, 1.0))
+        changed = Case(case.robot, case.quantity, case.arguments, undone, case.index)
+        off = [e for e in entries(changed, engine) if not e.agrees]
+        if len(off) >= max(before, 2):
+            continue
+        for cause in _slips(changed, off, {})[0]:
+            yield Cause(
+                f"the formula {reading.sentence}, and then {cause.sentence}",
+                (reading.kind, *cause.kinds), (reading.place, *cause.places), cause.error_after,
+                reading.cost + cause.cost, cause.corrected,
+            )  # fmt: skip
+
+
+_UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order",
+           "row sign", "column sign", "rows swapped"}  # fmt: skip
+"""Readings of the answer that are their own inverse."""
+
+
+def _worst(hand: Array, engine: Array, k: int, case: Case) -> tuple[str, tuple[int, ...]]:
+    gap = np.abs(hand[k] - engine[k])
+    place = tuple(int(i) for i in np.unravel_index(int(np.argmax(gap)), gap.shape))
+    labels = {e.local: e.label for e in entries(case, engine)}
+    return labels[place], place

@@ -1,0 +1,307 @@
+"""Readings of the robot itself: convention, offsets, base and tool, gravity, inertias."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab.arrays import Array
+from kinlab.convention import Convention
+from kinlab.dh import DHLink, DHTable
+from kinlab.doctor.changes import Reading
+from kinlab.robot import Robot
+
+_DIRECTIONS = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0),
+               "+z": (0, 0, 1), "-z": (0, 0, -1)}  # fmt: skip
+
+
+def table_readings(robot: Robot) -> Iterator[Reading]:
+    """What can be read differently in the DH table; nothing for a robot without one."""
+    table = robot.table
+    if table is None:
+        return
+    other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
+    yield _table(
+        "convention", f"reads the {table.convention} table as {other}",
+        lambda t: replace(t, convention=other),
+    )  # fmt: skip
+    for which in ("base", "tool"):
+        if not np.array_equal(getattr(table, which), np.eye(4)):
+            yield _table(which, f"leaves the {which} transform out", _setting(which, np.eye(4)))
+            inverse = np.linalg.inv(np.asarray(getattr(table, which)))
+            yield _table(
+                which, f"inverts the {which} transform", _setting(which, inverse), cost=1.5
+            )
+    yield from _column_readings(table)
+    for i, link in enumerate(table.links):
+        yield _table(
+            "turning sense", f"turns joint {i + 1} the other way",
+            _linked(i, flip=not link.flip), cost=1.3, place=f"joint {i + 1}",
+        )  # fmt: skip
+        for column in ("theta", "d", "a", "alpha"):
+            yield from _entry_readings(i, link, column)
+        if table.convention is Convention.STANDARD and np.any(link.com) and (link.a or link.alpha):
+            com, tensor = _from_the_joint(link)
+            yield _inertial(
+                "centre's frame",
+                f"measures the centre of mass of link {i + 1} in the frame at its joint, not at "
+                "its far end", i, _placed(com, tensor),
+            )  # fmt: skip
+
+
+def _column_readings(table: DHTable) -> Iterator[Reading]:
+    for column, words in (("theta", "theta offsets"), ("d", "d offsets")):
+        changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
+        if len(changed) > 1:
+            yield _table(
+                "offset", f"forgets all {words}",
+                _emptied(column),
+            )  # fmt: skip
+    if any(link.alpha for link in table.links):
+        yield _table(
+            "alpha sign", "has every alpha with the opposite sign",
+            lambda t: replace(t, links=[replace(k, alpha=-k.alpha) for k in t.links]), cost=1.2,
+        )  # fmt: skip
+    for shift, words in ((1, "the row before"), (-1, "the row behind")):
+        a = np.roll([link.a for link in table.links], shift)
+        alpha = np.roll([link.alpha for link in table.links], shift)
+        yield _table(
+            "row shift", f"takes a and alpha of {words}",
+            _shifted(a, alpha), cost=1.4,
+        )  # fmt: skip
+
+
+def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Reading]:
+    value, place = getattr(link, column), f"link {i + 1}"
+    if not value:
+        return
+    kind = "offset" if column in ("theta", "d") else "table entry"
+    yield _table(kind, f"forgets {column} of {place}", _linked(i, **{column: 0.0}),
+                 cost=1.2, place=place)  # fmt: skip
+    yield _table(
+        f"{column} sign", f"has {column} of {place} with the opposite sign",
+        _linked(i, **{column: -value}), cost=1.3, place=place,
+    )  # fmt: skip
+
+
+def gravity_readings(robot: Robot) -> Iterator[Reading]:
+    """Gravity's sign and axis."""
+    gravity = np.array(robot.model.gravity.linear)
+    size = float(np.linalg.norm(gravity))
+    if not size:
+        return
+    yield _model("gravity sign", "has gravity with the opposite sign", _gravity(-gravity))
+    yield _model("gravity left out", "leaves gravity out", _gravity(0 * gravity))
+    for name, direction in _DIRECTIONS.items():
+        turned = size * np.array(direction, dtype=float)
+        if not (np.allclose(turned, gravity) or np.allclose(turned, -gravity)):
+            yield _model("gravity axis", f"has gravity along {name}", _gravity(turned), cost=1.1)
+
+
+def inertia_readings(robot: Robot) -> Iterator[Reading]:
+    """Masses, centres, tensors and rotors: each link alone, and all together."""
+    model = robot.model
+    if np.any(model.armature):
+        yield _model("rotor inertia", "leaves all rotor inertias out", _armature(None))
+        for i in np.flatnonzero(model.armature).tolist():
+            if np.count_nonzero(model.armature) > 1:
+                yield _model("rotor inertia", f"leaves the rotor inertia of joint {i + 1} out",
+                             _armature(i), cost=1.2, place=f"joint {i + 1}")  # fmt: skip
+    for kind, words, change, cost in _BODY_CHANGES:
+        touched = [i for i in range(robot.n) if _changes(model.inertias[i + 1], change)]
+        if len(touched) > 1:
+            yield _inertial(kind, words.format("every link"), None, change, cost)
+        for i in touched:
+            extra = 0.2 if len(touched) > 1 else 0.0
+            yield _inertial(kind, words.format(f"link {i + 1}"), i, change, cost + extra)
+
+
+def _steiner(old: Any) -> Array:
+    c = old.lever
+    moved: Array = old.mass * (np.dot(c, c) * np.eye(3) - np.outer(c, c))
+    return moved
+
+
+def _about_joint(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever, old.inertia + _steiner(old)
+
+
+def _about_centre(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever, old.inertia - _steiner(old)
+
+
+def _no_tensor(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever, np.zeros((3, 3))
+
+
+def _products(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever, 2 * np.diag(np.diag(old.inertia)) - old.inertia
+
+
+def _no_products(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever, np.diag(np.diag(old.inertia))
+
+
+def _at_joint(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, np.zeros(3), old.inertia
+
+
+def _mirrored(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, -old.lever, old.inertia
+
+
+def _no_mass(old: Any) -> tuple[float, Array, Array]:
+    return 0.0, old.lever, old.inertia
+
+
+def _nothing(old: Any) -> tuple[float, Array, Array]:
+    return 0.0, old.lever, np.zeros((3, 3))
+
+
+def _double_mass(old: Any) -> tuple[float, Array, Array]:
+    return 2 * old.mass, old.lever, old.inertia
+
+
+def _half_centre(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, old.lever / 2, old.inertia
+
+
+def _double_centre(old: Any) -> tuple[float, Array, Array]:
+    return old.mass, 2 * old.lever, old.inertia
+
+
+_BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
+    ("inertia point", "takes the inertia of {} about the joint and adds m c² again", _about_joint,
+     1.0),
+    ("inertia point", "leaves m c² out for {}: the inertia about the centre stands for that about "
+     "the joint", _about_centre, 1.0),
+    ("inertia left out", "leaves the inertia tensor of {} out", _no_tensor, 1.1),
+    ("products of inertia", "has the products of inertia of {} with the opposite sign", _products,
+     1.1),
+    ("products of inertia", "leaves the products of inertia of {} out", _no_products, 1.2),
+    ("centre", "puts the centre of mass of {} at the joint", _at_joint, 1.2),
+    ("centre", "measures the centre of mass of {} to the other side", _mirrored, 1.2),
+    ("centre", "has the centre of mass of {} at half its distance", _half_centre, 1.3),
+    ("centre", "has the centre of mass of {} at twice its distance", _double_centre, 1.3),
+    ("mass left out", "leaves the mass of {} out", _no_mass, 1.2),
+    ("link left out", "leaves {} out of the dynamics", _nothing, 1.3),
+    ("mass", "counts the mass of {} twice", _double_mass, 1.4),
+)  # fmt: skip
+
+
+def _changes(old: Any, change: Callable[[Any], tuple[float, Array, Array]]) -> bool:
+    mass, lever, tensor = change(old)
+    return not (
+        mass == old.mass
+        and np.array_equal(lever, old.lever)
+        and np.allclose(tensor, old.inertia, rtol=0, atol=1e-14)
+    )
+
+
+def _table(
+    kind: str,
+    sentence: str,
+    change: Callable[[DHTable], DHTable],
+    cost: float = 1.0,
+    place: str = "",
+) -> Reading:
+    def apply(robot: Robot) -> Robot:
+        assert robot.table is not None
+        return Robot.from_dh(change(robot.table))
+
+    return Reading(kind, sentence, "robot", apply, cost, place)
+
+
+def _setting(which: str, value: Array) -> Callable[[DHTable], DHTable]:
+    def change(table: DHTable) -> DHTable:
+        settings: dict[str, Any] = {which: value}
+        return replace(table, **settings)
+
+    return change
+
+
+def _emptied(column: str) -> Callable[[DHTable], DHTable]:
+    def change(table: DHTable) -> DHTable:
+        zero: dict[str, Any] = {column: 0.0}
+        return replace(table, links=[replace(link, **zero) for link in table.links])
+
+    return change
+
+
+def _shifted(a: Array, alpha: Array) -> Callable[[DHTable], DHTable]:
+    def change(table: DHTable) -> DHTable:
+        rows = zip(table.links, a, alpha, strict=True)
+        return replace(table, links=[replace(link, a=x, alpha=y) for link, x, y in rows])
+
+    return change
+
+
+def _body(mass: float, lever: Array, tensor: Array) -> Any:
+    """An inertia that may be impossible, as mistaken ones are: the constructor would refuse it."""
+    body = pin.Inertia.Zero()
+    body.mass, body.lever, body.inertia = mass, lever, tensor
+    return body
+
+
+def _placed(com: Array, tensor: Array) -> Callable[[Any], tuple[float, Array, Array]]:
+    return lambda old: (old.mass, com, tensor)
+
+
+def _linked(i: int, **columns: Any) -> Callable[[DHTable], DHTable]:
+    def change(table: DHTable) -> DHTable:
+        links = list(table.links)
+        links[i] = replace(links[i], **columns)
+        return replace(table, links=links)
+
+    return change
+
+
+def _model(
+    kind: str, sentence: str, change: Callable[[Any], None], cost: float = 1.0, place: str = ""
+) -> Reading:
+    def apply(robot: Robot) -> Robot:
+        model = pin.Model(robot.model)
+        change(model)
+        return Robot(robot.name, model, robot.tool, "", robot.table, None, robot.source)
+
+    return Reading(kind, sentence, "robot", apply, cost, place)
+
+
+def _gravity(value: Array) -> Callable[[Any], None]:
+    def change(model: Any) -> None:
+        model.gravity.linear = value
+
+    return change
+
+
+def _armature(joint: int | None) -> Callable[[Any], None]:
+    def change(model: Any) -> None:
+        kept = np.array(model.armature)
+        kept[slice(None) if joint is None else joint] = 0.0
+        model.armature = kept
+
+    return change
+
+
+def _inertial(
+    kind: str,
+    sentence: str,
+    link: int | None,
+    change: Callable[[Any], tuple[float, Array, Array]],
+    cost: float = 1.0,
+) -> Reading:
+    def apply(model: Any) -> None:
+        for i in range(1, model.njoints) if link is None else (link + 1,):
+            model.inertias[i] = _body(*change(model.inertias[i]))
+
+    place = "" if link is None else f"link {link + 1}"
+    return _model(kind, sentence, apply, cost, place)
+
+
+def _from_the_joint(link: DHLink) -> tuple[Array, Array]:
+    """Centre and tensor as if given in the frame at the joint (no Tail in front)."""
+    return np.array(link.com), np.array(link.inertia)

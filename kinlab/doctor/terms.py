@@ -1,0 +1,240 @@
+"""Slips within single entries: the derived formula beside a user's text or function."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor import regression, search, tree
+from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
+from kinlab.doctor.edits import Edit, Names
+from kinlab.doctor.search import Repair
+from kinlab.doctor.tree import Node
+from kinlab.symbolic.trig import Poly
+
+_POINTS = 24
+_CLOSE = 1e-9
+
+_TURNED = {
+    "extra term": "missing term", "missing term": "extra term",
+    "extra factor": "missing factor", "missing factor": "extra factor",
+}  # fmt: skip
+"""A kind of edit of the engine's formula, told as a slip of the user's."""
+
+
+@dataclass(frozen=True)
+class Slip:
+    """An explanation of one entry.
+
+    Attributes:
+        entry: which entry, such as ``"inverse_dynamics[0]"``.
+        kinds: the kinds of slip, one per place.
+        sentence: what is wrong, in plain words.
+        corrected: the right formula of the entry, or ``""``.
+        cost: how far-fetched it is.
+        values: what the engine's entry becomes with the slips (for a function), or the user's
+            entry repaired (for a text), at the states of the comparison.
+        repaired: whether ``values`` are the user's repaired ones.
+        error: relative error that is left with the slip repaired.
+    """
+
+    entry: str
+    kinds: tuple[str, ...]
+    sentence: str
+    corrected: str
+    cost: float
+    values: Array
+    repaired: bool
+    error: float = np.inf
+
+    def with_error(self, error: float) -> Slip:
+        """The slip with its evidence."""
+        return replace(self, error=error)
+
+
+def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
+    """What may stand in a formula of this quantity."""
+    arm = derived.arm
+    letters = tuple(LETTERS[a] for a in arguments if a in LETTERS)
+    turning = tuple(i + 1 for i in arm.trig.angles)
+    return Names(arm.trig.parameters, turning, arm.n, letters)
+
+
+def in_text(
+    label: str,
+    written: Node,
+    derived: Derivation,
+    poly: Poly,
+    arguments: tuple[str, ...],
+    states: dict[str, Array],
+) -> list[Slip]:
+    """Slips that turn the user's text into the derived formula, at random parameters.
+
+    Args:
+        label: the entry's name.
+        written: the user's text, with the names of the derivation.
+        derived, poly: the derivation and the entry's polynomial.
+        arguments: the quantity's arguments.
+        states: the comparison's states.
+    """
+    if not searchable(poly):
+        return []
+    names = names_for(derived, arguments)
+    at = _anywhere(names)
+    right = derived.tree(poly)
+    target = np.broadcast_to(tree.evaluate(right, at), (_POINTS,))
+    extra = [t for form in _forms(derived, poly) for t in _split(form)]
+    repairs = search.single(written, target, at, names, list(dict.fromkeys(extra)))
+    if not repairs:
+        repairs = search.double(written, target, at, names, list(dict.fromkeys(extra)))
+        repairs += search.double_in_term(written, target, at, names)
+    here = environment(derived, states)
+    slips = []
+    for repair in sorted(repairs, key=lambda r: r.cost):
+        told = "; ".join(_told_text(label, written, e) for e in repair.edits)
+        values = tree.evaluate(repair.result, here)
+        kinds = tuple(e.kind for e in repair.edits)
+        slips.append(Slip(label, kinds, told, str(repair.result), repair.cost, values, True))
+    return slips
+
+
+def in_function(
+    label: str,
+    hand: Array,
+    engine: Array,
+    derived: Derivation,
+    poly: Poly,
+    arguments: tuple[str, ...],
+    states: dict[str, Array],
+    others: list[Node],
+) -> list[Slip]:
+    """Slips that turn the derived formula into the user's function, by values only.
+
+    Args:
+        label: the entry's name.
+        hand, engine: both answers at the states, (N,).
+        derived, poly: the derivation and the entry's polynomial.
+        arguments: the quantity's arguments.
+        states: the comparison's states.
+        others: derived entries whose joint functions may be met.
+    """
+    if not searchable(poly):
+        return []
+    names = names_for(derived, arguments)
+    everywhere = environment(derived, states)
+    at = {name: values[:_POINTS] for name, values in everywhere.items()}
+    target = hand[:_POINTS]
+    right = derived.tree(poly)
+    forms = _forms(derived, poly)
+    repairs = [(f, r) for f in forms for r in search.single(f, target, at, names, [])]
+    if not repairs:
+        repairs = [(f, r) for f in forms for r in search.double(f, target, at, names, [])]
+        repairs += [(f, r) for f in forms for r in search.double_in_term(f, target, at, names)]
+    slips = _by_effect(label, right, repairs, everywhere)
+    if not slips:
+        for words in regression.dictionaries([right, *others], names):
+            found = regression.explain(hand - engine, words, everywhere)
+            if found:
+                return [_as_terms(label, right, found, names, everywhere)]
+    return slips
+
+
+def _by_effect(
+    label: str, right: Node, repairs: list[tuple[Node, Repair]], everywhere: dict[str, Array]
+) -> list[Slip]:
+    slips: list[Slip] = []
+    for form, repair in sorted(repairs, key=lambda pair: pair[1].cost):
+        told = "; ".join(_told_function(label, form, e) for e in repair.edits)
+        kinds = tuple(_TURNED.get(e.kind, e.kind) for e in repair.edits)
+        values = tree.evaluate(repair.result, everywhere)
+        if all(s.sentence != told for s in slips):
+            slips.append(Slip(label, kinds, told, str(right), repair.cost, values, False))
+    return slips
+
+
+def _as_terms(
+    label: str,
+    right: Node,
+    found: list[regression.Term],
+    names: Names,
+    at: dict[str, Array],
+) -> Slip:
+    pieces = []
+    total = tree.evaluate(right, at)
+    for term in found:
+        total = total + term.coefficient * tree.evaluate(term.product, at)
+        side = "larger" if term.coefficient > 0 else "smaller"
+        size = _as_parameters(term, right, names, at)
+        pieces.append(f"the coefficient of {term.product} is {side} than the engine's by {size}")
+    told = f"{label}: " + ", and ".join(pieces)
+    kinds = ("coefficient",) * len(found)
+    return Slip(label, kinds, told, str(right), 2.0 + len(found), total, False)
+
+
+def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[str, Array]) -> str:
+    """A coefficient's size, as a product of parameters where the derived formula has one."""
+    size = abs(term.coefficient)
+    parameters = set(names.parameters)
+    for piece in _split(right):
+        factors = piece.args if piece.op == "mul" else (piece,)
+        front = tree.mul(tree.num(1), *(f for f in factors if tree.names(f) <= parameters))
+        value = abs(float(np.ravel(tree.evaluate(front, at))[0]))
+        if tree.names(front) and abs(value - size) <= 1e-8 * size:
+            return f"{front} = {size:.10g}".replace("-", "", 1)
+    return f"{size:.10g}"
+
+
+def _told_text(label: str, written: Node, edit: Edit) -> str:
+    if edit.kind == "missing term":
+        return f"{label}: the term {edit.new} is missing"
+    old = tree.at_path(written, edit.path)
+    where = _context(written, edit.path, old)
+    if edit.kind == "extra term":
+        return f"{label}: the term {old} does not belong there"
+    if edit.kind == "extra factor":
+        return f"{label}: the factor {old} does not belong{where}"
+    return f"{label}: {old} should be {edit.new}{where} ({edit.kind})"
+
+
+def _told_function(label: str, form: Node, edit: Edit) -> str:
+    old = tree.at_path(form, edit.path)
+    where = _context(form, edit.path, old)
+    if edit.kind == "extra term":
+        return f"{label}: the term {old} is missing"
+    if edit.kind == "extra factor":
+        return f"{label}: the factor {old} is missing{where}"
+    if edit.kind == "factor" and edit.new == tree.mul(tree.num(2), old):
+        return f"{label}: {old} is there twice"
+    kind = _TURNED.get(edit.kind, edit.kind)
+    return f"{label}: it has {edit.new} where the engine has {old}{where} ({kind})"
+
+
+def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
+    """The term around a place."""
+    depth = 1 if root.op == "add" else 0
+    if len(path) <= depth:
+        return ""
+    term = tree.at_path(root, path[:depth])
+    return f" in {term}" if term != old else ""
+
+
+def _forms(derived: Derivation, poly: Poly) -> list[Node]:
+    """The ways in which people write the same entry."""
+    made = [derived.tree(poly), derived.grouped(poly), derived.collected(poly)]
+    return list(dict.fromkeys(made))
+
+
+def _split(entry: Node) -> list[Node]:
+    return list(entry.args) if entry.op == "add" else [entry]
+
+
+def _anywhere(names: Names) -> dict[str, Array]:
+    """Random values for every name: positive parameters, any states."""
+    rng = np.random.default_rng(11)
+    at = {name: rng.uniform(0.4, 2.0, _POINTS) for name in names.parameters}
+    for letter in ("q", "qd", "qdd"):
+        for i in range(names.n):
+            at[f"{letter}{i + 1}"] = rng.uniform(-2.5, 2.5, _POINTS)
+    return at
