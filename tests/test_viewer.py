@@ -319,6 +319,18 @@ def test_no_browser_is_tried_without_a_display(monkeypatch):
     assert show.open_browser("http://127.0.0.1:1/") is False
 
 
+def test_plain_pages_do_without_compiled_code():
+    """numba and sympy would double the time of a cold start."""
+    code = (
+        "import sys; import kinlab.cli.view as v; v._open('puma560', None, None, None, True);"
+        "v._open('isotropic', None, None, None, True);"
+        "print(sorted({'numba', 'sympy', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT,
+                          check=True)  # fmt: skip
+    assert done.stdout.strip() == "[]"
+
+
 def test_command_saves_one_file(tmp_path):
     out = tmp_path / "puma.html"
     done = run("view", "puma560", "--animate", "pick", "-q", "0, pi/4, -0.5, 0, 1, 0", "--save",

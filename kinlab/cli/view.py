@@ -64,7 +64,6 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
     from kinlab.library import load
-    from kinlab.viewer import motions
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
@@ -80,6 +79,8 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
     if animate is not None:
+        from kinlab.viewer import motions  # brings the compiled inverse kinematics
+
         shown = motions.motion(robot, animate, scene.q)
         scene.animate(shown.q, shown.duration, shown.name)
     return scene
@@ -87,11 +88,12 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
 
 def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
     from kinlab.fivebar import FiveBar
-    from kinlab.viewer import fivebar_motions
     from kinlab.viewer.scene import FiveBarScene
 
     page = FiveBarScene(FiveBar.load(name), theta)
     if animate is not None:
+        from kinlab.viewer import fivebar_motions
+
         shown = fivebar_motions.motion(page.linkage, animate, page.mode, page.assembly)
         page.animate(shown.q, shown.duration, shown.name)
     return page
