@@ -144,11 +144,12 @@ def test_nearest_on_arms_where_it_is_known():
 
 
 def test_nearest_counts_turns_of_a_wide_joint():
-    robot = kl.load("puma560")  # joint 4 goes to 266°
-    q = np.array([0.1, 0.3, -0.8, 4.2, 0.05, 0.1])
-    near = kl.nearest_singularity(robot, q)
-    assert near.distance == pytest.approx(0.05, abs=1e-9) and near.singularity.kind == "wrist"
-    assert near.singularity.q[3] == pytest.approx(4.2, abs=1e-9)
+    links = [kl.DHLink("revolute", a=a, lower=-7.0, upper=7.0) for a in (0.5, 0.4)]
+    near = kl.nearest_singularity(
+        kl.Robot.from_dh(kl.DHTable("two", "standard", links)), [0.3, 6.0]
+    )
+    assert near.distance == pytest.approx(2 * np.pi - 6.0, abs=1e-9)
+    assert np.allclose(near.singularity.q, [0.3, 2 * np.pi], atol=1e-9)
 
 
 def test_nearest_is_no_farther_than_a_dense_scan_of_the_factors():
