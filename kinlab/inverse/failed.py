@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.inverse import kernel, methods
+from kinlab.inverse import kernel, kernel_parts, methods
 from kinlab.inverse.result import IKStatus
 from kinlab.inverse.setup import Setup, beyond_reach, lm_numbers
 from kinlab.kinematics import jacobian
@@ -49,7 +49,7 @@ def look_again(
         flat, q, True, free, outcome, 0, len(q),
     )  # fmt: skip
     for row in np.flatnonzero(outcome[:, 0] == kernel.CONVERGED):
-        inside = kernel.wrap(arm.prismatic, arm.lower, arm.upper, arm.centre, free[row])
+        inside = kernel_parts.wrap(arm.prismatic, arm.lower, arm.upper, arm.centre, free[row])
         q[row], ends[row] = free[row], kernel.CONVERGED if inside else kernel.OUTSIDE
 
 
