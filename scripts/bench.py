@@ -17,16 +17,16 @@ import importlib.metadata
 import json
 import os
 import platform
-import resource
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack
 from datetime import UTC, datetime
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from pathlib import Path
 from typing import Any
 
@@ -34,8 +34,9 @@ import bench_parties as parties
 import numpy as np
 
 import kinlab as kl
-from kinlab import batches, threads
+from kinlab import batches
 from kinlab.files import read_text, write_text
+from kinlab.threads import cores
 
 RESULTS = Path(__file__).parent / "results"
 STATES = (1, 10, 100, 1_000, 10_000, 100_000, 1_000_000)
@@ -132,7 +133,7 @@ def batch() -> list[Row]:
     robot, count = kl.load("ur5"), 100_000
     q, v, a = states_of(robot, count)
     own = parties.kinlab_single(robot, q, v, a)
-    raw = parties.pinocchio_batch(robot, q, v, a, threads.cores())
+    raw = parties.pinocchio_batch(robot, q, v, a, cores())
     own["fk + jacobian"] = lambda: (kl.fk(robot, q), kl.jacobian(robot, q))[1]
     own["singular values of J"] = lambda: batches.singular_values(robot, q, np.arange(6))
     out = []
@@ -170,8 +171,8 @@ def sweeps() -> list[Row]:
 
     ``kept small``: pose and J are worked out, the position, sigma_min and condition kept, in
     memory. ``kept whole``: pose, J and both in parts on disk. ``running``: as the first, on
-    worker processes that are there already (``executor=``). Peak memory is that of the parent or
-    of its largest worker.
+    worker processes that are there already (``executor=``). Peak memory is that of the
+    parent and its workers together.
     """
     out = []
     for what in ("kept small", "kept small, running", "kept whole, on disk"):
@@ -211,13 +212,35 @@ def one_sweep(what: str, workers: int) -> None:
             pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
             options = {"executor": stack.enter_context(pool)}
             kl.sweep(robot, names, 2**16, chunk=2**12, **options)
+        sizes = [0.0]
+        stop = threading.Event()
+        watcher = threading.Thread(target=watch, args=(sizes, stop))
+        watcher.start()
         start = time.perf_counter()
         result = kl.sweep(robot, names, 10**6, **options)
         seconds = time.perf_counter() - start
+        stop.set()
+        watcher.join()
         total = float(result["min_singular"].sum())
-    use = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    memory = max(resource.getrusage(who).ru_maxrss for who in use) / 1024
-    print(json.dumps([seconds, memory, total]))
+    print(json.dumps([seconds, max(sizes), total]))
+
+
+def watch(sizes: list[float], stop: threading.Event) -> None:
+    """Adds the memory of this process and its workers, in MB, every 0.1 s until told to stop."""
+    while not stop.wait(0.1):
+        sizes.append(memory(os.getpid()) + sum(memory(w.pid) for w in active_children()))
+
+
+def memory(pid: int | None) -> float:
+    """A process's share of resident memory in MB (Linux); 0 if it has gone.
+
+    Its share (Pss): what it has in common with other processes counts in part.
+    """
+    try:
+        text = Path(f"/proc/{pid}/smaps_rollup").read_text(encoding="ascii")
+    except OSError:
+        return 0.0
+    return int(text.split("Pss:")[1].split()[0]) / 1024
 
 
 def cold() -> list[Row]:
@@ -254,7 +277,7 @@ def machine() -> dict[str, Any]:
         "date": datetime.now(UTC).date().isoformat(),
         "python": platform.python_version(),
         "system": f"{platform.system()} {platform.machine()}",
-        "cores": threads.cores(),
+        "cores": cores(),
         "load": round(os.getloadavg()[0], 2),
         "versions": versions,
     }

@@ -76,7 +76,7 @@ def test_a_stack_is_its_single_calls(robot, name):
 def test_the_number_of_threads_changes_no_bit(name, monkeypatch):
     robot = kl.load("puma560")
     function, inputs = FUNCTIONS[name]
-    arguments = stacks(robot, 4 * LARGE)[:inputs]
+    arguments = stacks(robot, 8192)[:inputs]
     with threads.one_thread():
         alone = function(robot, *arguments)
     monkeypatch.setenv(threads.VARIABLE, "3")
@@ -186,7 +186,7 @@ def test_eight_threads_on_one_robot():
 
     def answers(item):
         function, inputs = FUNCTIONS[item[0]]
-        large = stacks(robot, 2 * LARGE, seed=item[1])[:inputs]
+        large = stacks(robot, 4096, seed=item[1])[:inputs]  # enough for two threads
         singles = [function(robot, *(stack[i] for stack in large)) for i in range(40)]
         return function(robot, *large), np.array(singles)
 

@@ -116,7 +116,7 @@ def sweep(
     upper: ArrayLike | None = None,
     executor: Executor | None = None,
     workers: int | None = None,
-    chunk: int = 16 * BLOCK,
+    chunk: int = 4 * BLOCK,
     folder: str | Path | None = None,
     progress: bool = False,
 ) -> SweepResult:
