@@ -1,5 +1,8 @@
 """kinlab: DH tables become URDF, load into Pinocchio, and stand beside your formulas."""
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from kinlab.check.compare import Comparison, compare
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
@@ -50,8 +53,63 @@ from kinlab.mass_derivatives import (
 )
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
+from kinlab.viewer import view
+
+if TYPE_CHECKING:
+    from kinlab.analysis.boundary import planar_boundary
+    from kinlab.analysis.design import design_isotropic
+    from kinlab.analysis.determinant import factored_determinant
+    from kinlab.analysis.ellipsoids import ellipsoid
+    from kinlab.analysis.isotropy import find_isotropic
+    from kinlab.analysis.lengths import characteristic_length
+    from kinlab.analysis.loci import singular_loci
+    from kinlab.analysis.metrics import dexterity, manipulability
+    from kinlab.analysis.nearest import nearest_singularity
+    from kinlab.analysis.redundancy import redundancy
+    from kinlab.analysis.singularity import describe_singularity, find_singularities
+    from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
+    from kinlab.inverse.batch import ik_batch
+    from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.path import ik_path
+    from kinlab.inverse.single import ik
+    from kinlab.sweeps.run import SweepResult, sweep
 
 __version__ = "0.1.0"
+
+_LATER = {
+    "SweepResult": "kinlab.sweeps.run",
+    "WorkspaceMap": "kinlab.analysis.workspace",
+    "characteristic_length": "kinlab.analysis.lengths",
+    "describe_singularity": "kinlab.analysis.singularity",
+    "design_isotropic": "kinlab.analysis.design",
+    "dexterity": "kinlab.analysis.metrics",
+    "ellipsoid": "kinlab.analysis.ellipsoids",
+    "factored_determinant": "kinlab.analysis.determinant",
+    "find_isotropic": "kinlab.analysis.isotropy",
+    "find_singularities": "kinlab.analysis.singularity",
+    "ik": "kinlab.inverse.single",
+    "ik_batch": "kinlab.inverse.batch",
+    "ik_branches": "kinlab.inverse.branches",
+    "ik_path": "kinlab.inverse.path",
+    "manipulability": "kinlab.analysis.metrics",
+    "nearest_singularity": "kinlab.analysis.nearest",
+    "planar_boundary": "kinlab.analysis.boundary",
+    "redundancy": "kinlab.analysis.redundancy",
+    "sample_workspace": "kinlab.analysis.workspace",
+    "singular_loci": "kinlab.analysis.loci",
+    "sweep": "kinlab.sweeps.run",
+}
+"""Public names that few programs need, or whose modules import heavy packages (numba, sympy,
+scipy): imported at first use."""
+
+
+def __getattr__(name: str) -> Any:
+    """Imports what is in ``_LATER`` when it is first asked for, and keeps it."""
+    if name not in _LATER:
+        raise AttributeError(f"module 'kinlab' has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_LATER[name]), name)
+    return value
+
 
 __all__ = [
     "Comparison",
@@ -61,9 +119,12 @@ __all__ = [
     "FiveBar",
     "KinlabError",
     "Robot",
+    "SweepResult",
+    "WorkspaceMap",
     "__version__",
     "action",
     "centrifugal_coefficients",
+    "characteristic_length",
     "christoffel",
     "com_accelerations",
     "com_jacobians",
@@ -71,10 +132,21 @@ __all__ = [
     "compare",
     "coriolis_coefficients",
     "coriolis_matrix",
+    "describe_singularity",
+    "design_isotropic",
+    "dexterity",
+    "ellipsoid",
+    "factored_determinant",
+    "find_isotropic",
+    "find_singularities",
     "fk",
     "forward_dynamics",
     "gravity_torques",
     "hand_formula",
+    "ik",
+    "ik_batch",
+    "ik_branches",
+    "ik_path",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",
@@ -90,14 +162,22 @@ __all__ = [
     "link_potential_energies",
     "link_velocities",
     "load",
+    "manipulability",
     "mass_matrix",
     "mass_matrix_derivatives",
     "mass_matrix_dot",
     "momentum",
     "momentum_rate",
+    "nearest_singularity",
+    "planar_boundary",
     "potential_energy",
+    "redundancy",
+    "sample_workspace",
+    "singular_loci",
     "static_wrenches",
     "statics",
+    "sweep",
     "to_dh",
     "to_urdf",
+    "view",
 ]

@@ -66,6 +66,16 @@ def place(fixed, prismatic, q, turn, origin):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _steps(turn, origin, axis, step):  # type: ignore[no-untyped-def]
+    """Each joint's axis, and the way to its origin from the one before: (n, 3), written."""
+    for i in range(turn.shape[0]):
+        for a in range(3):
+            axis[i, a] = turn[i, a, 2]
+            if i > 0:
+                step[i, a] = origin[i, a] - origin[i - 1, a]
+
+
+@kernel
 def _link(mass, com, second, turn, i, lever, spread):  # type: ignore[no-untyped-def]
     """Link i in the base's axes: centre of mass and second moment about it, written."""
     r = turn[i]
@@ -120,18 +130,18 @@ def mass_matrix_rows(fixed, prismatic, mass, com, second, armature, q, out, firs
     n = prismatic.shape[0]
     turn, origin = np.empty((n, 3, 3)), np.empty((n, 3))
     lever, spread = np.empty(3), np.empty((3, 3))
-    h, e, d = np.empty(3), np.empty((3, 3)), np.empty(3)
-    u, w, force, moment, arm = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    axis, step = np.empty((n, 3)), np.zeros((n, 3))
+    h, e = np.empty(3), np.empty((3, 3))
+    u, w, force, moment = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for row in range(first, last):
         place(fixed, prismatic, q[row], turn, origin)
+        _steps(turn, origin, axis, step)
         m = 0.0
         h[:] = 0.0
         e[:] = 0.0
         for i in range(n - 1, -1, -1):
             if i < n - 1:
-                for a in range(3):
-                    d[a] = origin[i + 1, a] - origin[i, a]
-                _shift(m, h, e, d)
+                _shift(m, h, e, step[i + 1])
             _link(mass, com, second, turn, i, lever, spread)
             m += mass[i]
             for a in range(3):
@@ -141,14 +151,17 @@ def mass_matrix_rows(fixed, prismatic, mass, com, second, armature, q, out, firs
             _screw(prismatic, turn, i, u, w)
             _momentum(m, h, e, u, w, force, moment)
             out[row, i, i] = _dot(u, force) + _dot(w, moment) + armature[i]
-            for j in range(i - 1, -1, -1):
-                for a in range(3):
-                    d[a] = origin[j + 1, a] - origin[j, a]
-                _cross(d, force, arm)
-                for a in range(3):
-                    moment[a] += arm[a]
-                _screw(prismatic, turn, j, u, w)
-                value = _dot(u, force) + _dot(w, moment)
+            fx, fy, fz = force[0], force[1], force[2]
+            nx, ny, nz = moment[0], moment[1], moment[2]
+            for j in range(i - 1, -1, -1):  # numbers, not arrays: this loop is the whole cost
+                dx, dy, dz = step[j + 1, 0], step[j + 1, 1], step[j + 1, 2]
+                nx += dy * fz - dz * fy
+                ny += dz * fx - dx * fz
+                nz += dx * fy - dy * fx
+                if prismatic[j]:
+                    value = axis[j, 0] * fx + axis[j, 1] * fy + axis[j, 2] * fz
+                else:
+                    value = axis[j, 0] * nx + axis[j, 1] * ny + axis[j, 2] * nz
                 out[row, i, j] = value
                 out[row, j, i] = value
 
@@ -158,23 +171,23 @@ def coriolis_rows(fixed, prismatic, mass, com, second, q, v, out, first, last): 
     """Christoffel's C of rows first to last - 1: q, v (N, n), out (N, n, n) written."""
     n = prismatic.shape[0]
     turn, origin = np.empty((n, 3, 3)), np.empty((n, 3))
+    axis, step = np.empty((n, 3)), np.zeros((n, 3))
     rate, spin = np.empty((n, 3)), np.empty((n, 3))
     su, sw, tu, tw = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     lever, spread, c_rate = np.empty(3), np.empty((3, 3)), np.empty(3)
-    h, e, d, arm = np.empty(3), np.empty((3, 3)), np.empty(3), np.empty(3)
+    h, e, arm = np.empty(3), np.empty((3, 3)), np.empty(3)
     p, k = np.empty(3), np.empty((3, 3))
     f1, n1, f2, n2, n3 = np.empty(3), np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for row in range(first, last):
         place(fixed, prismatic, q[row], turn, origin)
+        _steps(turn, origin, axis, step)
         for i in range(n):
             _screw(prismatic, turn, i, su[i], sw[i])
             if i == 0:
                 rate[0] = 0.0
                 spin[0] = 0.0
             else:
-                for a in range(3):
-                    d[a] = origin[i, a] - origin[i - 1, a]
-                _cross(spin[i - 1], d, arm)
+                _cross(spin[i - 1], step[i], arm)
                 for a in range(3):
                     rate[i, a] = rate[i - 1, a] + arm[a]
                     spin[i, a] = spin[i - 1, a]
@@ -194,13 +207,11 @@ def coriolis_rows(fixed, prismatic, mass, com, second, q, v, out, first, last): 
         k[:] = 0.0
         for j in range(n - 1, -1, -1):
             if j < n - 1:
-                for a in range(3):
-                    d[a] = origin[j + 1, a] - origin[j, a]
-                _shift(m, h, e, d)
-                along = _dot(d, p)
+                _shift(m, h, e, step[j + 1])
+                along = _dot(step[j + 1], p)
                 for a in range(3):
                     for b in range(3):
-                        k[a, b] -= p[a] * d[b]
+                        k[a, b] -= p[a] * step[j + 1, b]
                     k[a, a] += along
             _link(mass, com, second, turn, j, lever, spread)
             m += mass[j]
@@ -225,17 +236,25 @@ def coriolis_rows(fixed, prismatic, mass, com, second, q, v, out, first, last): 
                 n1[a] += _dot(k[a], sw[j])
                 n3[a] += k[0, a] * sw[j, 0] + k[1, a] * sw[j, 1] + k[2, a] * sw[j, 2]
             out[row, j, j] = _dot(su[j], f1) + _dot(sw[j], n1)
+            fx, fy, fz, nx, ny, nz = f1[0], f1[1], f1[2], n1[0], n1[1], n1[2]
+            gx, gy, gz, kx, ky, kz = f2[0], f2[1], f2[2], n2[0], n2[1], n2[2]
             for i in range(j - 1, -1, -1):
-                for a in range(3):
-                    d[a] = origin[i + 1, a] - origin[i, a]
-                _cross(d, f1, arm)
-                for a in range(3):
-                    n1[a] += arm[a]
-                _cross(d, f2, arm)
-                for a in range(3):
-                    n2[a] += arm[a]
-                out[row, i, j] = _dot(su[i], f1) + _dot(sw[i], n1)
-                out[row, j, i] = _dot(tu[i], f2) + _dot(tw[i], n2) + _dot(sw[i], n3)
+                dx, dy, dz = step[i + 1, 0], step[i + 1, 1], step[i + 1, 2]
+                nx += dy * fz - dz * fy
+                ny += dz * fx - dx * fz
+                nz += dx * fy - dy * fx
+                kx += dy * gz - dz * gy
+                ky += dz * gx - dx * gz
+                kz += dx * gy - dy * gx
+                zx, zy, zz = axis[i, 0], axis[i, 1], axis[i, 2]
+                below = tu[i, 0] * gx + tu[i, 1] * gy + tu[i, 2] * gz
+                below += tw[i, 0] * kx + tw[i, 1] * ky + tw[i, 2] * kz
+                if prismatic[i]:
+                    out[row, i, j] = zx * fx + zy * fy + zz * fz
+                else:
+                    out[row, i, j] = zx * nx + zy * ny + zz * nz
+                    below += zx * n3[0] + zy * n3[1] + zz * n3[2]
+                out[row, j, i] = below
 
 
 @kernel

@@ -62,7 +62,8 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         """Nothing to say at the end."""
 
 
-event.register("numba:compile", _Announcer())
+event_announcer = _Announcer()
+event.register("numba:compile", event_announcer)
 
 
 def thread_count(threads: int | None) -> int:
@@ -79,7 +80,12 @@ def thread_count(threads: int | None) -> int:
 
 
 def over_rows(
-    function: Any, rows: int, *arguments: Any, threads: int | None = None, grain: int = 64
+    function: Any,
+    rows: int,
+    *arguments: Any,
+    threads: int | None = None,
+    grain: int = 64,
+    then: Callable[[int, int], None] | None = None,
 ) -> None:
     """Calls ``function(*arguments, first, last)`` on ranges of rows, on several threads.
 
@@ -90,6 +96,7 @@ def over_rows(
         arguments: passed on.
         threads: how many; ``None`` for all processors.
         grain: fewest rows worth handing over.
+        then: called here with (first, last) of each range that is finished, while others run.
 
     Raises:
         OptionError: as :func:`thread_count`.
@@ -97,15 +104,17 @@ def over_rows(
     threads = thread_count(threads)
     if threads == 1 or rows < 2 * grain:
         function(*arguments, 0, rows)
+        if then is not None:
+            then(0, rows)
         return
     size = max(grain, -(-rows // (threads * 8)))  # several ranges a thread: rows differ in cost
+    ranges = [(first, min(first + size, rows)) for first in range(0, rows, size)]
     pool = _pool(threads)
-    waiting = [
-        pool.submit(partial(function, *arguments, first, min(first + size, rows)))
-        for first in range(0, rows, size)
-    ]
-    for each in waiting:
-        each.result()
+    waiting = [pool.submit(partial(function, *arguments, *each)) for each in ranges]
+    for each, future in zip(ranges, waiting, strict=True):
+        future.result()
+        if then is not None:
+            then(*each)
 
 
 @cache

@@ -2,7 +2,7 @@
 
 Nothing from Pinocchio is used here, so ``DHTable.fk`` is an oracle for the engine.
 
-Sources: note 000 section 三 and Craig, *Introduction to Robotics*, section 3.4 (modified);
+Sources: note 000 section 3 and Craig, *Introduction to Robotics*, section 3.4 (modified);
 note 002 and Siciliano et al., *Robotics*, section 2.8 (standard).
 """
 

@@ -6,7 +6,7 @@ are not in any of these.
 
 from __future__ import annotations
 
-import math
+from math import isfinite
 
 import numpy as np
 import pinocchio as pin
@@ -17,8 +17,6 @@ from kinlab.arrays import Array
 from kinlab.kinematics import each_state, statics
 from kinlab.robot import Robot, require_inertia, scratch
 from kinlab.states import finite_answer, joint_vector, joint_vectors, plain
-
-_INF = math.inf
 
 
 def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
@@ -107,7 +105,7 @@ def inverse_dynamics(
     require_inertia(robot)
     if wrench is None and plain(robot, q, v, a):
         tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
-        if tau.dot(tau) < _INF:  # one product sees NaN or infinity in any of q, v, a
+        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
             return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
     if q.ndim == 1:
@@ -138,7 +136,7 @@ def forward_dynamics(
     require_inertia(robot)
     if wrench is None and plain(robot, q, v, tau):
         a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
-        if a.dot(a) < _INF:
+        if isfinite(sum(a.tolist())):
             return a
     q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
     if wrench is not None:

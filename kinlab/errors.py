@@ -70,6 +70,10 @@ class FileError(KinlabError, OSError):
     """A file cannot be read or written."""
 
 
+class SweepError(KinlabError, RuntimeError):
+    """A sweep cannot go on: its workers keep dying. What is finished stays in its folder."""
+
+
 class MissingExtraError(KinlabError, ImportError):
     """A feature needs an optional package that is not installed."""
 

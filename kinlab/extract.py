@@ -1,6 +1,6 @@
 """The way back: any serial robot to a modified DH table, dynamics included.
 
-Frames are placed as note 000 (section 三) and Craig (section 3.4) say: z_i along joint axis i,
+Frames are placed as note 000 (section 3) and Craig (section 3.4) say: z_i along joint axis i,
 x_i along the common normal of axes i and i+1; where they intersect, x_i = z_i x z_{i+1} / norm;
 where they are parallel, frame i stands so that d_i = 0. The world's own z axis is axis 0, so the
 table's ``base`` is a turn and a shift about it, and frame n goes on along x_{n-1}.

@@ -49,7 +49,7 @@ def fk(robot: Robot, q: ArrayLike) -> Array:
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
-    """Geometric Jacobian: twist of the tool (v, w) = J qdot (note 000, section 四).
+    """Geometric Jacobian: twist of the tool (v, w) = J qdot (note 000, section 4).
 
     Args:
         robot: the robot.

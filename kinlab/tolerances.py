@@ -40,9 +40,9 @@ class Tolerances:
     intersecting_axes: float = 1e-10
     """Distance between two lines, in metres, below which they intersect."""
 
-    singular_sine: float = 1e-9
+    singular_sine: float = 1e-7
     """Sine of the angle between two bars of a five-bar below which they are in line. At the
-    edge of the workspace one ulp of position is a sine of 1e-8, so nothing regular is lost."""
+    edge of the workspace it is 1e-14 of the bars' length, a few ulps of the point itself."""
 
     closure: float = 1e-12
     """Gap of a closed loop, relative to the size of the mechanism, that Newton must reach; it

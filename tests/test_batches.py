@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -194,6 +195,28 @@ def test_eight_threads_on_one_robot():
         for got, want in zip(pool.map(answers, work), expected, strict=True):
             assert np.array_equal(got[0], want[0])
             assert np.array_equal(got[1], want[1])
+
+
+def test_threads_that_change_between_two_calls_of_the_engine():
+    """fk is several engine calls on one scratch: with a scratch in common this goes wrong."""
+    robot = kl.load("puma560")
+    q = stacks(robot, 8)[0]
+    expected = [(kl.fk(robot, row), kl.jacobian(robot, row)) for row in q]
+
+    def wrong(i):
+        same = np.array_equal
+        return sum(
+            not (same(kl.fk(robot, q[i]), pose) and same(kl.jacobian(robot, q[i]), jac))
+            for pose, jac in [expected[i]] * 4000
+        )
+
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        with ThreadPoolExecutor(8) as pool:
+            assert list(pool.map(wrong, range(8))) == [0] * 8
+    finally:
+        sys.setswitchinterval(interval)
 
 
 def test_answers_are_the_callers_own():

@@ -39,7 +39,8 @@ def test_installed_wheel_finds_its_robots(tmp_path):
     wheel = next(tmp_path.glob("kinlab-*.whl"))
     site = tmp_path / "site"
     zipfile.ZipFile(wheel).extractall(site)
-    assert (site / "kinlab" / "py.typed").is_file()
+    for file in ("py.typed", "viewer/page.js", "viewer/page.css"):
+        assert (site / "kinlab" / file).is_file(), file
     code = (
         f"import sys; sys.path.insert(0, {str(site)!r}); import kinlab as kl\n"
         "r = kl.load('puma560'); print(kl.__file__); print(r.n, r.table.name)"

@@ -21,7 +21,7 @@ from kinlab.analysis.task_space import (
     search_box,
     wrap,
 )
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array
 from kinlab.dh import DHTable
 from kinlab.errors import OptionError
 from kinlab.robot import Robot

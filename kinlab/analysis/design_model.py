@@ -115,7 +115,8 @@ class OpenChain:
             if entry.row is None:
                 tool[_AXES[entry.column], 3] = value
             else:
-                links[entry.row] = replace(links[entry.row], **{entry.column: float(value)})
+                changed: dict[str, Any] = {entry.column: float(value)}
+                links[entry.row] = replace(links[entry.row], **changed)
         return replace(self.table, links=tuple(links), tool=tool)
 
 

@@ -19,7 +19,6 @@ from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import (
-    TaskSpace,
     read_reachable_task,
     revolute,
     search_box,
@@ -63,19 +62,21 @@ class IsotropySearch:
     """Answer of :func:`find_isotropic`.
 
     Attributes:
-        robot: its name. task: the task. suggested: kinlab chose the task.
+        robot: its name. task: the task. rows: its rows. suggested: kinlab chose the task.
         length: ``given``, ``optimal`` or ``none needed``.
         configurations: isotropic configurations, families listed once. Empty: none was found.
         best_q: the best conditioned configuration, isotropic or not, (n,).
         best_condition: its condition number. best_length: its length, metres or ``None``.
         seeds: starts of the search. seed: of the random numbers.
         converged: starts that ended at isotropy.
-        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations,
-            where there is no isotropy: how often they agree on the best one.
+        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations
+            (from the dozen best starts that differ), where there is no isotropy: how far they
+            agree on the best one.
     """
 
     robot: str
     task: str
+    rows: tuple[int, ...]
     suggested: bool
     length: str
     configurations: tuple[IsotropicConfiguration, ...]
@@ -155,8 +156,8 @@ def find_isotropic(
         spread = (float(low), float(middle), float(high))
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     return IsotropySearch(
-        robot.name, space.name, space.suggested, how, configurations, best_q, best_condition,
-        best_length, seeds, seed, int(isotropic.sum()), spread,
+        robot.name, space.name, space.rows, space.suggested, how, configurations, best_q,
+        best_condition, best_length, seeds, seed, int(isotropic.sum()), spread,
     )  # fmt: skip
 
 
@@ -188,16 +189,13 @@ def isotropic_families(
     for free, freedom, place, size in seen:
         matrix = space.jacobian(place, size)
         sigma = singular_values(matrix)
-        found.append(
-            IsotropicConfiguration(
-                frozen(place),
-                float(sigma[0] / sigma[-1]),
-                size if space.mixed else None,
-                tuple(names[i] for i in free),
-                freedom,
-                frozen(matrix),
-            )  # fmt: skip
+        condition = float(sigma[0] / sigma[-1])
+        used = size if space.mixed else None
+        loose = tuple(names[i] for i in free)
+        entry = IsotropicConfiguration(
+            frozen(place), condition, used, loose, freedom, frozen(matrix)
         )
+        found.append(entry)
     return tuple(sorted(found, key=lambda c: tuple(np.round(c.q, 6))))
 
 

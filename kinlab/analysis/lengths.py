@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from kinlab.analysis.metrics import singular_values
 from kinlab.analysis.task_space import TaskSpace, read_length, read_task
@@ -82,6 +81,8 @@ def characteristic_length(
 
 def best_length(space: TaskSpace, q: Array) -> float:
     """The minimiser of the condition number over L: log kappa is scanned, then bracketed."""
+    from scipy.optimize import minimize_scalar  # `import kinlab` does not wait for scipy
+
     exponents = np.linspace(-_DECADES, _DECADES, 121)
 
     def cost(exponent: float) -> float:

@@ -77,7 +77,7 @@ class SingularFamily:
     """Configurations on one sheet of the singular set.
 
     Attributes:
-        kind: class of its members.
+        kind: class of its members; ``boundary/interior`` where they differ.
         deciding: names of the joints that decide; the others are free.
         pinned: values of the deciding joints where each is fixed on this sheet; empty where
             they vary together along a curve or surface.
@@ -270,9 +270,12 @@ def _family(
 ) -> SingularFamily:
     first = members[0]
     beyond = passes_beyond(space, first.q, first.lost[:, 0])
-    kind = str(key[0]) or _place(beyond)
-    named = members if key[0] else tuple(_with_kind(m, kind) for m in members)
-    return SingularFamily(kind, key[2], key[3], beyond, named)
+    if key[0]:
+        return SingularFamily(str(key[0]), key[2], key[3], beyond, members)
+    placed = [_with_kind(first, _place(beyond))]
+    placed += [_with_kind(m, _place(passes_beyond(space, m.q, m.lost[:, 0]))) for m in members[1:]]
+    kind = "/".join(sorted({m.kind for m in placed}))
+    return SingularFamily(kind, key[2], key[3], beyond, tuple(placed))
 
 
 def _place(beyond: bool | None) -> str:

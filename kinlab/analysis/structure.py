@@ -52,7 +52,8 @@ class Axes:
     def column(self, i: int, at: Array) -> Array:
         """Velocity of the point ``at`` per unit speed of joint i, (3,)."""
         if not self.turns[i]:
-            return self.direction[i]
+            slide: Array = self.direction[i]
+            return slide
         velocity: Array = np.cross(self.direction[i], at - self.point[i])
         return velocity
 

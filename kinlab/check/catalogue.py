@@ -29,6 +29,8 @@ NOTES = (
     "kinlab.notes.note002_mass",
     "kinlab.notes.note002_equations",
     "kinlab.notes.note002_coriolis",
+    "kinlab.notes.note003_kinematics",
+    "kinlab.notes.note003_dynamics",
 )
 """Modules of hand formulas, in the order of the report."""
 

@@ -16,7 +16,9 @@ _MODULES = (
     "kinlab.check.link_quantities",
     "kinlab.check.special_quantities",
     "kinlab.check.action_quantities",
+    "kinlab.check.table_check",
     "kinlab.check.identity",
+    "kinlab.check.fivebar_quantities",
 )
 """Modules whose ``QUANTITIES`` belong to the list."""
 
@@ -36,6 +38,7 @@ def quantities() -> dict[str, Quantity]:
     return found
 
 
+@cache
 def quantity(name: str) -> Quantity:
     """The quantity of a name such as ``"fk"``, ``"inverse_dynamics[0]"`` or ``"fk[:3,3]"``.
 

@@ -15,7 +15,8 @@ from kinlab.arrays import Array
 from kinlab.check.quantity import Domain
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
-from kinlab.errors import NameUnknownError, StructureError, near
+from kinlab.errors import NameUnknownError, near
+from kinlab.extract import to_dh
 from kinlab.notes.arm import Arm
 from kinlab.robot import Robot
 
@@ -50,16 +51,8 @@ def arm_of(table: DHTable) -> Arm:
 
 
 def numbers(robot: Robot) -> Arm:
-    """The plain numbers of a robot.
-
-    Raises:
-        StructureError: the robot does not come from a DH table.
-    """
-    if robot.table is None:
-        raise StructureError(
-            f"robot {robot.name!r} has no DH table; make one with kl.to_dh(robot) and load that"
-        )
-    return arm_of(robot.table)
+    """The plain numbers of a robot's DH table, extracted where it comes from a URDF."""
+    return arm_of(to_dh(robot) if robot.table is None else robot.table)
 
 
 def load(robot: Any) -> Robot:
@@ -69,14 +62,18 @@ def load(robot: Any) -> Robot:
     if isinstance(robot, DHTable):
         return Robot.from_dh(robot)
     if isinstance(robot, (str, Path)):
-        return _named(str(robot))
+        name = str(robot)
+        # a file may change between two calls, what ships does not
+        return (
+            _shipped(name) if name in SPECIAL or name in library.shipped() else library.load(name)
+        )
     raise NameUnknownError(
         f"robot: {type(robot).__name__} is no Robot, DHTable, name or path of one"
     )
 
 
 @cache
-def _named(name: str) -> Robot:
+def _shipped(name: str) -> Robot:
     special = SPECIAL.get(name)
     return library.load(name) if special is None else Robot.from_dh(special())
 

@@ -21,12 +21,12 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped
 from kinlab.errors import OptionError, SingularError, UnreachableError
+from kinlab.fivebar.continuation import lead_to_zero
 from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.pose import HANGING, Mode, read_mode
 from kinlab.tolerances import TOLERANCES
 
 CRANKS, PASSIVE = (0, 2), (1, 3)
-JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
-_STEPS = 30
 
 
 @dataclass(frozen=True)
@@ -51,8 +51,7 @@ class ClosedChain:
         """Closes the loop for given crank angles by Newton, staying in one assembly mode.
 
         Inside a branch the closure's Jacobian is regular, so the gap can be led straight to
-        zero: in one go where Newton converges without changing the sign of w_1 x w_2, and
-        else in as many parts as that takes.
+        zero without a change of the sign of w_1 x w_2; see :mod:`kinlab.fivebar.continuation`.
 
         Args:
             theta: (2,), rad.
@@ -79,14 +78,77 @@ class ClosedChain:
             q[[*PASSIVE]] = shaped(guess, (2,), f"{name}: guess")
             if self._rods_sine(q) * assembly <= 0:
                 raise OptionError(f"{name}: the guess is not in assembly mode {assembly:+d}")
-        q, gap = self._lead_to_zero(data, q, assembly)
-        if gap > TOLERANCES.closure * self.size:
+        data = self.model.createData()
+
+        def residual(passive: Array) -> tuple[Array, Array]:
+            gap, rows = self.closure(_joined(angles, passive), data)
+            return gap, rows[:, PASSIVE]
+
+        def inside(passive: Array) -> bool:
+            return self._rods_sine(_joined(angles, passive)) * assembly > 0
+
+        tolerance = TOLERANCES.closure * self.size
+        passive, gap = lead_to_zero(residual, q[[*PASSIVE]], inside, tolerance)
+        if gap > tolerance:
             raise UnreachableError(
                 f"{name}: the loop stays open by {gap:.3g} m at theta = ({angles[0]:.9g}, "
                 f"{angles[1]:.9g}) rad in assembly mode {assembly:+d}; the elbows are too far "
                 "apart or too close"
             )
+        return _joined(angles, passive)
+
+    def at(self, xy: ArrayLike, mode: Mode = HANGING) -> Array:
+        """The pose with the tool at a point, leg by leg, by Newton in one working mode.
+
+        Args:
+            xy: (2,), m.
+            mode: signs of u_i x w_i.
+
+        Returns:
+            q, (4,), rad, with both rod ends within 1e-12 of the mechanism's size of the point.
+
+        Raises:
+            UnreachableError: a leg cannot get there; the message holds the gap that is left.
+            OptionError: a mode that does not exist.
+        """
+        point, signs = shaped(xy, (2,), f"{self.linkage.name}: xy"), read_mode(mode)
+        data, tolerance = self.model.createData(), TOLERANCES.closure * self.size
+        q = np.zeros(4)
+        for leg, sign in enumerate(signs):
+            joints = slice(2 * leg, 2 * leg + 2)
+
+            def residual(x: Array, joints: slice = joints, leg: int = leg) -> tuple[Array, Array]:
+                full = np.zeros(4)
+                full[joints] = x
+                end, rows = self._rod_end(full, leg, data)
+                return end - point, rows[:, joints]
+
+            def inside(x: Array, sign: float = sign) -> bool:
+                return bool(np.sin(x[1]) * sign > 0)
+
+            start = np.array([0.0, 0.5 * np.pi * sign])
+            base = np.array([self.linkage.base_x[leg], 0.0])
+            arm = residual(start)[0] + point - base
+            start[0] = np.arctan2(*(point - base)[::-1]) - np.arctan2(arm[1], arm[0])
+            q[joints], gap = lead_to_zero(residual, start, inside, tolerance)
+            if gap > tolerance:
+                raise UnreachableError(
+                    f"{self.linkage.name}: leg {leg + 1} stays {gap:.3g} m short of "
+                    f"({point[0]:.9g}, {point[1]:.9g}) m"
+                )
         return q
+
+    def _rod_end(self, q: Array, leg: int, data: Any) -> tuple[Array, Array]:
+        """The end of a leg's rod (2,) and its Jacobian (2, 4), base axes."""
+        anchor = self.anchor
+        joint = (anchor.joint1_id, anchor.joint2_id)[leg]
+        place = (anchor.joint1_placement, anchor.joint2_placement)[leg]
+        pin.computeJointJacobians(self.model, data, q)
+        end = data.oMi[joint].act(place.translation)
+        rows = pin.getFrameJacobian(
+            self.model, data, joint, place, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+        )
+        return np.array(end[:2]), np.array(rows[:2])
 
     def _right_angle(self, data: Any, q: Array, assembly: int) -> Array:
         """Absolute angles of rods at right angles whose ends are apart along the elbows' line.
@@ -98,36 +160,6 @@ class ClosedChain:
         first, second = np.asarray(self.linkage.l2)
         turn = np.arctan2(span[1], span[0]) + assembly * np.arctan2(second, first)
         return np.array([turn, turn + assembly * 0.5 * np.pi])
-
-    def _lead_to_zero(self, data: Any, q: Array, assembly: int) -> tuple[Array, float]:
-        """Leads the gap to zero along a straight line, in one step where Newton manages that."""
-        first, _ = self.closure(q, data)
-        done, stride = 0.0, 1.0
-        while done < 1.0 and stride > 1e-6:
-            goal = min(1.0, done + stride)
-            found = self._newton(data, q, (1.0 - goal) * first, assembly)
-            if found is None:
-                stride *= 0.5
-            else:
-                q, done, stride = found, goal, 2.0 * stride
-        return q, float(np.linalg.norm(self.closure(q, data)[0]))
-
-    def _newton(self, data: Any, q: Array, gap: Array, assembly: int) -> Array | None:
-        """Newton on the passive angles until the gap is as given; None if it leaves the branch."""
-        q = q.copy()
-        before = np.inf
-        for _ in range(_STEPS):
-            error, rows = self.closure(q, data)
-            left = float(np.linalg.norm(error - gap))
-            if left <= 1e-3 * TOLERANCES.closure * self.size:
-                return q
-            if left > 0.5 * before:  # not converging, or as near as rounding lets it
-                return q if left <= TOLERANCES.closure * self.size else None
-            before = left
-            q[[*PASSIVE]] -= np.linalg.solve(rows[:, PASSIVE], error - gap)
-            if self._rods_sine(q) * assembly <= 0:
-                return None
-        return None
 
     @staticmethod
     def _rods_sine(q: Array) -> float:
@@ -253,30 +285,7 @@ class ClosedChain:
             )
 
 
-def build(linkage: Linkage) -> ClosedChain:
-    """Builds the tree, the payload and the anchor."""
-    model = pin.Model()
-    model.name = linkage.name
-    model.gravity.linear = np.array([*np.asarray(linkage.gravity), 0.0])
-    l1, l2 = np.asarray(linkage.l1), np.asarray(linkage.l2)
-    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
-    ends = []
-    for leg in range(2):
-        base = pin.SE3(np.eye(3), np.array([linkage.base_x[leg], 0.0, 0.0]))
-        elbow = pin.SE3(np.eye(3), np.array([l1[leg], 0.0, 0.0]))
-        crank = model.addJoint(0, pin.JointModelRZ(), base, JOINTS[2 * leg])
-        rod = model.addJoint(crank, pin.JointModelRZ(), elbow, JOINTS[2 * leg + 1])
-        for joint, part in ((crank, "crank"), (rod, "rod")):
-            mass, com, spin = (
-                float(getattr(linkage, f"{part}_{what}")[leg])
-                for what in ("mass", "com", "inertia")
-            )
-            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
-            model.appendBodyToJoint(joint, body, pin.SE3.Identity())
-        model.armature[model.joints[crank].idx_v] = rotor[leg]
-        ends.append((rod, pin.SE3(np.eye(3), np.array([l2[leg], 0.0, 0.0]))))
-    load = pin.Inertia(linkage.payload, ends[0][1].translation, np.zeros((3, 3)))
-    model.appendBodyToJoint(ends[0][0], load, pin.SE3.Identity())
-    tool = model.addFrame(pin.Frame("tool", ends[0][0], *ends[0][1:], pin.FrameType.OP_FRAME))
-    anchor = pin.PointAnchorConstraintModel(model, *ends[0], *ends[1])
-    return ClosedChain(linkage, model, anchor, tool)
+def _joined(cranks: Array, passive: Array) -> Array:
+    q = np.empty(4)
+    q[[*CRANKS]], q[[*PASSIVE]] = cranks, passive
+    return q

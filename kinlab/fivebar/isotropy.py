@@ -19,10 +19,10 @@ from kinlab.fivebar.loci import grid
 from kinlab.fivebar.metrics import condition_number, pressure_angles, singular_values
 from kinlab.fivebar.pose import HANGING, Mode, solve_pose
 
-_NEWTON_STEPS = 40
+_STEPS, _NEWTON_STEPS = 60, 30
 _SAME_PLACE = 3e-3
 """Two answers closer than this part of the linkage's size are one: at a fully isotropic pose
-the conditions are flat along x, and Newton ends anywhere within a few 1e-4."""
+the conditions are flat along x, and descent ends anywhere within a few 1e-4."""
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ class IsotropicPose:
 def isotropic_poses(
     linkage: Linkage, mode: Mode = HANGING, resolution: int = 41
 ) -> list[IsotropicPose]:
-    """Finds the isotropic poses of one working mode by Newton from a grid of starts.
+    """Finds the isotropic poses of one working mode by descent from a grid of starts.
 
     With both cranks on one axis (e = 0) each pose is one of a whole circle; the one straight
     below is returned.
@@ -66,7 +66,10 @@ def isotropic_poses(
     _, _, points = grid(linkage, resolution)
     points = points[solve_pose(linkage, points, mode, "mask", regular="I II").ok]
     size = float(np.sum(linkage.l1) + np.sum(linkage.l2))
-    points = _newton(linkage, points, mode, size, rcond=1e-6)
+    points = _descend(linkage, points, mode, size)
+    # descent creeps along a curved, nearly flat valley; Newton jumps
+    jumped = _newton(linkage, points, mode, size, rcond=1e-9, steps=_NEWTON_STEPS)
+    points = np.concatenate([points, jumped])
     points = points[condition_number(linkage, points, mode) - 1.0 < 1e-9]
     if linkage.e == 0.0:
         points = np.stack([np.zeros(len(points)), -np.hypot(points[:, 0], points[:, 1])], axis=1)
@@ -77,18 +80,40 @@ def isotropic_poses(
         points = points[~near]
     if not middles:
         return []
-    # a middle is off only across the flat direction, which the larger rcond leaves alone
-    points = _newton(linkage, np.array(middles), mode, size, rcond=1e-2)
+    # a middle may be off along the flat direction, which the larger rcond leaves alone
+    points = _newton(linkage, np.array(middles), mode, size, rcond=1e-2, steps=5)
     return [_describe(linkage, point, mode) for point in points[np.lexsort(points.T)]]
 
 
-def _newton(linkage: Linkage, points: Array, mode: Mode, size: float, rcond: float) -> Array:
-    """Newton from all points at once; those that leave the workspace are dropped."""
-    for _ in range(_NEWTON_STEPS):
+def _descend(linkage: Linkage, points: Array, mode: Mode, size: float) -> Array:
+    """Levenberg-Marquardt on the two conditions from all points at once."""
+    damping = np.full(len(points), 1e-3)
+    value, slope = _conditions(linkage, points, mode, 1e-6 * size)
+    slope = slope * size  # steps in parts of the size
+    for _ in range(_STEPS):
+        normal = slope.swapaxes(1, 2) @ slope + damping[:, None, None] * np.eye(2)
+        pull = np.einsum("nji,nj->ni", slope, value)
+        step = np.linalg.solve(normal, -pull[..., None])[..., 0]
+        step *= np.minimum(1.0, 0.05 / np.maximum(np.linalg.norm(step, axis=1), 1e-300))[:, None]
+        trial = points + size * step
+        inside = solve_pose(linkage, trial, mode, "mask", regular="I II").ok
+        trial = np.where(inside[:, None], trial, points)
+        new_value, new_slope = _conditions(linkage, trial, mode, 1e-6 * size)
+        better = inside & (np.sum(new_value**2, axis=1) < np.sum(value**2, axis=1))
+        points = np.where(better[:, None], trial, points)
+        value = np.where(better[:, None], new_value, value)
+        slope = np.where(better[:, None, None], size * new_slope, slope)
+        damping = np.clip(np.where(better, 0.1 * damping, 10.0 * damping), 1e-14, 1e6)
+    return points
+
+
+def _newton(
+    linkage: Linkage, points: Array, mode: Mode, size: float, rcond: float, steps: int
+) -> Array:
+    """Newton by pseudo-inverse; points that leave the workspace are dropped."""
+    for _ in range(steps):
         value, slope = _conditions(linkage, points, mode, 1e-6 * size)
-        step = -np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=rcond), value)
-        length = np.linalg.norm(step, axis=1, keepdims=True)
-        points = points + step * np.minimum(1.0, 0.05 * size / np.maximum(length, 1e-300))
+        points = points - np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=rcond), value)
         points = points[solve_pose(linkage, points, mode, "mask", regular="I II").ok]
     return points
 

@@ -18,6 +18,9 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, frozen, real_array, shaped
 from kinlab.errors import MechanismError
 
+JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
+"""Names of the four joints of the tree that the loop is cut into."""
+
 _PAIRS = (
     "l1", "l2", "crank_mass", "crank_com", "crank_inertia", "rod_mass", "rod_com",
     "rod_inertia", "rotor_inertia", "gear_ratio",

@@ -116,7 +116,7 @@ class FiveBar(Linkage):
 
     def closed_chain(self) -> ClosedChain:
         """The same linkage in Pinocchio; see :mod:`kinlab.fivebar.closed_chain`."""
-        from kinlab.fivebar.closed_chain import build
+        from kinlab.fivebar.tree import build
 
         return build(self)
 

@@ -19,7 +19,7 @@ from kinlab.errors import OptionError, SingularError, StateError, UnreachableErr
 from kinlab.fivebar.linkage import Linkage
 from kinlab.tolerances import TOLERANCES
 
-Mode = Sequence[int]
+Mode = Sequence[int] | Array
 OnUnreachable = Literal["raise", "mask"]
 Mask = NDArray[np.bool_]
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
-from kinlab.errors import OptionError
+from kinlab.errors import InertiaError, OptionError
 from kinlab.fivebar.demand import Worst, refuse_singular, row_norms, torque_forms, worst
 from kinlab.fivebar.dynamics import crank_inertia, joint_mass
 from kinlab.fivebar.fitting import MotorFit, Task, fit_motor
@@ -25,6 +25,8 @@ from kinlab.fivebar.pose import HANGING, Mode, Pose
 from kinlab.fivebar.rods import rod_model
 from kinlab.fivebar.room import Rectangle, read_rectangle
 from kinlab.fivebar.trajectory import LIFT, TRAVEL, Cycle, Path, follow, pick_and_place
+
+_MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
 @dataclass(frozen=True)
@@ -98,6 +100,7 @@ def size_servo(
         OptionError: a limit that is not positive, an empty rectangle, an impossible efficiency.
         UnreachableError, SingularError: the rectangle is not free of singularities; says where.
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
+        InertiaError: the linkage has neither masses nor a payload.
     """
     box = read_rectangle(workspace, linkage.name)
     limits = {"v_max": v_max, "a_max": a_max}
@@ -108,6 +111,11 @@ def size_servo(
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
     if not 0.0 < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
+    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
+        raise InertiaError(
+            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
+            "can be sized"
+        )
     refuse_singular(linkage, box, mode)
     exact, massless = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)

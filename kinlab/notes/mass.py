@@ -1,6 +1,6 @@
 """The mass matrix from the link Jacobians, its derivatives, and the potential energy, by hand.
 
-Sources: note 002 sections 2 and 3; note 000, dynamics 三. Everything is in the base's axes.
+Sources: note 002 sections 2 and 3; note 000, dynamics 3. Everything is in the base's axes.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ def _miss(arm: Arm, q: Array, target: Array) -> Array:
 
 @formula(
     "000.newton",
-    source="note 000, inverse kinematics 一",
+    source="note 000, inverse kinematics 1",
     quantity="newton_step",
     robots="planar3r",
     latex=r"q_{k+1} = q_k + J^{-1}(q_k)\,[x_d - f(q_k)]",
@@ -41,7 +41,7 @@ def newton_step(arm: Arm, q: Array, target: Array) -> Array:
 @formula(
     "000.newton",
     part="stop",
-    source="note 000, inverse kinematics 一",
+    source="note 000, inverse kinematics 1",
     quantity="newton_stops",
     robots="planar3r",
     latex=r"\lVert x_d - f(q) \rVert < \varepsilon \ \text{ or }\ "
@@ -70,7 +70,7 @@ def _left(arm: Arm, q: Array, twist: Array) -> Array:
 @formula(
     "000.pinv",
     part="redundant",
-    source="note 000, inverse kinematics 一",
+    source="note 000, inverse kinematics 1",
     quantity="least_rates",
     robots="panda",
     latex=r"\dot q = \fixed{J^T (J J^T)^{-1}}\, \dot x",
@@ -91,7 +91,7 @@ def right_inverse(arm: Arm, q: Array, twist: Array) -> Array:
 @formula(
     "000.pinv",
     part="too few joints",
-    source="note 000, inverse kinematics 一",
+    source="note 000, inverse kinematics 1",
     quantity="least_rates",
     robots=("spatial3r", "planar3r"),
     remark="normal equations square the condition number: shown away from singular poses",
@@ -105,7 +105,7 @@ def left_inverse(arm: Arm, q: Array, twist: Array) -> Array:
 @formula(
     "000.grad",
     part="loss",
-    source="note 000, inverse kinematics 二",
+    source="note 000, inverse kinematics 2",
     quantity="loss",
     robots="planar3r",
     latex=r"g(q) = \tfrac12 \lVert x_d - f(q) \rVert^2",
@@ -119,7 +119,7 @@ def loss(arm: Arm, q: Array, target: Array) -> Any:
 @formula(
     "000.grad",
     part="gradient",
-    source="note 000, inverse kinematics 二",
+    source="note 000, inverse kinematics 2",
     quantity="loss_gradient",
     robots="planar3r",
     latex=r"\nabla g = -J^T [x_d - f(q)]",
@@ -132,7 +132,7 @@ def loss_gradient(arm: Arm, q: Array, target: Array) -> Array:
 @formula(
     "000.grad",
     part="step",
-    source="note 000, inverse kinematics 二",
+    source="note 000, inverse kinematics 2",
     quantity="gradient_step",
     robots="planar3r",
     latex=r"q_{k+1} = q_k + \alpha J^T [x_d - f(q)]",

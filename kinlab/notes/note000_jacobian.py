@@ -1,4 +1,4 @@
-"""Note 000, section 四: the Jacobian, by differentiation, by velocities, between frames."""
+"""Note 000, section 4: the Jacobian, by differentiation, by velocities, between frames."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from kinlab.notes.frames import (
 
 @formula(
     "000.J",
-    source="note 000, section 四.1",
+    source="note 000, section 4.1",
     quantity="jacobian",
     robots="serial",
     latex=r"J = \left[\frac{\partial f_i}{\partial q_j}\right]",
@@ -49,7 +49,7 @@ def jacobian_by_differentiation(arm: Arm, q: Array) -> Array:
 
 @formula(
     "000.J3r",
-    source="note 000, section 四.1",
+    source="note 000, section 4.1",
     quantity="planar_jacobian",
     robots="planar3r",
     latex=r"{}^0J = \begin{pmatrix} -l_3 s_{123} - l_2 s_{12} - l_1 s_1 & -l_3 s_{123} - l_2 s_{12}"
@@ -102,7 +102,7 @@ _VELOCITY = (
 
 @formula(
     "000.vel",
-    source="note 000, section 四.2",
+    source="note 000, section 4.2",
     quantity="link_velocities",
     robots="serial",
     latex=_VELOCITY + r"\fixed{ + \dot d_{i+1}\,{}^{i+1}\hat Z_{i+1}}",
@@ -121,7 +121,7 @@ def velocities(arm: Arm, q: Array, v: Array) -> Array:
 @formula(
     "000.omega",
     part="base",
-    source="note 000, section 四.2",
+    source="note 000, section 4.2",
     quantity="jacobian[3:]",
     robots="serial",
     latex=r"{}^0J_\omega = ({}^0\hat Z_1\ \ {}^0\hat Z_2\ \cdots\ {}^0\hat Z_n)",
@@ -143,7 +143,7 @@ def _omega_printed(arm: Arm, q: Array) -> Array:
 @formula(
     "000.omega",
     part="last frame",
-    source="note 000, section 四.2",
+    source="note 000, section 4.2",
     quantity="angular_jacobian_last",
     robots="serial",
     latex=r"{}^n\omega_n = \sum_i \fixed{{}^n_iR} \begin{pmatrix} 0 \\ 0 \\ 1 \end{pmatrix}"
@@ -166,7 +166,7 @@ def angular_jacobian_last(arm: Arm, q: Array) -> Array:
 
 @formula(
     "000.Jw3",
-    source="note 000, section 四.2, example",
+    source="note 000, section 4.2, example",
     quantity="jacobian[3:]",
     robots="spatial3r",
     latex=r"{}^0J_\omega = \begin{pmatrix} 0 & 0 & s_{12} \\ 0 & 0 & -c_{12} \\ 1 & 1 & 0"
@@ -205,7 +205,7 @@ def turn_rows(rotation: Array, jacobian: Array) -> Array:
 
 @formula(
     "000.Jframe",
-    source="note 000, section 四.3",
+    source="note 000, section 4.3",
     quantity="jacobian",
     robots="serial",
     latex=r"{}^AJ = \begin{pmatrix} {}^A_BR & 0 \\ 0 & {}^A_BR \end{pmatrix} {}^BJ",
@@ -224,7 +224,7 @@ def _only_regular(arm: Arm, q: Array) -> Array:
 @formula(
     "000.Jframe",
     part="singular",
-    source="note 000, section 四.3",
+    source="note 000, section 4.3",
     quantity="singular_jacobian",
     robots="planar3r",
     latex=r"{}^AJ = \mathrm{blkdiag}(R, R)\,{}^BJ \quad \fixed{\text{always}}",

@@ -1,4 +1,4 @@
-"""Note 000, dynamics 二 and 三: the MVG form and the energies of the links."""
+"""Note 000, dynamics 2 and 3: the MVG form and the energies of the links."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def _motion_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
 @formula(
     "000.MVG",
     part="M",
-    source="note 000, dynamics 二",
+    source="note 000, dynamics 2",
     quantity="mass_matrix",
     robots="serial",
     latex=r"M e_j = \tau(q, 0, e_j) - G",
@@ -35,7 +35,7 @@ def mvg_mass(arm: Arm, q: Array) -> Array:
 @formula(
     "000.MVG",
     part="B",
-    source="note 000, dynamics 二",
+    source="note 000, dynamics 2",
     quantity="coriolis_coefficients",
     robots=("planar2r", "planar3r", "spatial3r", "scara", "stanford", "puma560", "panda", "ur5"),
     latex=r"V = \underbrace{B(\theta)}_{n \times \binom n2} [\dot\theta_i \dot\theta_j]_{i<j}"
@@ -58,7 +58,7 @@ def mvg_products(arm: Arm, q: Array) -> Array:
 @formula(
     "000.MVG",
     part="C",
-    source="note 000, dynamics 二",
+    source="note 000, dynamics 2",
     quantity="centrifugal_coefficients",
     robots="serial",
     latex=r"V = B(\theta)[\dot\theta_i \dot\theta_j] + C(\theta)[\dot\theta^2]",
@@ -72,7 +72,7 @@ def mvg_squares(arm: Arm, q: Array) -> Array:
 @formula(
     "000.MVG",
     part="G",
-    source="note 000, dynamics 二",
+    source="note 000, dynamics 2",
     quantity="gravity_torques",
     robots="serial",
     latex=r"G = \tau(q, 0, 0)",
@@ -86,7 +86,7 @@ def mvg_gravity(arm: Arm, q: Array) -> Array:
 @formula(
     "000.MVG",
     part="tau",
-    source="note 000, dynamics 二",
+    source="note 000, dynamics 2",
     quantity="inverse_dynamics",
     robots="serial",
     latex=r"\tau = M \ddot\theta + B[\dot\theta_i\dot\theta_j] + C[\dot\theta^2] + G",
@@ -104,7 +104,7 @@ def mvg_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
 @formula(
     "000.lag",
     part="k",
-    source="note 000, dynamics 三",
+    source="note 000, dynamics 3",
     quantity="link_kinetic_energies",
     robots="serial",
     latex=r"k_i = \tfrac12 m_i \lVert \vec v_{C_i} \rVert^2 + \tfrac12 \omega_i^T I_i\,\omega_i",
@@ -127,7 +127,7 @@ def _u_printed(arm: Arm, q: Array) -> Any:
 @formula(
     "000.lag",
     part="u",
-    source="note 000, dynamics 三",
+    source="note 000, dynamics 3",
     quantity="link_potential_energies",
     robots="serial",
     latex=r"u_i = \fixed{+m_i g h_i} = -m_i\, \vec g^T \vec P_{C_i}",
@@ -145,7 +145,7 @@ def potential_energies(arm: Arm, q: Array) -> Any:
 @formula(
     "000.lag",
     part="tau",
-    source="note 000, dynamics 三",
+    source="note 000, dynamics 3",
     quantity="inverse_dynamics",
     robots="serial",
     latex=r"\tau_i = \frac{d}{dt}\frac{\partial k}{\partial \dot\theta_i}"

@@ -1,4 +1,4 @@
-"""Note 000, dynamics 一 and 二: Newton-Euler outward and inward, the MVG form.
+"""Note 000, dynamics 1 and 2: Newton-Euler outward and inward, the MVG form.
 
 Gravity is not in the note's formulas: it enters as an acceleration of the base, v_dot_0 = -g.
 The rotors' inertia (armature) adds armature * qddot to each joint's torque.
@@ -83,7 +83,7 @@ _OMEGA_DOT = (
 
 @formula(
     "000.ne.out",
-    source="note 000, dynamics 一",
+    source="note 000, dynamics 1",
     quantity="link_accelerations",
     robots="serial",
     latex=_OMEGA_DOT + r"\fixed{({}^{i+1}_iR\,{}^i\omega_i) \times \dot\theta_{i+1}"
@@ -111,7 +111,7 @@ def centre_accelerations(arm: Arm, motion: Motion) -> Array:
 
 @formula(
     "000.ne.com",
-    source="note 000, dynamics 一",
+    source="note 000, dynamics 1",
     quantity="com_accelerations",
     robots="serial",
     latex=r"{}^i\dot v_{C_i} = {}^i\dot v_i + {}^i\dot\omega_i \times {}^ip_{C_i}"
@@ -133,7 +133,7 @@ def inertial(arm: Arm, motion: Motion) -> tuple[Array, Array]:
 
 @formula(
     "000.ne.FN",
-    source="note 000, dynamics 一",
+    source="note 000, dynamics 1",
     quantity="inertial_wrenches",
     robots="serial",
     latex=r"F_i = m_i \dot v_{C_i},\quad N_i = {}^{C_i}I_i\,\dot\omega_i"
@@ -169,7 +169,7 @@ def inward(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravity
 
 @formula(
     "000.ne.in",
-    source="note 000, dynamics 一",
+    source="note 000, dynamics 1",
     quantity="joint_wrenches",
     robots="serial",
     latex=r"f_i = {}^i_{i+1}R f_{i+1} + F_i,\quad n_i = {}^i_{i+1}R n_{i+1}"
@@ -191,7 +191,7 @@ def torques(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravit
 @formula(
     "000.ne.in",
     part="tau",
-    source="note 000, dynamics 一",
+    source="note 000, dynamics 1",
     quantity="inverse_dynamics_loaded",
     robots="serial",
     latex=r"\tau_i = n_i \cdot \hat Z \ \text{or}\ f_i \cdot \hat Z,\quad"

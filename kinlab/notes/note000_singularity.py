@@ -1,4 +1,4 @@
-"""Note 000, sections 五 and 六: singular and isotropic poses of planar arms."""
+"""Note 000, sections 5 and 6: singular and isotropic poses of planar arms."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from kinlab.notes.arm import Arm, Array, columns, lengths, matrix, turn
 @formula(
     "000.sing",
     part="3R",
-    source="note 000, section 五",
+    source="note 000, section 5",
     quantity="planar_determinant",
     robots="planar3r",
     latex=r"\det J = l_1 l_2 s_2",
@@ -28,7 +28,7 @@ def planar_3r_determinant(arm: Arm, q: Array) -> Any:
 @formula(
     "000.sing",
     part="2R",
-    source="note 000, section 五",
+    source="note 000, section 5",
     quantity="planar_position_determinant",
     robots=("planar2r", "planar2r_rods"),
     latex=r"\det J_{xy} = l_1 l_2 s_2",
@@ -53,7 +53,7 @@ def _rows_gram(arm: Arm, q: Array) -> Array:
 
 @formula(
     "000.iso",
-    source="note 000, section 六",
+    source="note 000, section 6",
     quantity="column_products",
     robots=("planar2r", "planar2r_rods"),
     latex=r"\text{columns orthogonal and equal: } \fixed{J^T J} = a I",
@@ -73,7 +73,7 @@ def column_products(arm: Arm, q: Array) -> Array:
 @formula(
     "000.iso2r",
     part="3J",
-    source="note 000, section 六",
+    source="note 000, section 6",
     quantity="jacobian_tool[:2]",
     robots=("planar2r", "planar2r_rods"),
     latex=r"{}^3J = \begin{pmatrix} l_1 s_2 & 0 \\ l_1 c_2 + l_2 & l_2 \end{pmatrix}",
@@ -86,7 +86,7 @@ def planar_2r_tip_jacobian(arm: Arm, q: Array) -> Array:
 @formula(
     "000.iso2r",
     part="orthogonal",
-    source="note 000, section 六.1",
+    source="note 000, section 6.1",
     quantity="orthogonal_columns_cosine",
     robots=("planar2r", "planar2r_rods"),
     latex=r"c_2 = -\frac{l_2}{l_1}",
@@ -100,7 +100,7 @@ def orthogonal_cosine(arm: Arm, q: Array) -> Array:
 @formula(
     "000.iso2r",
     part="equal",
-    source="note 000, section 六.2",
+    source="note 000, section 6.2",
     quantity="equal_columns_cosine",
     robots=("planar2r", "planar2r_rods"),
     latex=r"c_2 = -\frac{l_1}{2 l_2}",
@@ -120,7 +120,7 @@ def _one_angle(arm: Arm, q: Array) -> Array:
 @formula(
     "000.iso2r",
     part="135 degrees",
-    source="note 000, section 六",
+    source="note 000, section 6",
     quantity="isotropic_jacobian",
     robots="planar2r_isotropic",
     latex=r"l_1 = \sqrt2\, l_2,\ \theta_2 = \fixed{\pm} 135^\circ \Rightarrow"

@@ -1,4 +1,4 @@
-"""Note 000, section 三 (kinematics): rotations, Craig's link transform, the chain, planar 3R."""
+"""Note 000, section 3 (kinematics): rotations, Craig's link transform, the chain, planar 3R."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from kinlab.notes.frames import (
 @formula(
     "000.R",
     part="inverse",
-    source="note 000, section 二",
+    source="note 000, section 2",
     quantity="rotation_inverse",
     robots="identity",
     latex=r"R^{-1} = R^T,\quad \det R = 1",
@@ -33,7 +33,7 @@ def rotation_inverse(_: None, rotation: Array) -> Array:
 @formula(
     "000.R",
     part="length",
-    source="note 000, section 二",
+    source="note 000, section 2",
     quantity="rotated_length",
     robots="identity",
     latex=r"\lVert {}^1p \rVert = \lVert R\,{}^0p \rVert = \lVert {}^0p \rVert",
@@ -47,7 +47,7 @@ def rotated_length(_: None, rotation: Array, point: Array) -> Any:
 @formula(
     "000.R",
     part="determinant",
-    source="note 000, section 二",
+    source="note 000, section 2",
     quantity="rotation_determinant",
     robots="identity",
     latex=r"\det R = 1",
@@ -72,7 +72,7 @@ _DH = (
 
 @formula(
     "000.dh",
-    source="note 000, section 三",
+    source="note 000, section 3",
     quantity="link_transforms",
     robots="modified",
     latex=_DH + r"\fixed{\text{ counter-clockwise}}",
@@ -89,7 +89,7 @@ def modified_link_transforms(arm: Arm, q: Array) -> Array:
 
 @formula(
     "000.chain",
-    source="note 000, section 三",
+    source="note 000, section 3",
     quantity="fk",
     robots="serial",
     latex=r"{}^0_nT = {}^0_1T\,{}^1_2T \cdots {}^{n-1}_nT",
@@ -103,7 +103,7 @@ def chain(arm: Arm, q: Array) -> Array:
 @formula(
     "000.axes",
     part="intersecting",
-    source="note 000, section 三, special cases",
+    source="note 000, section 3, special cases",
     quantity="common_normals",
     robots=("stanford", "puma560", "puma560_modified", "panda", "ur5", "spatial3r"),
     latex=r"x_{i-1} = \pm\frac{z_{i-1} \times z_i}{\lVert z_{i-1} \times z_i \rVert}",
@@ -123,7 +123,7 @@ def common_normals(arm: Arm, q: Array) -> Array:
 @formula(
     "000.axes",
     part="parallel",
-    source="note 000, section 三, special cases",
+    source="note 000, section 3, special cases",
     quantity="link_transforms",
     robots=("planar2r", "planar3r"),
     latex=r"z_{i-1} \parallel z_i:\quad d_i = 0",

@@ -1,0 +1,55 @@
+"""Words that the page and the Markdown report share."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from kinlab.check.summary import Group
+
+NOTES = {
+    "000": "Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics",
+    "001": "Note 001: Lagrange, the planar 2R arm with point masses",
+    "002": "Note 002: Lagrange in general, standard DH",
+    "003": "Note 003: the two-degree-of-freedom parallel robot",
+    "table": "Arms: the DH table by hand beside the engines",
+}
+"""Section titles by note number; ``table`` for the checks of single arms."""
+
+HOW = (
+    "Each formula is evaluated by hand and by the engine (Pinocchio) at random states. The error "
+    "of a state is the largest difference of an entry over the largest entry of the engine's "
+    "answer. A corrected form must stay below 1e-9; a misprint must show above 1e-3."
+)
+
+
+def counts(groups: Sequence[Group]) -> str:
+    """How many formulas, rows, misprints and failures, in one sentence."""
+    rows = [row for group in groups for row in group.rows]
+    states = sum(row.corrected.samples for row in rows)
+    misprints = sum(group.printed_error is not None for group in groups)
+    wrong = sum(not group.ok for group in groups)
+    text = (
+        f"{several(len(groups), 'formula')} on "
+        f"{several(len({row.robot for row in rows}), 'mechanism')}, {several(len(rows), 'row')}, "
+        f"{several(states, 'random state')}; {several(misprints, 'misprint')} shown; "
+    )
+    return text + (f"{several(wrong, 'formula')} WRONG." if wrong else "every correct form agrees.")
+
+
+def several(count: int, word: str) -> str:
+    """A number with its noun."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def origin(groups: Sequence[Group]) -> str:
+    """What it takes to get the same report again."""
+    from kinlab import __version__
+
+    first = groups[0].rows[0].corrected if groups else None
+    seed = f", seed {first.seed}" if first is not None else ""
+    return f"Made by kinlab {__version__}{seed}: the same seed gives the same states."
+
+
+def sentence(text: str) -> str:
+    """A line as a sentence: capital at the front, full stop at the end."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")

@@ -1,0 +1,124 @@
+"""A check as one self-contained HTML page: MathML, inline SVG, no network, no script."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from html import escape
+from pathlib import Path
+
+from kinlab.check import histogram
+from kinlab.check.headings import HOW, NOTES, counts, origin, sentence, several
+from kinlab.check.summary import Group, size
+from kinlab.check.typeset import mathml
+
+LONG = 110
+"""Characters of LaTeX above which a form gets the whole width."""
+
+_STYLE = Path(__file__).with_name("report.css")
+
+
+def page(groups: Sequence[Group]) -> str:
+    """The whole page.
+
+    Args:
+        groups: from :func:`kinlab.check.summary.grouped`.
+    """
+    sections: dict[str, list[Group]] = {}
+    for group in groups:
+        name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
+        sections.setdefault(name, []).append(group)
+    style = _STYLE.read_text(encoding="utf-8")
+    body = "\n".join(
+        f'<section id="s{k}"><h2>{escape(name)}</h2>\n'
+        + "\n".join(_card(group) for group in members)
+        + "\n</section>"
+        for k, (name, members) in enumerate(sections.items())
+    )
+    links = "".join(
+        f'<li><a href="#s{k}">{escape(name)}</a> {_tally(members)}</li>'
+        for k, (name, members) in enumerate(sections.items())
+    )
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Hand formulas beside the engine</title>
+<style>
+{style}
+</style>
+</head>
+<body>
+<header>
+<h1>Hand formulas beside the engine</h1>
+<p class="lead">{escape(counts(groups))}</p>
+<p>{escape(HOW)} In the pictures <span class="key good">corrected</span> and
+<span class="key bad">printed</span> errors are spread over the decades; the dashed line is 1e-9.
+In the formulas <span class="key wrong">what is wrong</span> stands beside
+<span class="key fixed">what it should be</span>.</p>
+<nav><ul>{links}</ul></nav>
+</header>
+<main>
+{body}
+</main>
+<footer>{escape(origin(groups))}</footer>
+</body>
+</html>
+"""
+
+
+def _tally(members: Sequence[Group]) -> str:
+    misprints = sum(group.printed_error is not None for group in members)
+    text = several(len(members), "formula")
+    text += f", {several(misprints, 'misprint')}" if misprints else ""
+    return f'<span class="tally">{text}</span>'
+
+
+def _card(group: Group) -> str:
+    record = group.formula
+    misprinted = record.printed is not None and group.printed_error is not None
+    state = "fails" if not group.ok else "misprint" if misprinted else "agrees"
+    forms = ""
+    if misprinted and record.printed is not None:
+        forms += _form("printed", record.printed.latex)
+    if record.latex:
+        forms += _form("corrected" if misprinted else "", record.latex)
+    remark = f'<p class="remark">{escape(sentence(record.remark))}</p>' if record.remark else ""
+    return f"""<article class="{state}" id="{escape(record.key)}">
+<h3><code>{escape(record.key)}</code> {escape(record.title)}</h3>
+<p class="source">{escape(record.source)} · engine: <code>{escape(record.quantity)}</code></p>
+<div class="forms">{forms}</div>
+<p class="verdict">{escape(sentence(group.verdict))}</p>{remark}
+<div class="measured">{histogram.svg(group.errors, group.printed_errors)}{_robots(group)}</div>
+</article>"""
+
+
+def _form(name: str, latex: str) -> str:
+    caption = f"<figcaption>{name}</figcaption>" if name else ""
+    width = " long" if len(latex) > LONG else ""
+    return f'<figure class="{name or "only"}{width}">{caption}{mathml(latex)}</figure>'
+
+
+def _robots(group: Group) -> str:
+    printed = group.printed_error is not None
+    head = "<th>robot</th><th>states</th><th>error</th>" + ("<th>printed</th>" if printed else "")
+    lines = []
+    for row in group.rows:
+        last = size(row.printed.max_error if row.printed is not None else None)
+        lines.append(
+            f"<tr><td>{escape(row.robot)}</td><td>{row.corrected.samples}</td>"
+            f"<td>{size(row.corrected.max_error)}</td>"
+            + (f'<td class="bad">{last}</td>' if printed else "")
+            + "</tr>"
+        )
+    table = f"<table><tr>{head}</tr>{''.join(lines)}</table>"
+    if len(group.rows) <= 3:
+        return table
+    worst = group.worst
+    summary = (
+        f"{len(group.rows)} robots; largest error {size(worst.corrected.max_error)} "
+        f"({escape(worst.robot)})"
+    )
+    if printed:
+        summary += f"; printed form off by {size(group.printed_error)} or more"
+    return f"<details><summary>{summary}</summary>{table}</details>"

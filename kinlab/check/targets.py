@@ -1,0 +1,115 @@
+"""What the arguments of ``kinlab check`` mean: robots, files, notes, ids, a user's formulas."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from kinlab.check.catalogue import Row, catalogue, plan, run_one
+from kinlab.check.serial import SERIAL
+from kinlab.check.table_check import checks_of
+from kinlab.errors import FileError, NameUnknownError, near
+from kinlab.formula import Formula, FormulaError, formulas_in
+from kinlab.library import shipped
+
+
+@dataclass(frozen=True)
+class Task:
+    """One row to come: its label for the progress bar, and how to get it."""
+
+    label: str
+    run: Callable[[int, int], Row]
+
+
+def tasks(arguments: Iterable[str]) -> list[Task]:
+    """The rows that the arguments ask for.
+
+    Args:
+        arguments: each a robot's name, a .toml, .csv or .urdf file, a .py file of marked
+            functions, a note's number ("001") or a formula's id ("002.C"). None: everything.
+
+    Returns:
+        What is to run, in order.
+
+    Raises:
+        NameUnknownError: no such robot, note or id; the near names are listed.
+        FileError: a file that cannot be read, or a .py file without a marked function.
+        FormulaError: a .py file that raises.
+    """
+    wanted = list(arguments)
+    if not wanted:
+        pairs = plan(catalogue())
+        return [_one(record, name) for record, name in pairs] + [
+            task for name in shipped() for task in _table(name)
+        ]
+    found: list[Task] = []
+    for text in wanted:
+        found += _tasks_of(text)
+    return found
+
+
+def _tasks_of(text: str) -> list[Task]:
+    if text.endswith(".py"):
+        return [_one(record, name) for record, name in plan(_user_formulas(text))]
+    by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
+    if by_id:
+        return [_one(record, name) for record, name in plan(by_id)]
+    on_robot = [_one(record, name) for record, name in plan(catalogue(), lambda n: n == text)]
+    if on_robot and text not in shipped():
+        return on_robot  # a mechanism that only the catalogue knows
+    try:
+        return on_robot + _table(text)
+    except NameUnknownError:
+        names = {name for _, name in plan(catalogue())} | {f.id for f in catalogue()}
+        raise NameUnknownError(
+            f"{text!r} is no robot, file, note or formula; {near(text, sorted(names))} "
+            "(kinlab list shows the robots)"
+        ) from None
+
+
+def _one(record: Formula, name: str) -> Task:
+    return Task(f"{record.key} {name}", lambda samples, seed: run_one(record, name, samples, seed))
+
+
+def _table(name: str) -> list[Task]:
+    robot = SERIAL.load(name)
+
+    def task(record: Formula) -> Task:
+        return Task(
+            f"{record.key} {name}", lambda samples, seed: run_one(record, robot, samples, seed)
+        )
+
+    return [task(record) for record in checks_of(robot)]
+
+
+def _user_formulas(path: str) -> list[Formula]:
+    module = _module(Path(path))
+    found = formulas_in(module)
+    if not found:
+        raise FileError(
+            f"{path}: no function is marked; put "
+            '@kl.hand_formula("gravity_torques", robot="planar2r") before it'
+        )
+    return found
+
+
+def _module(path: Path) -> ModuleType:
+    if not path.is_file():
+        raise FileError(f"{path}: no such file")
+    name = f"_kinlab_check_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise FileError(f"{path}: not a Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except Exception as problem:  # whatever a user's file may raise
+        raise FormulaError(f"{path}: {type(problem).__name__}: {problem}") from problem
+    finally:
+        del sys.modules[name]
+    return module

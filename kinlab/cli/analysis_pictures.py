@@ -1,0 +1,74 @@
+"""Pictures of the commands about dexterity."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from kinlab.analysis.isotropy import IsotropySearch
+    from kinlab.analysis.workspace import WorkspaceMap
+    from kinlab.robot import Robot
+
+
+def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path) -> None:
+    """Singular curves in a slice of joint space."""
+    from kinlab.analysis.loci import singular_loci
+    from kinlab.analysis.task_space import read_task
+    from kinlab.errors import OptionError
+    from kinlab.plots.canvas import save
+    from kinlab.plots.curves import plot_loci
+
+    needed = abs(read_task(robot, task).m - robot.n) + 2
+    if joints is not None:
+        try:
+            chosen = [int(part) - 1 for part in joints.split(",")]
+        except ValueError:
+            raise OptionError(f"--slice {joints!r}; give joint numbers, as 2,3") from None
+    else:
+        first = 1 if robot.n > needed else 0  # the first joint seldom decides anything
+        chosen = list(range(first, first + needed))
+    save(plot_loci(robot, singular_loci(robot, chosen, task=task, seed=seed)), path)
+
+
+def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
+    """The best conditioned pose with its ellipses, or where a spatial arm is well conditioned."""
+    from kinlab.analysis.task_space import TaskSpace
+    from kinlab.analysis.workspace import sample_workspace, stays_in_plane
+    from kinlab.plots.arms import plot_ellipse
+    from kinlab.plots.canvas import save
+    from kinlab.plots.maps import plot_map
+
+    if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
+        save(plot_ellipse(robot, search.best_q), path)
+        return
+    chart = sample_workspace(
+        robot, _mask(search.rows), samples=20_000, length=search.best_length or 1.0
+    )
+    save(plot_map(chart), path)
+
+
+def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: Path) -> None:
+    """A map, with boundary and singular loci for planar arms, or a cloud."""
+    from kinlab.plots.canvas import save
+    from kinlab.plots.maps import plot_cloud, plot_map
+
+    if cloud:
+        save(plot_cloud(chart), path)
+        return
+    boundary, curves = None, []
+    if chart.planar and robot.n <= 3:
+        from kinlab.analysis.boundary import planar_boundary
+        from kinlab.analysis.loci import singular_loci
+        from kinlab.kinematics import fk
+
+        boundary = planar_boundary(robot)
+        needed = abs(len(chart.rows) - robot.n) + 2
+        if needed == robot.n:  # in a smaller slice the others would be held: not the whole set
+            loci = singular_loci(robot, list(range(needed)), task=_mask(chart.rows))
+            curves = [fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
+    save(plot_map(chart, boundary=boundary, curves=curves, plane=plane), path)
+
+
+def _mask(rows: tuple[int, ...]) -> tuple[bool, ...]:
+    return tuple(i in rows for i in range(6))

@@ -1,0 +1,126 @@
+"""Command ``ik``: one pose from the command line."""
+
+from __future__ import annotations
+
+import logging
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinlab.cli.robots import NAME, TIP
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command of this file."""
+    app.command("ik")(ik)
+
+
+def ik(
+    name: NAME,
+    xyz: Annotated[
+        tuple[float, float, float], typer.Option(help="Position of the tool in the base, metres.")
+    ],
+    rpy: Annotated[
+        tuple[str, str, str],
+        typer.Option(help="Roll, pitch, yaw of the tool; radians, or 'pi/2', or '90 deg'."),
+    ] = ("0", "0", "0"),
+    method: Annotated[str, typer.Option(help="lm, newton or gradient.")] = "lm",
+    task: Annotated[str, typer.Option(help="pose, position, orientation, xy or xytheta.")] = "pose",
+    q0: Annotated[
+        str | None, typer.Option(help="Where to start: angles with commas, as '0, pi/2, 0'.")
+    ] = None,
+    seed: Annotated[int, typer.Option(help="Of the starts.")] = 0,
+    tol_position: Annotated[float, typer.Option(help="Metres.")] = 1e-6,
+    tol_rotation: Annotated[float, typer.Option(help="Radians.")] = 1e-6,
+    branches: Annotated[bool, typer.Option("--branches", help="List all solutions.")] = False,
+    history: Annotated[
+        Path | None, typer.Option(help="Draw the error over the iterations into this file.")
+    ] = None,
+    tip: TIP = None,
+) -> None:
+    """Find joint positions that bring the tool to a pose.
+
+    Exit code 1 where the pose is not met within the limits; the closest pose found, or one that
+    is met only outside the limits, is printed all the same.
+    """
+    import numpy as np
+
+    from kinlab.expressions import parse_angle
+    from kinlab.library import load
+    from kinlab.rotations import rpy_matrix
+
+    _announce_compilation()
+    robot = load(name, tip)
+    pose = np.eye(4)
+    pose[:3, :3] = rpy_matrix(*(parse_angle(text) for text in rpy))
+    pose[:3, 3] = xyz
+    if branches:
+        _print_branches(robot, pose)
+        return
+    from kinlab.chain_arrays import chain
+    from kinlab.inverse.single import ik as solve
+
+    start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
+    answer = solve(
+        robot, pose, start, method, tol_position, tol_rotation, seed, task=task,
+        history=history is not None,
+    )  # fmt: skip
+    slides = np.resize(chain(robot).prismatic, robot.n)
+    width = max(len(joint) for joint in robot.joint_names)
+    for joint, value, slide in zip(robot.joint_names, answer.q, slides, strict=True):
+        shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
+        typer.echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
+    typer.echo(
+        f"{answer.status}: position error {1e3 * answer.position_error:.3g} mm, rotation error "
+        f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
+        f"{answer.restarts} restarts"
+    )
+    for remark in answer.remarks:
+        typer.echo(f"note: {remark}")
+    if history is not None and answer.history is not None:
+        from kinlab.plots.canvas import save
+        from kinlab.plots.searches import plot_searches
+
+        save(plot_searches({method: answer.history}, f"{robot.name}: {answer.status}"), history)
+        typer.echo(f"wrote {history}")
+    broken = [
+        f"{joint} ({low:g} to {high:g})"
+        for joint, value, low, high in zip(
+            robot.joint_names, answer.q, robot.lower, robot.upper, strict=True
+        )
+        if not low <= value <= high
+    ]
+    if broken:
+        typer.echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
+    if not answer.success:
+        raise typer.Exit(1)
+
+
+def _print_branches(robot: object, pose: object) -> None:
+    import numpy as np
+
+    from kinlab.inverse.branches import ik_branches
+
+    found = ik_branches(robot, pose)  # type: ignore[arg-type]
+    for q, name, inside in zip(found.q, found.names, found.within_limits, strict=True):
+        values = " ".join(f"{value:+.6f}" for value in q)
+        typer.echo(f"{values}  {name}{'' if inside else '  (outside the limits)'}")
+    worst = max(found.position_error, default=0.0), max(found.rotation_error, default=0.0)
+    typer.echo(
+        f"{len(found)} solutions by {found.method}, {int(np.sum(found.within_limits))} within the "
+        f"limits, {'all there are' if found.complete else 'not all there are'}; worst error "
+        f"{1e3 * worst[0]:.2g} mm, {np.degrees(worst[1]):.2g} deg"
+    )
+    if not len(found):
+        raise typer.Exit(1)
+
+
+def _announce_compilation() -> None:
+    """Lets the message about compiling through to stderr: the first run takes some seconds."""
+    handler = logging.StreamHandler(sys.stderr)
+    handler.setFormatter(logging.Formatter("kinlab: %(message)s"))
+    logger = logging.getLogger("kinlab.compiled")
+    logger.addHandler(handler)
+    logger.setLevel(logging.INFO)

@@ -1,0 +1,137 @@
+"""Command view: a robot or five-bar in the browser, or as one HTML file."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from kinlab.cli.robots import TIP
+
+if TYPE_CHECKING:
+    from kinlab.arrays import Array
+    from kinlab.viewer.page import Page
+
+NAME = Annotated[
+    str,
+    typer.Argument(
+        help="A name from `kinlab list`, a five-bar preset, or a .toml/.csv/.urdf file."
+    ),
+]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command of this file."""
+    app.command("view")(view)
+
+
+def view(
+    name: NAME,
+    tip: TIP = None,
+    q: Annotated[
+        str | None,
+        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, -0.5". Five-bar: cranks.'),
+    ] = None,
+    save: Annotated[
+        Path | None, typer.Option("--save", help="Write one HTML file instead of serving.")
+    ] = None,
+    animate: Annotated[
+        str | None, typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus.")
+    ] = None,
+    meshes: Annotated[
+        bool, typer.Option(help="Draw the URDF's meshes, or rods from joint to joint.")
+    ] = True,
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; anything but loopback opens it to others.")
+    ] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port; where it is taken, the next free one.")] = 7000,
+    browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
+) -> None:
+    """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
+    page = _open(name, tip, q, animate, meshes)
+    for note in page.notes:
+        typer.echo(f"note: {note}", err=True)
+    if save is not None:
+        page.save(save)
+        typer.echo(f"wrote {save}: open it in a browser; it needs no server and no network")
+        return
+    _serve(page, name, host, port, browser)
+
+
+def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool) -> Page:
+    from kinlab.errors import NameUnknownError, OptionError
+    from kinlab.fivebar.files import presets
+    from kinlab.library import load
+    from kinlab.viewer import motions
+    from kinlab.viewer.scene import Scene
+
+    start = None if q is None else _numbers(q)
+    if name in presets() or _holds_five_bar(name):
+        if tip is not None:
+            raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
+        return _open_five_bar(name, start, animate)
+    try:
+        robot = load(name, tip)
+    except NameUnknownError as problem:
+        if tip is not None or "/" in name:
+            raise
+        raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
+    scene = Scene(robot, start, meshes=meshes)
+    if animate is not None:
+        shown = motions.motion(robot, animate, scene.q)
+        scene.animate(shown.q, shown.duration, shown.name)
+    return scene
+
+
+def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
+    from kinlab.fivebar import FiveBar
+    from kinlab.viewer import fivebar_motions
+    from kinlab.viewer.scene import FiveBarScene
+
+    page = FiveBarScene(FiveBar.load(name), theta)
+    if animate is not None:
+        shown = fivebar_motions.motion(page.linkage, animate, page.mode, page.assembly)
+        page.animate(shown.q, shown.duration, shown.name)
+    return page
+
+
+def _holds_five_bar(name: str) -> bool:
+    """Whether a TOML file is a five-bar: those have crank lengths, arms have links."""
+    import tomllib
+
+    from kinlab.files import read_text
+
+    if not name.lower().endswith(".toml"):
+        return False
+    try:
+        return "l1" in tomllib.loads(read_text(name))
+    except tomllib.TOMLDecodeError:
+        return False  # the arm's reader says what is wrong with it
+
+
+def _numbers(text: str) -> Array:
+    import numpy as np
+
+    from kinlab.expressions import parse_number
+
+    return np.array([parse_number(word.strip()) for word in text.split(",")])
+
+
+def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
+    from kinlab.viewer.live import LiveServer
+    from kinlab.viewer.show import open_browser
+
+    server = LiveServer(page, host, port)
+    if port not in (0, server.port):
+        typer.echo(f"port {port} is taken; using {server.port}")
+    typer.echo(f"{name}: {server.url}   (Ctrl-C ends)")
+    if host not in ("127.0.0.1", "::1", "localhost"):
+        typer.echo(f"note: {host} is not loopback; others on the network can open this page")
+    if os.environ.get("SSH_CONNECTION"):
+        typer.echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
+    if browser and not open_browser(server.url):
+        typer.echo("no browser found here; open the address in yours")
+    server.run()
+    typer.echo("viewer closed")

@@ -1,0 +1,210 @@
+"""Pictures of a five-bar: its workspace in one mode, a cycle, and what sizing rests on."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.errors import FileError, MissingExtraError
+from kinlab.files import write_bytes
+from kinlab.fivebar.dynamics import crank_inertia
+from kinlab.fivebar.isotropy import isotropic_poses
+from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.loci import type_one, type_two, type_two_contour
+from kinlab.fivebar.pose import HANGING, Mode, solve_pose
+from kinlab.fivebar.rods import rod_model
+from kinlab.fivebar.room import Rectangle
+from kinlab.fivebar.servo import ServoSizing
+from kinlab.fivebar.workspace import largest_circle, largest_rectangle, workspace_map
+
+_LEGS = ("tab:blue", "tab:orange")
+_WORST_SHOWN = 10.0
+"""Condition numbers above this share the darkest colour."""
+
+
+def workspace_picture(
+    linkage: Linkage, mode: Mode = HANGING, assembly: int = 1, resolution: int = 301
+) -> Any:
+    """Condition number over the workspace with the loci, the free circle and rectangle.
+
+    Args:
+        linkage: the five-bar.
+        mode: signs of u_i x w_i.
+        assembly: sign of w_1 x w_2 for circle and rectangle.
+        resolution: points along the longer side of the map.
+
+    Returns:
+        A matplotlib Figure.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+        StructureError: no pose in that mode and assembly.
+    """
+    figure = _figure(8.4, 6.6)
+    axes = figure.add_subplot()
+    grid = workspace_map(linkage, mode, resolution)
+    drawn = axes.pcolormesh(
+        grid.x, grid.y, np.minimum(grid.condition, _WORST_SHOWN), cmap="viridis_r",
+        vmin=1.0, vmax=_WORST_SHOWN, shading="nearest", rasterized=True,
+    )  # fmt: skip
+    figure.colorbar(drawn, ax=axes, label=f"condition number of J (from {_WORST_SHOWN:g} up: same)")
+    circle = largest_circle(linkage, mode, assembly)
+    _loci(axes, linkage, mode)
+    ring = _circle(circle.centre, circle.radius)
+    axes.plot(
+        *ring.T, color="black", lw=1.6, label=f"largest free circle, r = {circle.radius:.3g} m"
+    )
+    box = largest_rectangle(linkage, mode, assembly)
+    _box(axes, box, f"largest free rectangle, {box.area:.3g} m²")
+    for k, pose in enumerate(isotropic_poses(linkage, mode)):
+        label = "isotropic pose" if k == 0 else None
+        axes.plot(*pose.xy, marker="*", ms=12, color="gold", mec="black", ls="none", label=label)
+    _bars(axes, linkage, np.array(circle.centre), mode)
+    axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
+    signs = ", ".join("+" if s > 0 else "−" for s in mode)
+    axes.set_title(f"{linkage.name}: working mode ({signs})")
+    figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    return figure
+
+
+def _loci(axes: Any, linkage: Linkage, mode: Mode) -> None:
+    for leg, circles in enumerate(type_one(linkage)):
+        for k, circle in enumerate(circles):
+            label = f"type I, leg {leg + 1}" if k else None
+            ring = _circle(circle.centre, circle.radius)
+            axes.plot(*ring.T, color=_LEGS[leg], lw=1.0, ls="--", label=label)
+    first = True
+    for locus in type_two(linkage):
+        ours = np.all(locus.modes * np.asarray(mode) >= 0, axis=1)
+        points = np.where(ours[:, None], locus.points, np.nan)
+        points = np.concatenate([points, points[:1]])
+        axes.plot(*points.T, color="crimson", lw=2.0, label="type II" if first else None)
+        axes.plot(*locus.points.T, color="crimson", lw=0.6, ls=":",
+                  label="type II, other modes" if first else None)  # fmt: skip
+        first = False
+    for k, line in enumerate(type_two_contour(linkage, mode)):
+        label = "type II, by contour" if k == 0 else None
+        axes.plot(*line.T, color="black", lw=0.9, ls=(0, (1, 4)), label=label)
+
+
+def _bars(axes: Any, linkage: Linkage, xy: Array, mode: Mode) -> None:
+    pose = solve_pose(linkage, xy, mode)
+    for leg in range(2):
+        base = np.array([linkage.base_x[leg], 0.0])
+        elbow = base + np.asarray(linkage.l1)[leg] * pose.u[0, leg]
+        chain = np.stack([base, elbow, pose.xy[0]])
+        axes.plot(*chain.T, color="black", lw=3.4, solid_capstyle="round")
+        axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
+
+
+def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
+    """The pick-and-place cycle in its workspace, with joint rates, torques and power.
+
+    Returns:
+        A matplotlib Figure.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    figure = _figure(9.6, 6.4)
+    where, rate, torque, power = figure.subplots(2, 2).ravel()
+    cycle, box = sizing.cycle, sizing.workspace
+    where.plot(*cycle.path.xy.T, color="black", lw=1.5)
+    _box(where, box, None, colour="tab:green")
+    _bars(where, linkage, cycle.path.xy[len(cycle.path.t) // 4], sizing.mode)
+    where.set(aspect="equal", xlabel="x, m", ylabel="y, m", title="path in the workspace")
+    curves = (
+        (rate, cycle.theta_dot, "crank rate, rad/s"),
+        (torque, cycle.tau, "crank torque, N m"),
+        (power, cycle.power, "crank power, W"),
+    )
+    for axes, values, label in curves:
+        for leg in range(2):
+            axes.plot(cycle.path.t, values[:, leg], color=_LEGS[leg], label=f"crank {leg + 1}")
+        axes.axhline(0.0, color="0.6", lw=0.6, zorder=0)
+        axes.set(xlabel="t, s", ylabel=label, xlim=(0.0, cycle.path.duration))
+    rms = cycle.rms_torque.max()
+    torque.axhline(rms, color="0.4", lw=1.0, ls=":")
+    torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
+    figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    figure.suptitle(
+        f"{linkage.name}: {60 / cycle.path.duration:.0f} cycles a minute, "
+        f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
+    )
+    return figure
+
+
+def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
+    """Torque per acceleration over the gain of J: I_A sigma + m / sigma, least at sqrt(eta).
+
+    Returns:
+        A matplotlib Figure.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    figure = _figure(7.2, 4.4)
+    axes = figure.add_subplot()
+    arms = crank_inertia(linkage, rod_model(linkage, "massless"))
+    arms = arms - np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    best = np.sqrt(sizing.eta[np.isfinite(sizing.eta)])
+    low = 0.5 * min([sizing.sigma[0], *best])
+    high = 1.5 * max([sizing.sigma[1], *best])
+    sigma = np.linspace(low, high, 400)
+    for leg, (arm, eta) in enumerate(zip(arms, sizing.eta, strict=True)):
+        if leg == 1 and arm == arms[0]:
+            continue  # the same curve again
+        name = "both cranks" if arms[0] == arms[1] else f"crank {leg + 1}"
+        label = f"{name}: η = m/I$_A$ = {eta:.3g} m⁻²"
+        axes.plot(sigma, arm * sigma + linkage.payload / sigma, color=_LEGS[leg], label=label)
+        if np.isfinite(eta) and eta > 0:
+            least = 2.0 * np.sqrt(arm * linkage.payload)
+            label = f"least at σ = √η = {np.sqrt(eta):.3g} rad/m"
+            axes.plot(np.sqrt(eta), least, "o", color=_LEGS[leg], label=label)
+    axes.axvspan(*sizing.sigma, color="tab:green", alpha=0.18, label="J in the workspace")
+    axes.set(title=f"{linkage.name}: torque per acceleration")
+    axes.set(xlabel="singular value σ of J, rad/m", ylabel="I$_A$ σ + m/σ, kg m")
+    axes.set_ylim(bottom=0.0)
+    axes.legend(fontsize=9)
+    return figure
+
+
+def save(figure: Any, path: str | Path) -> None:
+    """Writes a figure as .png, .svg or .pdf.
+
+    Raises:
+        FileError: another suffix, or a file that cannot be written.
+    """
+    file = Path(path)
+    kind = file.suffix.lower().lstrip(".")
+    if kind not in ("png", "svg", "pdf"):
+        raise FileError(f"{file}: name a .png, .svg or .pdf file")
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=kind, dpi=150)
+    write_bytes(file, buffer.getvalue())
+
+
+def _figure(width: float, height: float) -> Any:
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise MissingExtraError('pictures need matplotlib: pip install "kinlab[plots]"') from None
+    figure = Figure(figsize=(width, height), layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def _circle(centre: tuple[float, float], radius: float) -> Array:
+    phi = np.linspace(0.0, 2.0 * np.pi, 361)
+    return np.array(centre) + radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
+
+
+def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
+    x, y = box[:2], box[2:]
+    axes.plot([x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]],
+              color=colour, lw=1.8, ls="-.", label=label)  # fmt: skip

@@ -1,0 +1,1 @@
+"""Inverse kinematics: one pose, many poses, all branches, along a path."""

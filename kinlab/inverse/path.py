@@ -1,0 +1,121 @@
+"""Inverse kinematics along a path: stay on one branch, and say where that was not possible."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array
+from kinlab.inverse.request import positive, read_guess, read_targets, require_robot
+from kinlab.inverse.result import IKResult
+from kinlab.inverse.setup import rows_of, setup
+from kinlab.inverse.single import ik
+from kinlab.kinematics import jacobian
+from kinlab.robot import Robot
+
+NEAR_SINGULAR = 1e-2
+"""sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""
+
+
+@dataclass(frozen=True, eq=False)
+class IKPath:
+    """Joint positions along a path.
+
+    Attributes:
+        q: (N, n). success: (N,), bool. status: (N,), text.
+        position_error, rotation_error: (N,), by Pinocchio, metres and radians.
+        jumps: rows whose q lies farther from the row before than ``max_step``, integers.
+        singular: rows at or near a singularity of the task's Jacobian, integers.
+        conditioning: sigma_min / sigma_max of that Jacobian, (N,), 0 at a singularity.
+        remarks: what was done to the input.
+    """
+
+    q: Array
+    success: Any
+    status: Any
+    position_error: Array
+    rotation_error: Array
+    jumps: Any
+    singular: Any
+    conditioning: Array
+    remarks: tuple[str, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+
+def ik_path(
+    robot: Robot,
+    Ts: ArrayLike,
+    q0: ArrayLike,
+    tol_position: float = 1e-6,
+    tol_rotation: float = 1e-6,
+    seed: int = 0,
+    *,
+    task: Any = "pose",
+    max_step: float = 0.5,
+) -> IKPath:
+    """Follows poses one after the other, each search starting at the answer before.
+
+    Only where that single search fails, or lands farther than ``max_step`` away, are other
+    starts tried; of both answers the nearer one is kept. A step farther than ``max_step``
+    remains a jump and is reported as such.
+
+    Args:
+        robot: the robot.
+        Ts: poses in order, (N, 4, 4), close enough together for ``max_step``.
+        q0: where the arm is, (n,); it chooses the branch.
+        tol_position, tol_rotation, seed, task: as in :func:`kinlab.ik`.
+        max_step: largest change of a joint between poses that is still following, rad or m.
+
+    Returns:
+        The path. A pose that cannot be had is marked, its closest q kept, and the path goes on.
+
+    Raises:
+        StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik_batch`.
+    """
+    require_robot(robot)
+    targets = read_targets(robot, Ts)
+    here, remarks = read_guess(robot, q0)
+    largest = positive(max_step, "max_step")
+    arm = setup(robot, rows_of(robot, task), seed)
+    answers: list[IKResult] = []
+    jumps = []
+    for row, target in enumerate(targets):
+        options: dict[str, Any] = {
+            "tol_position": tol_position, "tol_rotation": tol_rotation, "seed": seed, "task": task,
+        }  # fmt: skip
+        answer = ik(robot, target, here, restarts=0, **options)
+        if not answer.success or _step(answer, here) > largest:
+            other = ik(robot, target, here, **options)
+            if (not other.success, _step(other, here)) < (not answer.success, _step(answer, here)):
+                answer = other
+        if _step(answer, here) > largest:
+            jumps.append(row)
+        answers.append(answer)
+        here = answer.q
+    q = np.array([a.q for a in answers]).reshape(-1, robot.n)
+    conditioning = np.empty(0)
+    if len(q):
+        rows = list(arm.rows)
+        scaled = np.sqrt(arm.weight[rows])[:, None] * jacobian(robot, q)[:, rows]
+        values = np.linalg.svd(scaled, compute_uv=False)
+        conditioning = values[:, -1] / values[:, 0]
+    return IKPath(
+        q,
+        np.array([a.success for a in answers], dtype=np.bool_),
+        np.array([a.status.value for a in answers], dtype="<U24"),
+        np.array([a.position_error for a in answers]),
+        np.array([a.rotation_error for a in answers]),
+        np.array(jumps, dtype=np.int64),
+        np.flatnonzero(conditioning < NEAR_SINGULAR),
+        conditioning,
+        tuple(remarks),
+    )
+
+
+def _step(answer: IKResult, here: Array) -> float:
+    return float(np.abs(answer.q - here).max())

@@ -1,0 +1,160 @@
+"""What a caller of inverse kinematics may ask for, read and refused in one place."""
+
+from __future__ import annotations
+
+import math
+import operator
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, real_array, rigid_transform
+from kinlab.compiled import kernel
+from kinlab.errors import OptionError, StateError, StructureError
+from kinlab.robot import Robot
+from kinlab.tolerances import TOLERANCES
+
+RESTARTS = 40
+"""Searches after the first. Of 10,000 random poses an arm none needed more than 30 in all; an
+unreachable pose costs all of them."""
+
+
+@kernel
+def _sound(pose, miss):  # type: ignore[no-untyped-def]
+    """Whether (4, 4) is a rigid transform; NaN fails every comparison."""
+    for i in range(3):
+        for j in range(i, 3):
+            dot = pose[0, i] * pose[0, j] + pose[1, i] * pose[1, j] + pose[2, i] * pose[2, j]
+            if not abs(dot - (1.0 if i == j else 0.0)) <= miss:
+                return False
+        if not abs(pose[i, 3]) < np.inf:
+            return False
+    det = (
+        pose[0, 0] * (pose[1, 1] * pose[2, 2] - pose[1, 2] * pose[2, 1])
+        - pose[0, 1] * (pose[1, 0] * pose[2, 2] - pose[1, 2] * pose[2, 0])
+        + pose[0, 2] * (pose[1, 0] * pose[2, 1] - pose[1, 1] * pose[2, 0])
+    )
+    last = pose[3, 0] == 0.0 and pose[3, 1] == 0.0 and pose[3, 2] == 0.0 and pose[3, 3] == 1.0
+    return last and det > 0.0
+
+
+@kernel
+def _first_unsound(poses, miss):  # type: ignore[no-untyped-def]
+    """Index of the first of (N, 4, 4) that is no rigid transform; N where all are."""
+    for row in range(poses.shape[0]):
+        if not _sound(poses[row], miss):
+            return row
+    return poses.shape[0]
+
+
+def read_target(robot: Robot, pose: ArrayLike) -> Array:
+    """A copy of one rigid transform, (4, 4).
+
+    Raises:
+        StateError: not 4x4, not finite, not orthonormal (says by how much), or a mirror.
+    """
+    if type(pose) is np.ndarray and pose.shape == (4, 4) and pose.dtype.kind == "f":
+        copy = np.array(pose, dtype=np.float64, order="C")
+        if _sound(copy, TOLERANCES.orthonormal):
+            return copy
+    where = f"robot {robot.name!r}: T"
+    checked = rigid_transform(pose, where)
+    if checked.shape != (4, 4):
+        raise StateError(f"{where}: shape {checked.shape}; expected (4, 4); for many use ik_batch")
+    return np.array(checked, order="C")
+
+
+def read_targets(robot: Robot, poses: ArrayLike) -> Array:
+    """A copy of a stack of rigid transforms, (N, 4, 4).
+
+    Raises:
+        StateError: as :func:`read_target`, naming the first bad pose.
+    """
+    where = f"robot {robot.name!r}: Ts"
+    array = real_array(poses, where) if not isinstance(poses, np.ndarray) else poses
+    if array.ndim != 3 or array.shape[1:] != (4, 4):
+        raise StateError(f"{where}: shape {array.shape}; expected (N, 4, 4)")
+    real_array(array, where)
+    copy = np.array(array, dtype=np.float64, order="C")
+    bad = int(_first_unsound(copy, TOLERANCES.orthonormal))
+    if bad < len(copy):
+        rigid_transform(copy[bad], f"{where}[{bad}]")
+    return copy
+
+
+def read_guess(robot: Robot, guess: ArrayLike, rows: int | None = None) -> tuple[Array, list[str]]:
+    """A copy of q0, put back onto the limits where it breaks them, and a remark on that.
+
+    Args:
+        robot: the robot.
+        guess: (n,), or where ``rows`` is given also (rows, n).
+        rows: how many poses there are.
+
+    Raises:
+        StateError: another shape, not finite.
+    """
+    q0 = np.array(real_array(guess, f"robot {robot.name!r}: q0"), order="C")
+    shapes = [(robot.n,)] if rows is None else [(robot.n,), (rows, robot.n)]
+    if q0.shape not in shapes:
+        wanted = " or ".join(map(str, shapes))
+        raise StateError(f"robot {robot.name!r}: q0 has shape {q0.shape}; expected {wanted}")
+    outside = np.atleast_2d((q0 < robot.lower) | (q0 > robot.upper)).any(axis=0)
+    if not outside.any():
+        return q0, []
+    names = ", ".join(repr(robot.joint_names[i]) for i in np.flatnonzero(outside))
+    remark = f"q0 is outside the limits of {names}; started on the limit instead"
+    return np.clip(q0, robot.lower, robot.upper), [remark]
+
+
+def read_tolerances(position: Any, rotation: Any) -> tuple[float, float]:
+    """Both tolerances, positive and finite.
+
+    Raises:
+        OptionError: zero, negative, not a number; the message names which.
+    """
+    return positive(position, "tol_position"), positive(rotation, "tol_rotation")
+
+
+def positive(value: Any, name: str) -> float:
+    """A positive finite number.
+
+    Raises:
+        OptionError: anything else.
+    """
+    if type(value) is float and 0.0 < value < math.inf:
+        return value
+    if isinstance(value, bool):
+        raise OptionError(f"{name} is {value!r}; give a positive number")
+    number = real_array(value, name, OptionError)
+    if number.shape != () or not float(number) > 0.0:
+        raise OptionError(f"{name} is {value!r}; give a positive number")
+    return float(number)
+
+
+def whole(value: Any, name: str, least: int) -> int:
+    """A whole number of at least ``least``.
+
+    Raises:
+        OptionError: anything else.
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        number = least - 1
+    if isinstance(value, bool) or number < least:
+        raise OptionError(f"{name} is {value!r}; give a whole number of at least {least}")
+    return number
+
+
+def require_robot(robot: Any) -> None:
+    """Says what to do with something that is no :class:`~kinlab.robot.Robot`.
+
+    Raises:
+        StructureError: also for a ``pin.Model``, whose floating base or loops are not a chain.
+    """
+    if not isinstance(robot, Robot):
+        raise StructureError(
+            f"robot is a {type(robot).__name__}; give a Robot: kl.load(name), "
+            "kl.Robot.from_urdf(file) or kl.Robot.from_model(model), which refuse a floating base"
+        )

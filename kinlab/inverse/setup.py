@@ -1,0 +1,153 @@
+"""What a search needs to know about an arm and a task, worked out once and kept."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+from weakref import WeakKeyDictionary
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.chain_arrays import chain
+from kinlab.inverse import methods
+from kinlab.kinematics import fk, jacobian
+from kinlab.robot import Robot
+from kinlab.tasks import TASKS, require_task, task_rows
+
+STARTS = 256
+"""States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to
+a quarter; beyond, looking the nearest one up costs more than it saves."""
+
+WIDE = 1.6 * math.pi
+"""Revolute joints with at least this range stay free inside the iteration. Measured on ten arms:
+holding wider ones at their limits makes dead ends (Stanford needs twice the iterations)."""
+
+LENGTH = 0.35
+"""Length that divides metres beside radians, as a share of the arm's; flat from 0.25 to 0.5."""
+
+_ENDLESS = 1e6
+"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
+
+_KEPT = 16
+
+
+class Setup(NamedTuple):
+    """Arrays of one arm, task and seed; do not write to them.
+
+    Attributes:
+        fixed, prismatic: the chain.
+        lower, upper: limits, (n,).
+        centre: angles are wrapped to within half a turn of this, (n,); within the limits.
+        wide: joints left free inside the iteration, (n,), bool.
+        weight: of the squared error, (6,); zero for coordinates not asked for.
+        table: poses of the starts, (12, S).
+        starts: states in general position within the limits, (S, n).
+        reach: farthest that the tool gets from the first joint's frame, metres.
+        rows: the task's rows.
+    """
+
+    fixed: Array
+    prismatic: Any
+    lower: Array
+    upper: Array
+    centre: Array
+    wide: Any
+    weight: Array
+    table: Array
+    starts: Array
+    reach: float
+    rows: tuple[int, ...]
+
+
+_SETUPS: WeakKeyDictionary[Robot, dict[Any, Setup]] = WeakKeyDictionary()
+
+
+def setup(robot: Robot, rows: tuple[int, ...], seed: int, starts: int = STARTS) -> Setup:
+    """The arrays for one arm, task and seed.
+
+    Args:
+        robot: the arm.
+        rows: the task's rows.
+        seed: of the table of starts.
+        starts: how many at least.
+
+    Raises:
+        OptionError: a task with coordinates that the arm cannot move independently. The full
+            pose is exempt: it is the comparison with a whole T, and an arm with fewer joints
+            meets those T that lie on its own way.
+    """
+    key = (rows, seed, max(starts, STARTS))
+    kept = _SETUPS.get(robot)
+    if kept is None:
+        kept = _SETUPS[robot] = {}
+    found = kept.get(key)
+    if found is None:
+        if len(kept) >= _KEPT:
+            kept.clear()
+        found = kept[key] = _work_out(robot, *key)
+    return found
+
+
+def rows_of(robot: Robot, task: Any) -> tuple[int, ...]:
+    """The rows of a task; ``"auto"`` is the largest that suits the arm.
+
+    Raises:
+        NameUnknownError, OptionError: as :func:`kinlab.tasks.task_rows`.
+    """
+    if isinstance(task, str) and task == "auto":
+        from kinlab.analysis.task_space import read_task
+
+        return read_task(robot, task).rows
+    return task_rows(task)
+
+
+def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Setup:
+    fixed, prismatic = chain(robot)
+    k, n = len(prismatic), robot.n
+    slides = np.zeros(n, dtype=np.bool_)
+    slides[:k] = prismatic
+    lower = np.where(robot.lower < -_ENDLESS, -np.inf, robot.lower)
+    upper = np.where(robot.upper > _ENDLESS, np.inf, robot.upper)
+    rigid = float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum())
+    low, high = _window(lower, upper, slides, max(rigid, 1.0))
+    sample = np.random.default_rng(seed).uniform(low, high, (count, n))
+    if rows != TASKS["pose"]:
+        require_task(rows, jacobian(robot, sample[:8]), f"robot {robot.name!r}")
+    travel = np.maximum(np.abs(lower), np.abs(upper))[slides].sum()
+    reach = rigid + float(travel)
+    size = rigid + float((high - low)[slides].sum())
+    length = LENGTH * size if size > 0.0 else 1.0
+    weight = np.zeros(6)
+    weight[list(rows)] = 1.0
+    weight[:3] /= length**2
+    poses = fk(robot, sample)[:, :3, :].reshape(count, 12)
+    return Setup(
+        fixed, prismatic, lower, upper, np.clip(0.0, lower, upper),
+        ~slides & (upper - lower >= WIDE), weight, np.ascontiguousarray(poses.T), sample,
+        reach, rows,
+    )  # fmt: skip
+
+
+def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Array, Array]:
+    """Where to draw starts from: one turn at most, and a finite stretch of an endless slide."""
+    half = np.where(slides, length, math.pi)
+    middle = np.clip(0.0, np.minimum(lower + half, upper), np.maximum(upper - half, lower))
+    return np.maximum(lower, middle - half), np.minimum(upper, middle + half)
+
+
+def lm_numbers(
+    reach: float, tolerances: tuple[float, float], iterations: int, searches: int
+) -> Array:
+    """The kernel's ``numbers``, in its order."""
+    return np.array(
+        (*tolerances, methods.DAMPING, methods.FLOOR, iterations, searches,
+         methods.PATIENCE["lm"], reach)
+    )  # fmt: skip
+
+
+def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
+    """Whether the target is farther from the first joint than the arm is long."""
+    asked = arm.weight[:3] > 0.0
+    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
+    return float(np.linalg.norm(away)) > arm.reach + tolerance

@@ -1,0 +1,92 @@
+"""The arm as a line, with its ellipses."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.analysis.ellipsoids import ellipsoid
+from kinlab.analysis.structure import Axes
+from kinlab.analysis.task_space import TaskSpace
+from kinlab.analysis.workspace import stays_in_plane
+from kinlab.arrays import Array
+from kinlab.errors import OptionError
+from kinlab.kinematics import fk
+from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
+from kinlab.robot import Robot
+from kinlab.states import joint_vector
+
+_STYLES = {"velocity": (GREEN, "-"), "force": (RED, "--"), "dynamic": (GREY, "-.")}
+
+
+def arm_points(robot: Robot, q: Array) -> Array:
+    """Corners of the arm's line: the joint frames' origins and the tool, (n + 2, 3)."""
+    import pinocchio as pin
+
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    joints = [np.zeros(3), *(np.array(data.oMi[i].translation) for i in range(1, robot.n + 1))]
+    return np.array([*joints, fk(robot, q)[:3, 3]])
+
+
+def plot_ellipse(
+    robot: Robot,
+    q: ArrayLike,
+    kinds: tuple[str, ...] = ("velocity", "force"),
+    axes: Any = None,
+    size: float = 0.35,
+) -> Any:
+    """Draws a planar arm at q with its ellipses at the tool.
+
+    Args:
+        robot: an arm that stays in a plane z = const of the base.
+        q: joint positions, (n,).
+        kinds: of :func:`kinlab.analysis.ellipsoids.ellipsoid`. Each ellipse is drawn with its
+            longest axis ``size`` of the arm's reach: units differ, shapes compare.
+        axes: where to draw; a new figure if left out.
+        size: share of the reach.
+
+    Returns:
+        The axes.
+
+    Raises:
+        OptionError: an arm that leaves the plane.
+        StateError, NameUnknownError, MissingExtraError: bad q, unknown kind, no matplotlib.
+    """
+    if not stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
+        raise OptionError(
+            f"robot {robot.name!r} leaves the x-y plane; ellipses are drawn of planar arms"
+        )
+    state = joint_vector(robot, q, "q")
+    found = [ellipsoid(robot, state, kind, "xy") for kind in kinds]
+    axes = axes if axes is not None else new_axes(f"{robot.name}: ellipses at the tool")
+    corners = arm_points(robot, state)[:, :2]
+    axes.plot(*corners.T, color=BLUE, lw=4, solid_capstyle="round", zorder=2)
+    axes.plot(
+        *Axes.at(robot, state).point[:, :2].T, "o", color="white", mec=BLUE, ms=8, mew=2, zorder=3
+    )
+    reach = float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum())
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    for shape in found:
+        lengths = np.array(shape.lengths)
+        if np.isinf(lengths[0]):  # a line without end: drawn across the picture
+            lengths = np.where(np.isinf(lengths), 3.0, 0.0)
+        unit = size * reach / max(float(lengths[0]), 1e-12)
+        ring = shape.axes @ (
+            unit * lengths[:, np.newaxis] * np.stack([np.cos(angle), np.sin(angle)])
+        )
+        colour, line = _STYLES[shape.kind]
+        note = ", flat" if lengths[1] <= 1e-9 * lengths[0] else f" {lengths[1] / lengths[0]:.3g}"
+        axes.plot(
+            corners[-1, 0] + ring[0], corners[-1, 1] + ring[1], line, color=colour, lw=1.8,
+            label=f"{shape.kind}: axis ratio{note}",
+        )  # fmt: skip
+    axes.plot(*corners[-1], "o", color=RED, ms=5, zorder=4)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel("x [m]")
+    axes.set_ylabel("y [m]")
+    axes.grid(alpha=0.25)
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    return axes

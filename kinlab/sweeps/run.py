@@ -1,0 +1,278 @@
+"""The sweep itself: plan the missing chunks, run them, keep them, hand out the answers."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import sys
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array
+from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.robot import Robot
+from kinlab.sweeps.measures import Measure, describe, read_measure
+from kinlab.sweeps.parts import Columns, Folder, Memory, Parts, Run
+from kinlab.sweeps.pools import Pool, run_chunk, same_columns, serial, spread
+from kinlab.sweeps.samples import BLOCK, Samples, read_samples
+from kinlab.threads import available
+
+
+@dataclass(frozen=True, eq=False)
+class SweepResult:
+    """The answers of a sweep. States are drawn again when asked for, not stored.
+
+    Attributes:
+        names: names of the columns.
+        samples: where the states come from.
+        parts: where the answers are.
+    """
+
+    names: tuple[str, ...]
+    samples: Samples
+    parts: Parts
+
+    def __len__(self) -> int:
+        return self.samples.count
+
+    def __getitem__(self, name: str) -> Array:
+        """One column whole, (N, ...).
+
+        Raises:
+            NameUnknownError: no column of that name.
+        """
+        self._require(name)
+        out: Array | None = None
+        for run in self.parts.runs():
+            part = self.parts.read(run)[name]
+            if out is None:
+                out = np.empty((len(self), *part.shape[1:]), part.dtype)
+            out[run[0] * BLOCK : run[0] * BLOCK + len(part)] = part
+        assert out is not None  # a sweep has at least one block
+        return out
+
+    @property
+    def states(self) -> Array:
+        """All states, (N, n)."""
+        blocks = -(-len(self) // BLOCK)
+        return np.concatenate([self.samples.block(i) for i in range(blocks)])
+
+    def chunks(self) -> Iterator[tuple[Array, Columns]]:
+        """States and columns of one finished run after the other, in order; memory of one."""
+        for run in self.parts.runs():
+            yield np.concatenate([self.samples.block(i) for i in range(*run)]), self.parts.read(run)
+
+    def best(self, name: str, count: int = 1, *, largest: bool = False) -> tuple[Array, Array]:
+        """The states with the least (or largest) values of a column of numbers.
+
+        Args:
+            name: a column with one number a state. NaN counts as worst.
+            count: how many.
+            largest: look for the largest.
+
+        Returns:
+            The states (count, n), best first, and their values (count,). Of equal values the
+            one drawn first comes first.
+
+        Raises:
+            NameUnknownError: no column of that name.
+            OptionError: count < 1, or a column with several numbers a state.
+        """
+        self._require(name)
+        if count < 1:
+            raise OptionError(f"sweep: count is {count}; at least 1")
+        states, values = np.empty((0, 0)), np.empty(0)
+        for q, columns in self.chunks():
+            if columns[name].ndim != 1:
+                raise OptionError(
+                    f"sweep: column {name!r} has rows of shape {columns[name].shape[1:]}; best "
+                    "needs one number a state"
+                )
+            states = np.concatenate([states.reshape(-1, q.shape[1]), q])
+            values = np.concatenate([values, columns[name]])
+            order = np.argsort(-values if largest else values, kind="stable")[:count]
+            states, values = states[order], values[order]
+        return states, values
+
+    def _require(self, name: str) -> None:
+        if name not in self.names:
+            raise NameUnknownError(f"sweep: no column {name!r}; {near(str(name), self.names)}")
+
+
+def sweep(
+    robot: Any,
+    measure: str | Iterable[str] | Measure,
+    samples: int | ArrayLike = 100_000,
+    *,
+    seed: int = 0,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    chunk: int = 16 * BLOCK,
+    folder: str | Path | None = None,
+    progress: bool = False,
+) -> SweepResult:
+    """Evaluates a measure over very many states or designs.
+
+    The same seed gives the same answer bit for bit, whatever ``executor``, ``workers`` and
+    ``chunk`` are: states are drawn, and the measure is called, in fixed blocks of 4096.
+
+    Args:
+        robot: what the measure is of: a robot, a five-bar, any object that can be pickled.
+        measure: a name or names (``"pose"``, ``"position"``, ``"jacobian"``,
+            ``"singular_values"``, ``"condition"``, ``"yoshikawa"``, ``"inverse_condition"``,
+            ``"min_singular"``, ``"isotropy"``, all of the full Jacobian in SI units), or a
+            function f(robot, q) that takes states (m, n) and answers an array with m rows, or a
+            dict of such arrays. For worker processes it stands at the top of a module.
+        samples: how many states to draw uniformly between ``lower`` and ``upper``, or the
+            states themselves, (N, n).
+        seed: of the drawing.
+        lower, upper: corners of the box, (n,); left out, the robot's limits.
+        executor: any ``concurrent.futures.Executor``, such as a Dask client's
+            ``client.get_executor()``; left out, a process pool of its own.
+        workers: processes of that pool; left out, as many as there are cores. 1 stays in this
+            process, as does a sweep of a single chunk.
+        chunk: states handed to a worker at once, rounded up to whole blocks.
+        folder: keep finished chunks there as ``.npz`` parts. A sweep that was stopped goes on
+            from them; memory is then bounded by the chunks in flight.
+        progress: show a bar on stderr.
+
+    Returns:
+        The answers by name (``result["condition"]``; a plain array is named ``"value"``).
+
+    Raises:
+        OptionError: an argument out of range, a measure that cannot be sent to workers or
+            answers something unfit, or a folder that holds another sweep.
+        NameUnknownError: a measure's name that is none.
+        SweepError: workers keep dying.
+        FileError: the folder cannot be written.
+    """
+    function = read_measure(measure)
+    source = read_samples(robot, samples, seed, lower, upper)
+    blocks = -(-source.count // BLOCK)
+    parts = _parts(folder, robot, function, source, blocks)
+    runs = missing(parts.runs(), blocks, _whole(chunk, "chunk", BLOCK))
+    count = available() if workers is None else _whole(workers, "workers", 1)
+    first: Columns | None = next((parts.read(run) for run in parts.runs()), None)
+    with _bar(progress, source.count) as advance:
+        advance(sum(_rows(run, source.count) for run in parts.runs()))
+        for run, columns in _answers(robot, function, source, runs, executor, count):
+            if first is not None:
+                same_columns(first, columns)
+            first = {name: column[:1] for name, column in columns.items()}
+            parts.write(run, columns)
+            advance(_rows(run, source.count))
+    assert first is not None and not missing(parts.runs(), blocks, blocks)
+    return SweepResult(tuple(first), source, parts)
+
+
+def missing(done: list[Run], blocks: int, size: int) -> list[Run]:
+    """Runs of at most ``size`` blocks that fill what ``done`` leaves out of 0 to blocks - 1."""
+    gaps, at = [], 0
+    for first, last in [*done, (blocks, blocks)]:
+        gaps += [(i, min(i + size, first)) for i in range(at, first, size)]
+        at = last
+    return gaps
+
+
+def _answers(
+    robot: Any,
+    measure: Measure,
+    samples: Samples,
+    runs: list[Run],
+    executor: Executor | None,
+    workers: int,
+) -> Iterator[tuple[Run, Columns]]:
+    packed = _packed(robot, "the robot")
+
+    def arguments(run: Run) -> tuple[Any, ...]:
+        return packed, measure, samples.portion(*run), run
+
+    if executor is None and (workers == 1 or len(runs) <= 1):
+        return serial(lambda run: run_chunk(*arguments(run)), runs)
+    if executor is None or isinstance(executor, ProcessPoolExecutor):
+        _require_importable(measure)
+    return spread(arguments, runs, Pool(executor, min(workers, len(runs))))
+
+
+def _packed(value: Any, what: str) -> bytes:
+    try:
+        return pickle.dumps(value)
+    except (pickle.PicklingError, AttributeError, TypeError) as problem:
+        raise OptionError(
+            f"sweep: {what} cannot be sent to worker processes ({problem}); define functions and "
+            "classes at the top of a module, or use workers=1"
+        ) from None
+
+
+def _require_importable(measure: Measure) -> None:
+    _packed(measure, "the measure")
+    main = sys.modules.get("__main__")
+    if getattr(measure, "__module__", "") == "__main__" and not hasattr(main, "__file__"):
+        raise OptionError(
+            "sweep: the measure was typed in, and worker processes cannot import it; put it into "
+            "a module, or use workers=1"
+        )
+
+
+def _parts(
+    folder: str | Path | None, robot: Any, measure: Measure, samples: Samples, blocks: int
+) -> Parts:
+    if folder is None:
+        return Memory()
+    fingerprint = {
+        "robot": _identity(robot),
+        "measure": describe(measure),
+        "block": BLOCK,
+        **samples.fingerprint(),
+    }
+    return Folder(folder, fingerprint, blocks)
+
+
+def _identity(subject: Any) -> str:
+    """Text that differs where two subjects do, and stays the same from run to run."""
+    if isinstance(subject, Robot):
+        text = f"{subject.name}|{subject.tool}|{subject.model.saveToString()}"
+        return f"{subject.name}#{hashlib.sha256(text.encode()).hexdigest()[:16]}"
+    return repr(subject) if is_dataclass(subject) else type(subject).__qualname__
+
+
+def _whole(value: int, what: str, unit: int) -> int:
+    """A whole number above zero, in units rounded up."""
+    if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or value < 1:
+        raise OptionError(f"sweep: {what} is {value!r}; it must be a whole number above zero")
+    return -(-int(value) // unit)
+
+
+def _rows(run: Run, count: int) -> int:
+    return min(run[1] * BLOCK, count) - run[0] * BLOCK
+
+
+def _bar(show: bool, total: int) -> AbstractContextManager[Callable[[int], None]]:
+    return _rich_bar(total) if show else nullcontext(lambda _: None)
+
+
+@contextmanager
+def _rich_bar(total: int) -> Iterator[Callable[[int], None]]:
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        Progress,
+        TextColumn,
+        TimeRemainingColumn,
+    )
+
+    console = Console(stderr=True)
+    columns = ("sweep", BarColumn(), MofNCompleteColumn(), TextColumn("states"))
+    with Progress(*columns, TimeRemainingColumn(), console=console) as bar:
+        task = bar.add_task("sweep", total=total)
+        yield lambda rows: bar.advance(task, rows)

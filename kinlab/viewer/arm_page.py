@@ -1,0 +1,129 @@
+"""What the page must know to move an arm without a server, as plain JSON values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab.arrays import Array
+from kinlab.errors import StructureError
+from kinlab.extract import to_dh
+from kinlab.kinematics import fk, jacobian
+from kinlab.robot import Robot
+from kinlab.tasks import TASKS, generic_rank
+from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
+from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
+from kinlab.viewer.framing import look_at
+from kinlab.viewer.stage import add_ellipsoids, empty_spec, set_stage
+
+_ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
+_STILL = 1e-9
+"""A row of J whose entries stay below this over random poses cannot be moved by the arm."""
+
+
+def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, Any]:
+    """Draws an arm with its DH picture and ellipsoids.
+
+    Args:
+        vis: an empty ``meshcat.Visualizer``.
+        robot: the arm.
+        q: what the sliders start at, (n,).
+        meshes: draw the URDF's meshes.
+
+    Returns:
+        What ``start`` in page.js takes.
+    """
+    size = reach(robot)
+    set_stage(vis, size)
+    camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.2 * size)
+    spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
+    spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
+    try:
+        picture = draw_dh(vis, robot, robot.table or to_dh(robot))
+    except StructureError as problem:  # an arm that DH parameters cannot hold
+        picture = frames_only(vis, robot)
+        spec["notes"].append(f"no DH table: {problem}")
+    rows, task = task_rows(robot)
+    model = robot.model
+    spec |= {
+        "kind": "arm",
+        "joints": [_joint(robot, i) for i in range(1, model.njoints)],
+        "tool": _flat(model.frames[robot.tool].placement.homogeneous),
+        "rows": rows,
+        "task": task,
+        "q": [float(x) for x in q],
+        "poses": _poses(robot),
+        "body": joint_paths(model)[0],
+        "dh": picture.rows,
+        "dh_convention": picture.convention,
+        "dh_columns": columns(picture.convention),
+        "labels": [label.as_json() for label in picture.labels],
+    }
+    spec["groups"] |= picture.groups
+    spec["shown"].append("frames")
+    spec["checks"].insert(0, ["frames", "frames"])
+    add_ellipsoids(vis, spec, size, linear_rank(robot))
+    return spec
+
+
+def task_rows(robot: Robot) -> tuple[list[int], str]:
+    """The rows of J that the read-out judges, and their name.
+
+    Rows that the arm can never move (out of a planar arm's plane) are left out; of what
+    remains, everything if there are joints enough, else the position alone.
+    """
+    rng = np.random.default_rng(0)
+    stack = jacobian(robot, rng.uniform(-1.0, 1.0, (20, robot.n)))
+    moving = [r for r in range(6) if np.abs(stack[:, r]).max() > _STILL]
+    linear = [r for r in moving if r < 3]
+    if len(moving) > robot.n and 0 < len(linear) <= robot.n:
+        moving = linear
+    names = {rows: name for name, rows in TASKS.items()}
+    coordinates = ", ".join(_ROWS[r] for r in moving)
+    return moving, f"task {names.get(tuple(moving), coordinates)}"
+
+
+def linear_rank(robot: Robot) -> int:
+    """Number of directions in which the tool's origin can move, 1 to 3, away from singularity."""
+    rng = np.random.default_rng(1)
+    stack = jacobian(robot, rng.uniform(-1.0, 1.0, (5, robot.n)))
+    return max(1, generic_rank(stack, TASKS["position"]))
+
+
+def _joint(robot: Robot, i: int) -> dict[str, Any]:
+    subspace = motion_subspace(robot.model, i)
+    revolute = bool(subspace[3:].any())
+    kind = "revolute" if revolute else "prismatic"
+    name = robot.joint_names[i - 1]
+    plain = "" if name == f"joint_{i}" else name
+    return {
+        "name": name,
+        "label": f"{'θ' if revolute else 'd'}{i} {plain}".strip(),
+        "type": kind,
+        "axis": [float(x) for x in (subspace[3:] if revolute else subspace[:3])],
+        "placement": _flat(robot.model.jointPlacements[i].homogeneous),
+        "lower": float(robot.lower[i - 1]),
+        "upper": float(robot.upper[i - 1]),
+        "path": joint_paths(robot.model)[i],
+    }
+
+
+def _poses(robot: Robot) -> dict[str, list[float]]:
+    """Named poses for the page's buttons, within the limits."""
+    middle = 0.5 * (robot.lower + robot.upper)
+    zero = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
+    return {"Zero": zero.tolist(), "Middle": middle.tolist()}
+
+
+def _flat(matrix: Array) -> list[float]:
+    return [float(x) for x in np.asarray(matrix).reshape(-1)]
+
+
+def _origins(robot: Robot, q: Array) -> Array:
+    """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    joints = [placement.translation for placement in list(data.oMi)[1:]]
+    return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])

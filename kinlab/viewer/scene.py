@@ -1,0 +1,134 @@
+"""Scene: an arm on a page, with its ellipsoids and ghosts; and the five-bar's page."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, real_array, shaped
+from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.fivebar.geometry import fk as fivebar_fk
+from kinlab.fivebar.geometry import ik, mode_of
+from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.pose import solve_pose
+from kinlab.kinematics import fk, jacobian
+from kinlab.robot import Robot
+from kinlab.states import joint_vector
+from kinlab.viewer import shapes
+from kinlab.viewer.arm import draw_ghost, reach
+from kinlab.viewer.arm_page import draw_page
+from kinlab.viewer.fivebar_page import best_start, size_of
+from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
+from kinlab.viewer.page import COLORS, Page, one_pose
+from kinlab.viewer.recorder import new_scene
+
+
+class Scene(Page):
+    """A robot in the viewer, to which a script adds frames, ellipsoids, paths, clouds, ghosts.
+
+    Args:
+        robot: the arm to draw.
+        q: joint positions at the start, (n,); left out, zero (or the nearest limit).
+        meshes: draw the URDF's meshes; otherwise rods from joint to joint.
+
+    Raises:
+        StateError: q of another shape, or not finite.
+    """
+
+    def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
+        self.robot = robot
+        start = np.zeros(robot.n) if q is None else one_pose(self._joints(q), robot.name)
+        if q is None:
+            start = np.clip(start, robot.lower, robot.upper)
+        vis, recorder = new_scene()
+        spec = draw_page(vis, robot, start, meshes=meshes)
+        super().__init__(vis, recorder, spec, reach(robot), self._joints)
+
+    def _joints(self, q: ArrayLike) -> Array:
+        return joint_vector(self.robot, q, "q")
+
+    def ellipsoid(self, name: str, q: ArrayLike, kind: str = "velocity") -> None:
+        """Draws the ellipsoid of the tool's velocities or forces at a pose, and leaves it there.
+
+        Args:
+            name: what to call it.
+            q: joint positions, (n,).
+            kind: ``"velocity"``: semi-axes sigma_i; ``"force"``: 1/sigma_i. Both are scaled so
+                that the longest is a fifth of the arm; a force without bound is drawn flat.
+
+        Raises:
+            NameUnknownError: another kind.
+            StateError: q of another shape, or not finite.
+        """
+        if kind not in shapes.ELLIPSOIDS:
+            raise NameUnknownError(f"ellipsoid {kind!r}; {near(kind, shapes.ELLIPSOIDS)}")
+        pose = self._one(q)
+        U, sigma, _ = np.linalg.svd(jacobian(self.robot, pose)[:3])
+        sigma = np.append(sigma, np.zeros(3 - len(sigma)))
+        moves = sigma > 1e-9 * sigma[0]
+        axes = sigma if kind == "velocity" else np.where(moves, 1 / np.where(moves, sigma, 1), 0)
+        scale = shapes.ELLIPSOID_SIZE * self._size
+        radii = scale * np.maximum(axes / (axes.max() or 1.0), 0.01)
+        place = np.eye(4)
+        place[:3, :3] = U * radii * (1, 1, np.linalg.det(U))
+        place[:3, 3] = fk(self.robot, pose)[:3, 3]
+        path = self._node(name)
+        shapes.ball(self._vis[path], 1.0, shapes.paint(shapes.ELLIPSOIDS[kind], 0.4))
+        self._vis[path].set_transform(place)
+
+    def ghosts(self, name: str, q: ArrayLike, color: int | None = None) -> None:
+        """Draws the robot see-through at other poses, such as the branches of an IK solution.
+
+        Args:
+            name: what to call them.
+            q: joint positions, (n,) or (N, n).
+            color: 0xRRGGBB; left out, each ghost has its own.
+
+        Raises:
+            StateError: q of another shape, or not finite.
+        """
+        poses = np.atleast_2d(self._read(q))
+        root = self._node(name)
+        for i, pose in enumerate(poses):
+            paint = COLORS[i % len(COLORS)] if color is None else color
+            draw_ghost(self._vis, self.robot, pose, f"{root}/{i + 1}", paint)
+
+
+class FiveBarScene(Page):
+    """A five-bar in the viewer. Points that are added are in its plane: (x, y, 0).
+
+    Args:
+        linkage: the five-bar.
+        theta: crank angles at the start, (2,), rad; left out, the best-conditioned pose on the
+            axis x = 0 that hangs below the base.
+        assembly: sign of w_1 x w_2.
+
+    Attributes:
+        mode: signs of u_i x w_i at the start.
+
+    Raises:
+        UnreachableError: the loop cannot close there.
+        SingularError: the start is a singularity of type II.
+        StateError: theta of another shape, or not finite.
+    """
+
+    def __init__(self, linkage: Linkage, theta: ArrayLike | None = None, assembly: int = 1) -> None:
+        self.linkage, self.assembly = linkage, assembly
+        if theta is None:
+            start = ik(linkage, best_start(linkage, assembly))
+        else:
+            start = shaped(theta, (2,), f"{linkage.name}: theta")
+        xy = fivebar_fk(linkage, start, assembly)
+        self.mode = mode_of(linkage, start, xy)
+        solve_pose(linkage, xy, self.mode, regular="II")
+        vis, recorder = new_scene()
+        spec = draw_fivebar(vis, linkage, start, assembly, self.mode)
+        super().__init__(vis, recorder, spec, size_of(linkage), self._angles)
+
+    def _angles(self, theta: ArrayLike) -> Array:
+        angles = real_array(theta, f"{self.linkage.name}: theta")
+        if angles.ndim not in (1, 2) or angles.shape[-1] != 2:
+            raise StateError(
+                f"{self.linkage.name}: theta has shape {angles.shape}; expected (2,) or (N, 2)"
+            )
+        return angles

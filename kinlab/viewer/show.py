@@ -1,0 +1,71 @@
+"""``kl.view``: a robot in the browser, or inline in a notebook, with one call."""
+
+from __future__ import annotations
+
+import os
+import sys
+import webbrowser
+from typing import TYPE_CHECKING
+
+from numpy.typing import ArrayLike
+
+from kinlab.robot import Robot
+
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import Linkage
+    from kinlab.viewer.scene import FiveBarScene, Scene
+
+
+def view(
+    robot: Robot | Linkage, q: ArrayLike | None = None, *, meshes: bool = True
+) -> Scene | FiveBarScene:
+    """Shows an arm or a five-bar: inline in a notebook, otherwise in the browser.
+
+    The browser page is served on loopback in the background until the program ends; its address
+    is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
+
+    Args:
+        robot: the arm, or a :class:`kinlab.FiveBar`.
+        q: joint positions at the start, (n,); of a five-bar the crank angles, (2,). Left out,
+            zero, and for a five-bar its best-conditioned hanging pose.
+        meshes: draw the URDF's meshes; otherwise rods from joint to joint.
+
+    Returns:
+        The scene, to which frames, paths, clouds and (of an arm) ghosts can be added.
+
+    Raises:
+        StateError: q of another shape, or not finite.
+        UnreachableError, SingularError: a five-bar that cannot close at q, or is singular there.
+    """
+    from kinlab.viewer.scene import FiveBarScene, Scene
+
+    scene = Scene(robot, q, meshes=meshes) if isinstance(robot, Robot) else FiveBarScene(robot, q)
+    if not in_notebook():
+        server = scene.serve()
+        print(f"{robot.name}: {server.url}")
+        open_browser(server.url)
+    return scene
+
+
+def in_notebook() -> bool:
+    """Whether this runs in a Jupyter kernel, which shows what a cell returns."""
+    shell = sys.modules.get("IPython")
+    running = shell.get_ipython() if shell is not None else None
+    return running is not None and hasattr(running, "kernel")
+
+
+def open_browser(url: str) -> bool:
+    """Opens the user's graphical browser, where there is one.
+
+    Returns:
+        Whether one was found. A browser in the terminal would take the terminal over, so
+        without a display none is tried.
+    """
+    wants_display = sys.platform not in ("darwin", "win32")
+    displays = ("DISPLAY", "WAYLAND_DISPLAY", "BROWSER")
+    if wants_display and not any(os.environ.get(key) for key in displays):
+        return False
+    try:
+        return webbrowser.open(url)
+    except webbrowser.Error:
+        return False
