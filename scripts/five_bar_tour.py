@@ -13,9 +13,10 @@ import numpy as np
 import kinlab as kl
 from kinlab.fivebar.export import export
 from kinlab.fivebar.isotropy import isotropic_poses
-from kinlab.fivebar.plots import cycle_picture, gain_picture, save, workspace_picture
 from kinlab.fivebar.trajectory import fit_to_motor, pick_and_place
 from kinlab.fivebar.workspace import largest_circle, largest_rectangle, reachable_area
+from kinlab.plots.canvas import save
+from kinlab.plots.fivebar import cycle_picture, gain_picture, workspace_picture
 
 
 def main() -> None:

@@ -82,7 +82,7 @@ def test_export(kinlab, tmp_path):
         (("analyse", "isotropic", "--mode", "ab"), "mode 'ab' does not exist"),
         (("analyse", "isotropic", "--at", "0", "-2"), "1.2 m too far for leg 1"),
         (("analyse", "isotropic", "--assembly", "3"), "assembly 3 does not exist"),
-        (("analyse", "isotropic", "--picture", "x.gif"), "x.gif: name a .png"),
+        (("analyse", "isotropic", "--picture", "x.gif"), "x.gif: a figure is a .png"),
         (("size", "plotclock", "--v-max", "1", "--a-max", "1"), "nothing to move"),
         (("size", "isotropic", "--v-max", "-1", "--a-max", "1"), "v_max is -1.0"),
         (("size", "isotropic", "--v-max", "1", "--a-max", "1", "--motor", "X"), "no motor 'X'"),

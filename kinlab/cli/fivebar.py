@@ -88,7 +88,6 @@ def analyse(
 
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.isotropy import isotropic_poses
-    from kinlab.fivebar.plots import save, workspace_picture
     from kinlab.fivebar.pose import MODES
     from kinlab.fivebar.workspace import (
         largest_circle,
@@ -96,6 +95,8 @@ def analyse(
         reachable_area,
         workspace_map,
     )
+    from kinlab.plots.canvas import save
+    from kinlab.plots.fivebar import workspace_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = Console(highlight=False)
@@ -174,8 +175,9 @@ def size(
     from rich.console import Console
 
     from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.plots import cycle_picture, gain_picture, save
     from kinlab.fivebar.workspace import largest_rectangle
+    from kinlab.plots.canvas import save
+    from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = Console(highlight=False)

@@ -15,8 +15,8 @@ BLUE, RED, GREEN, GREY = "#1f5fa8", "#c2352b", "#2e8540", "#6b7280"
 _FORMATS = ("png", "svg", "pdf")
 
 
-def new_axes(title: str = "", three_d: bool = False, size: tuple[float, float] = (6.4, 5.2)) -> Any:
-    """Axes of a new figure that belongs to no window system.
+def new_figure(size: tuple[float, float] = (6.4, 5.2)) -> Any:
+    """A new figure that belongs to no window system.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
@@ -30,6 +30,16 @@ def new_axes(title: str = "", three_d: bool = False, size: tuple[float, float] =
         ) from None
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
+    return figure
+
+
+def new_axes(title: str = "", three_d: bool = False, size: tuple[float, float] = (6.4, 5.2)) -> Any:
+    """Axes of a :func:`new_figure`.
+
+    Raises:
+        MissingExtraError: matplotlib is not installed.
+    """
+    figure = new_figure(size)
     axes = figure.add_subplot(projection="3d" if three_d else None)
     if title:
         axes.set_title(title, fontsize=11)

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import io
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.errors import FileError, MissingExtraError
-from kinlab.files import write_bytes
 from kinlab.fivebar.dynamics import crank_inertia
 from kinlab.fivebar.isotropy import isotropic_poses
 from kinlab.fivebar.linkage import Linkage
@@ -20,6 +16,7 @@ from kinlab.fivebar.rods import rod_model
 from kinlab.fivebar.room import Rectangle
 from kinlab.fivebar.servo import ServoSizing
 from kinlab.fivebar.workspace import largest_circle, largest_rectangle, workspace_map
+from kinlab.plots.canvas import new_axes, new_figure
 
 _LEGS = ("tab:blue", "tab:orange")
 _WORST_SHOWN = 10.0
@@ -38,20 +35,21 @@ def workspace_picture(
         resolution: points along the longer side of the map.
 
     Returns:
-        A matplotlib Figure.
+        The axes.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
         StructureError: no pose in that mode and assembly.
     """
-    figure = _figure(8.4, 6.6)
-    axes = figure.add_subplot()
+    axes = new_axes(size=(8.4, 6.6))
     grid = workspace_map(linkage, mode, resolution)
     drawn = axes.pcolormesh(
         grid.x, grid.y, np.minimum(grid.condition, _WORST_SHOWN), cmap="viridis_r",
         vmin=1.0, vmax=_WORST_SHOWN, shading="nearest", rasterized=True,
     )  # fmt: skip
-    figure.colorbar(drawn, ax=axes, label=f"condition number of J (from {_WORST_SHOWN:g} up: same)")
+    axes.figure.colorbar(
+        drawn, ax=axes, label=f"condition number of J (from {_WORST_SHOWN:g} up: same)"
+    )
     circle = largest_circle(linkage, mode, assembly)
     _loci(axes, linkage, mode)
     ring = _circle(circle.centre, circle.radius)
@@ -67,8 +65,8 @@ def workspace_picture(
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
     signs = ", ".join("+" if s > 0 else "−" for s in mode)
     axes.set_title(f"{linkage.name}: working mode ({signs})")
-    figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
-    return figure
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    return axes
 
 
 def _loci(axes: Any, linkage: Linkage, mode: Mode) -> None:
@@ -105,12 +103,12 @@ def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
 
     Returns:
-        A matplotlib Figure.
+        The first of its four axes.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = _figure(9.6, 6.4)
+    figure = new_figure((9.6, 6.4))
     where, rate, torque, power = figure.subplots(2, 2).ravel()
     cycle, box = sizing.cycle, sizing.workspace
     where.plot(*cycle.path.xy.T, color="black", lw=1.5)
@@ -135,20 +133,19 @@ def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
         f"{linkage.name}: {60 / cycle.path.duration:.0f} cycles a minute, "
         f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
     )
-    return figure
+    return where
 
 
 def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     """Torque per acceleration over the gain of J: I_A sigma + m / sigma, least at sqrt(eta).
 
     Returns:
-        A matplotlib Figure.
+        The axes.
 
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = _figure(7.2, 4.4)
-    axes = figure.add_subplot()
+    axes = new_axes(size=(7.2, 4.4))
     arms = crank_inertia(linkage, rod_model(linkage, "massless"))
     arms = arms - np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
     best = np.sqrt(sizing.eta[np.isfinite(sizing.eta)])
@@ -170,33 +167,7 @@ def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     axes.set(xlabel="singular value σ of J, rad/m", ylabel="I$_A$ σ + m/σ, kg m")
     axes.set_ylim(bottom=0.0)
     axes.legend(fontsize=9)
-    return figure
-
-
-def save(figure: Any, path: str | Path) -> None:
-    """Writes a figure as .png, .svg or .pdf.
-
-    Raises:
-        FileError: another suffix, or a file that cannot be written.
-    """
-    file = Path(path)
-    kind = file.suffix.lower().lstrip(".")
-    if kind not in ("png", "svg", "pdf"):
-        raise FileError(f"{file}: name a .png, .svg or .pdf file")
-    buffer = io.BytesIO()
-    figure.savefig(buffer, format=kind, dpi=150)
-    write_bytes(file, buffer.getvalue())
-
-
-def _figure(width: float, height: float) -> Any:
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ImportError:
-        raise MissingExtraError('pictures need matplotlib: pip install "kinlab[plots]"') from None
-    figure = Figure(figsize=(width, height), layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure
+    return axes
 
 
 def _circle(centre: tuple[float, float], radius: float) -> Array:
