@@ -140,7 +140,7 @@ def batch() -> list[Row]:
         calls = {"kinlab": call}
         if what in raw:
             calls["pinocchio"] = raw[what]
-        out += rows("batch ur5", what, calls, robot.n, count, count=7, least=0.0)
+        out += rows("batch ur5", what, calls, robot.n, count, count=5, least=0.0)
     return out
 
 
@@ -166,7 +166,7 @@ def growth() -> list[Row]:
 
 
 def sweeps() -> list[Row]:
-    """10^6 states on one worker and two, three times each in a process of its own.
+    """10^6 states on one worker and two, twice each in a process of its own.
 
     ``kept small``: pose and J are worked out, the position, sigma_min and condition kept, in
     memory. ``kept whole``: pose, J and both in parts on disk. ``running``: as the first, on
@@ -176,7 +176,7 @@ def sweeps() -> list[Row]:
     out = []
     for what in ("kept small", "kept small, running", "kept whole, on disk"):
         found: dict[int, list[list[float]]] = {1: [], 2: []}
-        for _ in range(3):
+        for _ in range(2):
             for workers, runs in found.items():
                 code = f"import bench; bench.one_sweep({what!r}, {workers})"
                 done = subprocess.run(

@@ -22,6 +22,11 @@ def total(robot, q):
     return q.sum(axis=1)
 
 
+def wide(_, q):
+    """A hundred numbers a state, and one."""
+    return {"rows": np.repeat(q, 100, axis=1), "value": q[:, 0]}
+
+
 def design_volume(design, x):
     """For subjects that are no robots."""
     return x.prod(axis=1) * design

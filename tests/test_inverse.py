@@ -16,6 +16,7 @@ from kinlab.errors import NameUnknownError, OptionError, StateError, StructureEr
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.result import IKStatus
 from tests.random_tables import random_table
+from tests.test_chain import random_model
 
 ARMS = [
     "puma560", "puma560_modified", "stanford", "ur5", "ur10", "panda", "erd:kinova", "erd:xarm7",
@@ -258,6 +259,17 @@ def test_single_joint_and_slide():
         for pose in T:
             assert kl.ik(robot, pose).success
         assert q.shape == (10, robot.n)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_models_without_limits_and_with_any_axes(seed):
+    model = random_model(np.random.default_rng(seed))
+    robot = kl.Robot.from_model(model, "tool")
+    T = kl.fk(robot, np.random.default_rng(seed).uniform(-1, 1, (5, robot.n)))
+    answer = kl.ik_batch(robot, T)
+    assert answer.success.all()
+    for q, pose in zip(answer.q, T, strict=True):
+        assert max(independent_errors(robot, q, pose)) <= 1e-6
 
 
 def test_same_seed_same_bits_other_seed_other_starts():

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import time
+import tracemalloc
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import partial
 from itertools import pairwise
@@ -245,6 +246,23 @@ def test_what_the_measure_raises_arrives(workers):
     with pytest.raises(StateError, match=r"q has shape \(4096, 2\); expected \(6,\)"):
         kl.sweep(kl.load("puma560"), "position", 9000, lower=[0, 0], upper=[1, 1], workers=workers,
                  chunk=1)  # fmt: skip
+
+
+def test_memory_is_that_of_a_chunk(tmp_path):
+    """20 blocks of 3.3 MB each go to disk and are searched with few of them in memory."""
+    block = BLOCK * 100 * 8
+    tracemalloc.start()
+    try:
+        result = kl.sweep(
+            1, sweep_measures.wide, 20 * BLOCK, lower=[0], upper=[1], workers=1, chunk=1,
+            folder=tmp_path,
+        )  # fmt: skip
+        result.best("value", 3)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert result["rows"].nbytes == 20 * block
+    assert peak < 6 * block
 
 
 def test_a_folder_of_another_sweep_is_refused(robot, tmp_path):

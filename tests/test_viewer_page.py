@@ -309,3 +309,18 @@ def test_notebook_cell_works_inside_its_frame(tab):  # noqa: F811
     ready(cell)
     slide(cell, 0, 0.5)
     assert cell.evaluate("page.q") == [0.5, 0.0]
+
+
+def test_tool_trace_follows_the_tool(tab, tmp_path):  # noqa: F811
+    robot = kl.load("planar2r")
+    page = open_file(tab, Scene(robot, [0.1, 0.4]), tmp_path)
+    page.get_by_label("tool trace").check()
+    poses = [[0.1, 0.4], [0.2, 0.4], [0.2, 0.6]]
+    for q in poses[1:]:
+        page.evaluate("q => page.setJoints(q)", q)
+    drawn = page.evaluate(
+        "() => [...kinlab.node(page.spec.trace).children[0].geometry.attributes.position.array]"
+    )
+    assert np.abs(np.reshape(drawn, (-1, 3)) - kl.fk(robot, poses)[:, :3, 3]).max() < 1e-6
+    page.get_by_label("tool trace").uncheck()
+    assert page.evaluate("kinlab.node(page.spec.trace).visible") is False

@@ -61,7 +61,7 @@ def view(
 
 
 def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool) -> Page:
-    from kinlab.errors import NameUnknownError
+    from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
     from kinlab.library import load
     from kinlab.viewer import motions
@@ -69,6 +69,8 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
 
     start = None if q is None else _numbers(q)
     if name in presets() or _holds_five_bar(name):
+        if tip is not None:
+            raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
         return _open_five_bar(name, start, animate)
     try:
         robot = load(name, tip)

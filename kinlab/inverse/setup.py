@@ -26,6 +26,9 @@ holding wider ones at their limits makes dead ends (Stanford needs twice the ite
 LENGTH = 0.35
 """Length that divides metres beside radians, as a share of the arm's; flat from 0.25 to 0.5."""
 
+_ENDLESS = 1e6
+"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
+
 _KEPT = 16
 
 
@@ -104,7 +107,8 @@ def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Set
     k, n = len(prismatic), robot.n
     slides = np.zeros(n, dtype=np.bool_)
     slides[:k] = prismatic
-    lower, upper = np.array(robot.lower), np.array(robot.upper)
+    lower = np.where(robot.lower < -_ENDLESS, -np.inf, robot.lower)
+    upper = np.where(robot.upper > _ENDLESS, np.inf, robot.upper)
     rigid = float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum())
     low, high = _window(lower, upper, slides, max(rigid, 1.0))
     sample = np.random.default_rng(seed).uniform(low, high, (count, n))

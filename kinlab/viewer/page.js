@@ -250,6 +250,8 @@ const kinlab = (() => {
     };
   }
 
+  const arcPaint = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide });
+
   // d and theta of one DH row: a rod along z and an arc about it, at the foot of the row.
   function drawDhRow(row, q) {
     const { theta, d } = dhValues(row, q);
@@ -261,8 +263,8 @@ const kinlab = (() => {
     }
     if (Math.abs(theta) < 1e-3) return;
     const ring = new THREE.TorusGeometry(row.radius, row.radius / 24, 8, 40, Math.abs(theta));
-    const paint = new THREE.MeshBasicMaterial({ color: row.color, side: THREE.DoubleSide });
-    const mesh = new THREE.Mesh(ring, paint);
+    const mesh = new THREE.Mesh(ring, arcPaint);
+    arcPaint.color.set(row.color);
     mesh.scale.y = Math.sign(theta);
     arc.add(mesh);
   }
@@ -401,9 +403,11 @@ const kinlab = (() => {
       report.sigma.textContent = number(sigmaMin);
       report.kappa.textContent = number(kappa);
       for (const entry of spec.ellipsoids) drawEllipsoid(entry, model.linear(state.q), at);
-      trace.push(at);
-      if (trace.length > 2000) trace.shift();
-      drawTrace();
+      if (active.has("trace")) {
+        trace.push(at);
+        if (trace.length > 2000) trace.shift();
+        drawTrace();
+      }
       for (const [i, row] of spec.dh.entries()) {
         const { theta, d } = dhValues(row, state.q);
         report.dh[i].theta.textContent = degrees(theta);
@@ -419,9 +423,11 @@ const kinlab = (() => {
         line.frustumCulled = false;
         holder.add(line);
       }
-      const points = active.has("trace") ? trace.flat() : [];
-      const attribute = new THREE.Float32BufferAttribute(points, 3);
-      holder.children[0].geometry.setAttribute("position", attribute);
+      const line = holder.children[0];
+      line.geometry.dispose(); // or every frame would leave its points on the graphics card
+      line.geometry = new THREE.BufferGeometry();
+      const points = new THREE.Float32BufferAttribute(trace.flat(), 3);
+      line.geometry.setAttribute("position", points);
     }
 
     // -- groups of nodes and labels that are shown or hidden together
