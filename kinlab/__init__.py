@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.path import ik_path
     from kinlab.inverse.single import ik
     from kinlab.sweeps.run import SweepResult, sweep
 
@@ -89,6 +90,7 @@ _LATER = {
     "ik": "kinlab.inverse.single",
     "ik_batch": "kinlab.inverse.batch",
     "ik_branches": "kinlab.inverse.branches",
+    "ik_path": "kinlab.inverse.path",
     "manipulability": "kinlab.analysis.metrics",
     "nearest_singularity": "kinlab.analysis.nearest",
     "planar_boundary": "kinlab.analysis.boundary",
@@ -144,6 +146,7 @@ __all__ = [
     "ik",
     "ik_batch",
     "ik_branches",
+    "ik_path",
     "inertial_wrenches",
     "inverse_dynamics",
     "jacobian",

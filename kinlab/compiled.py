@@ -62,7 +62,8 @@ class _Announcer(event.Listener):  # type: ignore[misc]
         """Nothing to say at the end."""
 
 
-event.register("numba:compile", _Announcer())
+event_announcer = _Announcer()
+event.register("numba:compile", event_announcer)
 
 
 def thread_count(threads: int | None) -> int:

@@ -143,6 +143,15 @@ def test_nearest_on_arms_where_it_is_known():
     assert redundant.distance == pytest.approx(np.hypot(0.9, 0.5), abs=1e-9)
 
 
+def test_nearest_counts_turns_of_a_wide_joint():
+    links = [kl.DHLink("revolute", a=a, lower=-7.0, upper=7.0) for a in (0.5, 0.4)]
+    near = kl.nearest_singularity(
+        kl.Robot.from_dh(kl.DHTable("two", "standard", links)), [0.3, 6.0]
+    )
+    assert near.distance == pytest.approx(2 * np.pi - 6.0, abs=1e-9)
+    assert np.allclose(near.singularity.q, [0.3, 2 * np.pi], atol=1e-9)
+
+
 def test_nearest_is_no_farther_than_a_dense_scan_of_the_factors():
     robot = kl.load("puma560")
     q = np.array([-0.21, 0.26, 0.714, 1.369, -0.647, 0.446])

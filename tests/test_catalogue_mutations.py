@@ -163,7 +163,7 @@ def hand_functions():
                 yield pytest.param(value, id=f"{name.rsplit('.', 1)[1]}.{value.__name__}")
 
 
-@pytest.mark.parametrize("function", hand_functions())
+@pytest.mark.parametrize("function", list(hand_functions()))
 def test_one_sign_or_factor_changed_is_caught(function):
     order = sorted(
         trials(),

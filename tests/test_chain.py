@@ -1,11 +1,13 @@
 """The compiled chain against Pinocchio, on shipped arms, URDF arms and random axes."""
 
+import numba
 import numpy as np
 import pinocchio as pin
 import pytest
 
 import kinlab as kl
 from kinlab import chain as kernels
+from kinlab import compiled
 from kinlab.chain_arrays import chain
 from kinlab.compiled import over_rows, thread_count
 from kinlab.errors import OptionError
@@ -106,3 +108,27 @@ def test_threads_do_not_change_a_bit():
 def test_bad_thread_counts(threads):
     with pytest.raises(OptionError, match="threads"):
         thread_count(threads)
+
+
+def test_compiling_is_announced_once_and_only_when_asked(caplog, monkeypatch):
+    monkeypatch.setattr(compiled.event_announcer, "said", False)
+    with caplog.at_level("WARNING", logger="kinlab.compiled"):
+        numba.njit(lambda x: x + 1)(1)
+    assert not caplog.records
+    with caplog.at_level("INFO", logger="kinlab.compiled"):
+        numba.njit(lambda x: x + 2)(1)
+        numba.njit(lambda x: x + 3)(1)
+    assert [r.message for r in caplog.records].count(caplog.records[0].message) == 1
+    assert "compiling kernels" in caplog.records[0].message
+
+
+def test_no_folder_to_cache_in_still_compiles(monkeypatch):
+    real = numba.njit
+
+    def njit(**options):
+        if options.get("cache"):
+            raise RuntimeError("cannot cache function: no locator available")
+        return real(**options)
+
+    monkeypatch.setattr(numba, "njit", njit)
+    assert compiled.kernel(lambda x: 2 * x)(21) == 42

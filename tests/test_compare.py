@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import kinlab as kl
 from kinlab.check.compare import relative_errors
 from kinlab.check.quantities import quantities
-from kinlab.errors import NameUnknownError, OptionError
+from kinlab.errors import NameUnknownError, OptionError, StructureError
 from kinlab.formula import FormulaError
 
 
@@ -102,6 +104,17 @@ def test_samples_and_function_are_checked():
         kl.compare("single_link", "gravity_torques", "g")
 
 
+def test_a_file_that_changed_is_read_again(tmp_path):
+    path = tmp_path / "arm.toml"
+    table = kl.load("single_link").table
+    table.save(path)
+    assert kl.compare(path, "gravity_torques", gravity).agrees
+    heavy = replace(table, links=[replace(table.links[0], mass=5.0)])
+    heavy.save(path)
+    assert not kl.compare(path, "gravity_torques", gravity).agrees
+    assert kl.compare(str(path), "gravity_torques", lambda q: 2.0 * gravity(q)).agrees
+
+
 def test_a_function_cannot_change_the_states():
     def spoils(q):
         answer = gravity(q)
@@ -130,3 +143,23 @@ def test_every_quantity_answers_with_one_entry_per_state():
         mechanism = quantity.domain.load(robot)
         answer = quantity.engine(mechanism, *quantity.states(mechanism, 3, 0))
         assert len(answer) == 3 and np.isfinite(answer).all(), name
+
+
+def test_every_quantity_refuses_an_arm_it_is_not_for_or_answers():
+    """No numpy or Pinocchio error reaches the user, whatever robot a quantity is asked of."""
+    for name, quantity in quantities().items():
+        if quantity.domain.name != "serial":
+            continue
+        for robot in ("single_link", "planar2r", "panda", "stanford", "kinova"):
+            try:
+                found = kl.compare(robot, name, lambda *state: 0.0, samples=2)
+            except (FormulaError, StructureError) as problem:
+                told = "has shape" in str(problem) or "is for" in str(problem)
+                assert told, (name, robot, problem)
+            else:
+                assert found.engine.shape == (2,), (name, robot)
+
+
+def test_a_quantity_for_two_joints_says_so():
+    with pytest.raises(StructureError, match="is for 2 joints; 'panda' has 7"):
+        kl.compare("panda", "planar_position_determinant", lambda q: 0.0)

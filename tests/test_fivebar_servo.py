@@ -87,6 +87,20 @@ def test_motor_torque_has_rotor_and_efficiency():
     assert fit.limit == min(fit.margins, key=fit.margins.get)
 
 
+def test_torque_at_the_shaft_along_a_cycle():
+    """The load through the gear and its losses, the rotor beside them."""
+    motor = catalogue()["SGMAH-08A"]
+    path = pick_and_place([0.0, -0.6], 2.0, 30.0)
+    cycle = follow(UNEQUAL, path)
+    load = replace(UNEQUAL, rotor_inertia=0.0).inverse_dynamics(path.xy, path.v, path.a)
+    turn = joint_accelerations(UNEQUAL, path.xy, path.v, path.a)
+    expected = load / (20.0 * 0.8) + 0.672e-4 * 20.0 * turn
+    found = motor_torques(UNEQUAL, cycle, motor, 20.0, 0.8)
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+    (fit,) = UNEQUAL.size_servo(BOX, 2.0, 30.0, motor, 20.0, efficiency=0.8).fits
+    assert fit.rms < fit.peak
+
+
 def test_the_notes_torque_is_too_small():
     sizing = ISOTROPIC.size_servo(BOX, SPEED, ACCELERATION, motor="SGMAH-08A")
     assert sizing.torque_note.largest < 0.75 * sizing.torque.largest

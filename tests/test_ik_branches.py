@@ -34,7 +34,8 @@ def wrist_arm(seed, convention, third="revolute", kind="general"):
         (length[0], 0.7 if kind == "parallel" else rng.choice([0.0, 0.7])),
         (length[1], HALF),
     ]
-    wrist = [(0.0, -HALF), (0.0, HALF), (0.0, 0.0)]
+    bend = HALF if seed % 2 else 1.2  # an oblique wrist cannot turn everywhere
+    wrist = [(0.0, -bend), (0.0, bend + 0.1 * (bend < HALF)), (0.0, 0.0)]
     shifts = [length[2], rng.uniform(-0.2, 0.2), 0.1, length[3], 0.0, 0.08]
     if convention == "modified":  # there a and alpha stand in front of the joint
         rows = [(0.0, 0.0), *rows]
@@ -206,3 +207,23 @@ def test_linear_trig():
             assert a * math.cos(x) + b * math.sin(x) == pytest.approx(c)
     assert len(linear_trig(3.0, 4.0, 5.0)) == 1 and linear_trig(0.0, 0.0, 0.0) == []
     assert linear_trig(1.0, 0.0, 1.1) == []
+
+
+@pytest.mark.parametrize("name", ["puma560", "stanford", "erd:kinova"])
+def test_the_status_of_a_search_is_what_the_closed_form_says(name):
+    """Random poses, reachable or not: success, only outside the limits, or not at all."""
+    robot = kl.load(name)
+    rng = np.random.default_rng(16)
+    T = kl.fk(robot, rng.uniform(robot.lower, robot.upper, (150, 6)))
+    T[:, :3, :3] = T[rng.permutation(150), :3, :3]  # each position with another orientation
+    answer = kl.ik_batch(robot, T)
+    seen = set()
+    for pose, success, status in zip(T, answer.success, answer.status, strict=True):
+        found = kl.ik_branches(robot, pose)
+        if found.within_limits.any():
+            expected = "converged"
+        else:
+            expected = "converged_outside_limits" if len(found) else "unreachable_suspected"
+        seen.add(expected)
+        assert status == expected and success == (expected == "converged")
+    assert {"converged", "converged_outside_limits"} <= seen

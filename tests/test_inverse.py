@@ -13,9 +13,10 @@ from hypothesis import strategies as st
 import kinlab as kl
 from kinlab import chain_arrays
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError
-from kinlab.inverse import kernel, methods
+from kinlab.inverse import kernel_parts, methods
 from kinlab.inverse.result import IKStatus
 from tests.random_tables import random_table
+from tests.test_chain import random_model
 
 ARMS = [
     "puma560", "puma560_modified", "stanford", "ur5", "ur10", "panda", "erd:kinova", "erd:xarm7",
@@ -260,6 +261,17 @@ def test_single_joint_and_slide():
         assert q.shape == (10, robot.n)
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_models_without_limits_and_with_any_axes(seed):
+    model = random_model(np.random.default_rng(seed))
+    robot = kl.Robot.from_model(model, "tool")
+    T = kl.fk(robot, np.random.default_rng(seed).uniform(-1, 1, (5, robot.n)))
+    answer = kl.ik_batch(robot, T)
+    assert answer.success.all()
+    for q, pose in zip(answer.q, T, strict=True):
+        assert max(independent_errors(robot, q, pose)) <= 1e-6
+
+
 def test_same_seed_same_bits_other_seed_other_starts():
     robot = kl.load("panda")
     _, T = poses(robot, 10, 12)
@@ -282,7 +294,7 @@ def test_rotation_vector_up_to_half_a_turn():
     for angle in (0.0, 1e-9, 1e-5, 1.0, 3.0, np.pi - 1e-5, np.pi - 1e-8, np.pi):
         for axis in (*np.eye(3), *-np.eye(3), *rng.normal(size=(5, 3))):
             vector = angle * axis / np.linalg.norm(axis)
-            kernel.rotation_vector(pin.exp3(vector).ravel(), out)
+            kernel_parts.rotation_vector(pin.exp3(vector).ravel(), out)
             np.testing.assert_allclose(pin.exp3(out), pin.exp3(vector), atol=3e-8)
             assert np.linalg.norm(out) == pytest.approx(angle, abs=3e-8)
 
@@ -295,12 +307,12 @@ def test_turned_rows_are_the_derivative_of_the_rotation_vector():
     def error(rotation):
         pose = np.concatenate([rotation, np.zeros((3, 1))], axis=1).ravel()
         out, r = np.empty(6), np.empty(9)
-        kernel.pose_error(pose, target, r, out)
+        kernel_parts.pose_error(pose, target, r, out)
         return out
 
     jac = np.zeros((6, 1))
     jac[3:, 0] = omega
-    kernel.turn_rows(jac, error(turn), 1)
+    kernel_parts.turn_rows(jac, error(turn), 1)
     ahead, behind = error(pin.exp3(h * omega) @ turn), error(pin.exp3(-h * omega) @ turn)
     np.testing.assert_allclose(-(ahead - behind)[3:] / (2 * h), jac[3:, 0], atol=1e-8)
 
@@ -351,6 +363,16 @@ def test_tasks_an_arm_cannot_have():
         kl.ik(kl.load("planar2r"), GOOD, task="xytheta")
     with pytest.raises(OptionError, match="never moves in z"):
         kl.ik(kl.load("planar3r"), GOOD, task="position")
+
+
+def test_the_task_that_suits_the_arm():
+    for name, task in (("planar2r", "xy"), ("planar3r", "xytheta"), ("puma560", "pose")):
+        robot = kl.load(name)
+        _, T = poses(robot, 3, 17)
+        for pose in T:
+            assert np.array_equal(
+                kl.ik(robot, pose, task="auto").q, kl.ik(robot, pose, task=task).q
+            )
 
 
 def test_no_robot_and_a_floating_base():

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 import umsgpack
 
@@ -144,10 +145,10 @@ def test_ellipsoid_axes():
     ("call", "error", "words"),
     [
         (lambda s: s.show([0.0]), StateError, "q has shape"),
-        (lambda s: s.show([[0.0] * 6] * 2), StateError, "one pose"),
+        (lambda s: s.show([[0.0] * 6] * 2), StateError, "give one pose"),
         (lambda s: s.show([np.nan] * 6), StateError, "finite"),
         (lambda s: s.frame("f", np.zeros((4, 4))), StateError, "frame 'f'"),
-        (lambda s: s.frame("a/b", np.eye(4)), OptionError, "without '/'"),
+        (lambda s: s.frame("", np.eye(4)), OptionError, "must have a name"),
         (lambda s: s.path("p", [[0, 0, 0]]), StateError, "N at least 2"),
         (lambda s: s.path("p", [[0, 0], [1, 1]]), StateError, "shape (2, 2)"),
         (lambda s: s.points("p", np.empty((0, 3))), StateError, "N at least 1"),
@@ -239,6 +240,33 @@ def test_five_bar_motions_stay_closed(kind):
     assert np.all(scene.linkage.condition_number(xy, scene.mode) < 50)
 
 
+@pytest.mark.parametrize("name", ["puma560", "erd:talos_arm"])
+def test_bodies_nest_where_pinocchio_places_them(name):
+    """The chain of node transforms, walked by hand, against Pinocchio's geometry placements."""
+    robot = kl.load(name)
+    q = np.random.default_rng(5).uniform(robot.lower, robot.upper)
+    moves = {
+        c["path"]: np.reshape(c["matrix"], (4, 4)).T
+        for c in drawn(Scene(robot, q))
+        if c["type"] == "set_transform"
+    }
+    visuals = pin.buildGeomFromUrdfString(
+        robot.model, robot.urdf, pin.GeometryType.VISUAL,
+        package_dirs=[str(folder) for folder in (robot.folder.parents if robot.folder else [])],
+    )  # fmt: skip
+    data, placed = robot.model.createData(), visuals.createData()
+    pin.updateGeometryPlacements(robot.model, data, visuals, placed, q)
+    found = {path.split("/")[-1]: path for path in moves if "/visuals/" in path}
+    assert len(found) == len(visuals.geometryObjects) > robot.n
+    for body, at in zip(visuals.geometryObjects, placed.oMg, strict=True):
+        parts = found[body.name].split("/")
+        pose = np.eye(4)
+        for end in range(2, len(parts) + 1):
+            pose = pose @ moves.get("/".join(parts[:end]), np.eye(4))
+        expected = at.homogeneous @ np.diag([*body.meshScale, 1.0])
+        assert np.abs(pose - expected).max() < 1e-12
+
+
 def test_recorder_keeps_the_newest_of_each():
     vis, recorder = new_scene()
     vis["a"].set_transform(np.eye(4))
@@ -248,6 +276,8 @@ def test_recorder_keeps_the_newest_of_each():
     vis["a/b"].set_transform(np.eye(4))
     vis["ab"].set_transform(np.eye(4))
     assert len(recorder.commands()) == 5
+    vis["a"].set_transform(np.eye(4))  # goes to the end, behind what it may rest on
+    assert umsgpack.unpackb(recorder.commands()[-1])["path"] == "/meshcat/a"
     vis["a"].delete()
     kinds = [umsgpack.unpackb(c) for c in recorder.commands()]
     assert [(c["type"], c["path"]) for c in kinds] == [
@@ -268,6 +298,7 @@ def test_view_in_a_notebook_serves_nothing(monkeypatch):
     assert cell.startswith("<iframe srcdoc=")
     inside = html.unescape(re.search(r'srcdoc="([^"]*)"', cell)[1])
     assert '"q": [0.1, 0.2]' in inside
+    assert "five-bar" in kl.view(kl.FiveBar.load("isotropic"))._repr_html_()
 
 
 def test_view_serves_and_says_where(monkeypatch, capsys):
@@ -286,6 +317,18 @@ def test_no_browser_is_tried_without_a_display(monkeypatch):
     monkeypatch.setattr(show.webbrowser, "open", lambda _: pytest.fail("it tried"))
     monkeypatch.setattr(show.sys, "platform", "linux")
     assert show.open_browser("http://127.0.0.1:1/") is False
+
+
+def test_plain_pages_do_without_compiled_code():
+    """numba and sympy would double the time of a cold start."""
+    code = (
+        "import sys; import kinlab.cli.view as v; v._open('puma560', None, None, None, True);"
+        "v._open('isotropic', None, None, None, True);"
+        "print(sorted({'numba', 'sympy', 'matplotlib'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=ROOT,
+                          check=True)  # fmt: skip
+    assert done.stdout.strip() == "[]"
 
 
 def test_command_saves_one_file(tmp_path):
@@ -311,6 +354,7 @@ def test_command_saves_one_file(tmp_path):
         (("view", "puma560", "-q", "1,two", "--save", "x.html"), "two"),
         (("view", "puma560", "--animate", "dance", "--save", "x.html"), "'dance'"),
         (("view", "puma560", "--port", "99999"), "port 99999"),
+        (("view", "isotropic", "--tip", "tool"), "leave --tip 'tool' out"),
         (("view", "puma560", "--host", "192.0.2.1"), "cannot listen on 192.0.2.1"),
     ],
 )

@@ -140,10 +140,22 @@ def test_ellipsoid_has_the_singular_values_for_axes(tab, tmp_path):  # noqa: F81
         assert np.abs(shape[:3, 3] - kl.fk(robot, q)[:3, 3]).max() < AGREE
 
 
-@pytest.mark.parametrize("name", ["puma560", "puma560_modified", "stanford", "erd:ur5"])
+def flipped(convention):
+    """Joints that turn and slide against z, with every column of the table in use."""
+    links = [
+        kl.DHLink(a=0.3, alpha=0.7, d=0.2, theta=0.4, flip=True),
+        kl.DHLink("prismatic", a=-0.2, alpha=-1.1, d=0.3, theta=-0.9, flip=True),
+        kl.DHLink(a=0.1, alpha=2.0, d=-0.25, theta=2.5),
+    ]
+    return kl.Robot.from_dh(kl.DHTable("flipped", convention, links))
+
+
+@pytest.mark.parametrize(
+    "name", ["puma560", "puma560_modified", "stanford", "erd:ur5", "standard", "modified"]
+)
 def test_dh_picture_stands_on_the_dh_frames(tab, tmp_path, name):  # noqa: F811
     """Frames where the hand product puts them; d and theta lead from one to the next."""
-    robot = kl.load(name)
+    robot = flipped(name) if name in ("standard", "modified") else kl.load(name)
     table = robot.table or kl.to_dh(robot)
     rng = np.random.default_rng(3)
     q = rng.uniform(np.maximum(robot.lower, -3), np.minimum(robot.upper, 3))
@@ -158,6 +170,17 @@ def test_dh_picture_stands_on_the_dh_frames(tab, tmp_path, name):  # noqa: F811
         sign = -1.0 if link.flip else 1.0
         d = link.d + (sign * q[i - 1] if link.joint == "prismatic" else 0.0)
         assert np.abs(foot[:3, :3] @ [0, 0, d] - rod[:3, 2]).max() < 1e-8
+        # theta, as the page's table shows it, turns the foot's x into that of the link
+        shown = page.locator("table tr").nth(i).locator("td").nth(4).inner_text()
+        theta = np.radians(float(shown.rstrip("°")))
+        x = world(page, paths[i - 1] + f"/dh/dh_row_{i}")[:3, :3] @ [
+            np.cos(theta),
+            np.sin(theta),
+            0,
+        ]
+        behind = frames[i] if str(table.convention) == "modified" else world(
+            page, f"{paths[i]}/dh/dh_x_{i}")  # fmt: skip
+        assert np.abs(x - behind[:3, 0]).max() < 1e-3
         # the a rod and alpha arc: one step along and about x from the z axis before to the next
         modified = str(table.convention) == "modified"
         start = world(page, f"{paths[i - 1 if modified else i]}/dh/dh_x_{i}")
@@ -260,13 +283,17 @@ def test_five_bar_stops_at_type_two(tab, tmp_path):  # noqa: F811
 
 @pytest.mark.parametrize("name", ["ur5", "talos_arm", "kinova"])
 def test_meshes_are_shown(tab, tmp_path, name):  # noqa: F811
-    """Collada and STL: the meshes are in the scene, and larger than nothing."""
+    """Collada and STL: the meshes are in the scene, and every part has a material to show it."""
     page = open_file(tab, Scene(kl.load(f"erd:{name}")), tmp_path)
     count = page.evaluate(
         """() => {
           let triangles = 0;
           kinlab.node(page.spec.body).traverse(o => {
             if (!o.geometry) return;
+            for (const material of [o.material].flat()) {
+              if (!material || !material.isMaterial) throw new Error("a part is invisible");
+            }
+            if ([o.material].flat(9).length !== [o.material].flat().length) throw new Error("nested");
             const g = o.geometry;
             triangles += (g.index ? g.index.count : g.attributes.position.count) / 3;
           });
@@ -274,3 +301,26 @@ def test_meshes_are_shown(tab, tmp_path, name):  # noqa: F811
         }"""
     )
     assert count > 5000
+
+
+def test_notebook_cell_works_inside_its_frame(tab):  # noqa: F811
+    tab.set_content(f"<h1>cell</h1>{Scene(kl.load('planar2r'))._repr_html_()}")
+    cell = tab.frames[1]
+    ready(cell)
+    slide(cell, 0, 0.5)
+    assert cell.evaluate("page.q") == [0.5, 0.0]
+
+
+def test_tool_trace_follows_the_tool(tab, tmp_path):  # noqa: F811
+    robot = kl.load("planar2r")
+    page = open_file(tab, Scene(robot, [0.1, 0.4]), tmp_path)
+    page.get_by_label("tool trace").check()
+    poses = [[0.1, 0.4], [0.2, 0.4], [0.2, 0.6]]
+    for q in poses[1:]:
+        page.evaluate("q => page.setJoints(q)", q)
+    drawn = page.evaluate(
+        "() => [...kinlab.node(page.spec.trace).children[0].geometry.attributes.position.array]"
+    )
+    assert np.abs(np.reshape(drawn, (-1, 3)) - kl.fk(robot, poses)[:, :3, 3]).max() < 1e-6
+    page.get_by_label("tool trace").uncheck()
+    assert page.evaluate("kinlab.node(page.spec.trace).visible") is False

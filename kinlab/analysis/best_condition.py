@@ -14,11 +14,12 @@ from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_bo
 from kinlab.arrays import Array
 from kinlab.kinematics import jacobian
 
-_POWERS = (1.0, 4.0, 16.0, 64.0, 256.0, 1024.0)
-"""Each minimisation starts where the one before ended; at 1024 the surrogate of six equal
-singular values is 0.2 % above the condition number, and its minimiser as near."""
-_STARTS = 24
-"""The best conditioned seeds that are minimised; the others lie in the same basins."""
+_POWERS = (1.0, 8.0, 64.0, 512.0, 4096.0, 3.2e4, 2.6e5, 2e6, 2e7)
+"""Each minimisation starts where the one before ended. At 2e7 the surrogate of six equal
+singular values is 1e-7 above the condition number, and its minimiser as near."""
+_STARTS = 12
+"""The best conditioned seeds that are minimised, of those with different singular values: the
+same values mean the same pose up to a symmetry of the arm."""
 
 
 def lower_condition(
@@ -36,8 +37,11 @@ def lower_condition(
     """
     lower, upper = search_box(space.robot)
     q = np.clip(q, lower, upper)
-    condition = condition_number(singular_values(space.jacobian(q, lengths)))
-    order = np.argsort(condition, kind="stable")[:_STARTS]
+    sigma = singular_values(space.jacobian(q, lengths))
+    condition = condition_number(sigma)
+    alike = np.round(sigma / np.maximum(sigma[:, :1], 1e-300), 4)
+    _, first = np.unique(alike, axis=0, return_index=True)
+    order = first[np.argsort(condition[first], kind="stable")][:_STARTS]
     states, sizes, reached = [], [], []
     for number in order:
         state, size = _descend(space, length, q[number], float(lengths[number]))

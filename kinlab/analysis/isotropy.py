@@ -69,8 +69,9 @@ class IsotropySearch:
         best_condition: its condition number. best_length: its length, metres or ``None``.
         seeds: starts of the search. seed: of the random numbers.
         converged: starts that ended at isotropy.
-        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations,
-            where there is no isotropy: how often they agree on the best one.
+        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations
+            (from the dozen best starts that differ), where there is no isotropy: how far they
+            agree on the best one.
     """
 
     robot: str

@@ -12,7 +12,7 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import read_reachable_task, search_box
+from kinlab.analysis.task_space import read_reachable_task, revolute
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
@@ -71,6 +71,7 @@ def nearest_singularity(
     )
     x, good = sets.project(system, starts)
     x = x[good]
+    x[:, : robot.n] = _turned(robot, x[:, : robot.n], here)
     first = np.argsort(np.linalg.norm(x[:, : robot.n] - here, axis=1), kind="stable")
     x = _slide(system, x[first[:_SLIDERS]], here)
     if not len(x):
@@ -96,7 +97,7 @@ def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120)
     """Moves each solution (N, k) along the set towards ``here``; returns those that stay valid."""
     robot = system.space.robot
     n = robot.n
-    lower, upper = search_box(robot)
+    lower, upper = robot.lower, robot.upper
     best = x.copy()
     size = np.ones(len(x))
     for _ in range(steps):
@@ -122,6 +123,16 @@ def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120)
     return best
 
 
+def _turned(robot: Robot, q: Array, here: Array) -> Array:
+    """Revolute joints of q (N, n) by whole turns as near to ``here`` as the limits allow."""
+    turns = 2.0 * np.pi * np.arange(-2.0, 3.0)[:, np.newaxis, np.newaxis] * revolute(robot)
+    shifted = q + turns
+    outside = (shifted < robot.lower - sets.ROUNDING) | (shifted > robot.upper + sets.ROUNDING)
+    apart = np.where(outside, np.inf, np.abs(shifted - here))
+    chosen: Array = np.take_along_axis(shifted, apart.argmin(axis=0)[np.newaxis], axis=0)[0]
+    return chosen
+
+
 def _normal_part(slope: Array, wanted: Array, n: int) -> Array:
     """What to take from ``wanted`` so that the constraint keeps its value; u moves at no cost.
 
@@ -138,8 +149,7 @@ def _normal_part(slope: Array, wanted: Array, n: int) -> Array:
 
 def _restore(system: sets.SingularSystem, x: Array) -> tuple[Array, Array]:
     robot = system.space.robot
-    lower, upper = search_box(robot)
     solved, norm = solve(system, x, iterations=25)
     q = solved[:, : robot.n]
-    inside = np.all((q >= lower - sets.ROUNDING) & (q <= upper + sets.ROUNDING), axis=1)
+    inside = np.all((q >= robot.lower - sets.ROUNDING) & (q <= robot.upper + sets.ROUNDING), axis=1)
     return solved, inside & (norm <= sets.CONVERGED)

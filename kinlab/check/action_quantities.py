@@ -157,6 +157,6 @@ QUANTITIES = (
     Quantity(
         "excess_action_sign", ("duration",), excess_action_sign,
         "sign of S(varied) - S(true) of a hanging one-joint arm, +1 or -1", SERIAL,
-        sample=_around_half_a_swing,
+        sample=_around_half_a_swing, joints=1,
     ),
 )  # fmt: skip

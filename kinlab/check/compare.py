@@ -125,7 +125,7 @@ def compare_stacked(
     if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 1:
         raise OptionError(f"samples is {samples!r}; it must be a whole number from 1 up")
     states = quantity.states(mechanism, int(samples), seed)
-    engine = np.asarray(quantity.engine(mechanism, *states), dtype=float)
+    engine = quantity.answers(mechanism, int(samples), seed)
     hand = _read(function(numbers, *(np.array(s) for s in states)), engine, name, quantity)
     return Comparison(
         quantity=quantity.name,

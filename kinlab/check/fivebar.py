@@ -55,12 +55,13 @@ def load(fivebar: Any) -> FiveBar:
     if isinstance(fivebar, FiveBar):
         return fivebar
     if isinstance(fivebar, (str, Path)):
-        return _named(str(fivebar))
+        name = str(fivebar)
+        return _preset(name) if name in presets() else FiveBar.load(name)
     raise NameUnknownError(f"five-bar: {type(fivebar).__name__} is no FiveBar, name or path of one")
 
 
 @cache
-def _named(name: str) -> FiveBar:
+def _preset(name: str) -> FiveBar:
     return FiveBar.load(name)
 
 

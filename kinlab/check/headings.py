@@ -29,7 +29,27 @@ def counts(groups: Sequence[Group]) -> str:
     misprints = sum(group.printed_error is not None for group in groups)
     wrong = sum(not group.ok for group in groups)
     text = (
-        f"{len(groups)} formulas on {len({row.robot for row in rows})} mechanisms, {len(rows)} "
-        f"rows, {states} random states; {misprints} misprints shown; "
+        f"{several(len(groups), 'formula')} on "
+        f"{several(len({row.robot for row in rows}), 'mechanism')}, {several(len(rows), 'row')}, "
+        f"{several(states, 'random state')}; {several(misprints, 'misprint')} shown; "
     )
-    return text + (f"{wrong} formulas FAIL." if wrong else "every corrected form agrees.")
+    return text + (f"{several(wrong, 'formula')} WRONG." if wrong else "every correct form agrees.")
+
+
+def several(count: int, word: str) -> str:
+    """A number with its noun."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def origin(groups: Sequence[Group]) -> str:
+    """What it takes to get the same report again."""
+    from kinlab import __version__
+
+    first = groups[0].rows[0].corrected if groups else None
+    seed = f", seed {first.seed}" if first is not None else ""
+    return f"Made by kinlab {__version__}{seed}: the same seed gives the same states."
+
+
+def sentence(text: str) -> str:
+    """A line as a sentence: capital at the front, full stop at the end."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")

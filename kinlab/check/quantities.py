@@ -38,6 +38,7 @@ def quantities() -> dict[str, Quantity]:
     return found
 
 
+@cache
 def quantity(name: str) -> Quantity:
     """The quantity of a name such as ``"fk"``, ``"inverse_dynamics[0]"`` or ``"fk[:3,3]"``.
 

@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 
 from kinlab.check import histogram
-from kinlab.check.headings import HOW, NOTES, counts
+from kinlab.check.headings import HOW, NOTES, counts, origin, sentence, several
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import mathml
 
@@ -61,6 +61,7 @@ In the formulas <span class="key wrong">what is wrong</span> stands beside
 <main>
 {body}
 </main>
+<footer>{escape(origin(groups))}</footer>
 </body>
 </html>
 """
@@ -68,7 +69,8 @@ In the formulas <span class="key wrong">what is wrong</span> stands beside
 
 def _tally(members: Sequence[Group]) -> str:
     misprints = sum(group.printed_error is not None for group in members)
-    text = f"{len(members)} formulas" + (f", {misprints} misprints" if misprints else "")
+    text = several(len(members), "formula")
+    text += f", {several(misprints, 'misprint')}" if misprints else ""
     return f'<span class="tally">{text}</span>'
 
 
@@ -81,12 +83,12 @@ def _card(group: Group) -> str:
         forms += _form("printed", record.printed.latex)
     if record.latex:
         forms += _form("corrected" if misprinted else "", record.latex)
-    remark = f'<p class="remark">{escape(_sentence(record.remark))}</p>' if record.remark else ""
+    remark = f'<p class="remark">{escape(sentence(record.remark))}</p>' if record.remark else ""
     return f"""<article class="{state}" id="{escape(record.key)}">
 <h3><code>{escape(record.key)}</code> {escape(record.title)}</h3>
 <p class="source">{escape(record.source)} · engine: <code>{escape(record.quantity)}</code></p>
 <div class="forms">{forms}</div>
-<p class="verdict">{escape(_sentence(group.verdict))}</p>{remark}
+<p class="verdict">{escape(sentence(group.verdict))}</p>{remark}
 <div class="measured">{histogram.svg(group.errors, group.printed_errors)}{_robots(group)}</div>
 </article>"""
 
@@ -120,7 +122,3 @@ def _robots(group: Group) -> str:
     if printed:
         summary += f"; printed form off by {size(group.printed_error)} or more"
     return f"<details><summary>{summary}</summary>{table}</details>"
-
-
-def _sentence(text: str) -> str:
-    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinlab.check.headings import HOW, NOTES, counts
+from kinlab.check.headings import HOW, NOTES, counts, origin, sentence
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import plain
 
@@ -23,7 +23,7 @@ def text(groups: Sequence[Group]) -> str:
             lines += [f"## {name}", ""]
             section = name
         lines += _formula(group)
-    return "\n".join(lines).rstrip() + "\n"
+    return "\n".join([*lines, origin(groups)]) + "\n"
 
 
 def _formula(group: Group) -> list[str]:
@@ -35,9 +35,9 @@ def _formula(group: Group) -> list[str]:
         lines += ["Printed:", "", f"$${plain(record.printed.latex)}$$", "", "Corrected:", ""]
     if record.latex:
         lines += [f"$${plain(record.latex)}$$", ""]
-    lines += [f"**{group.verdict}**", ""]
+    lines += [f"**{sentence(group.verdict)}**", ""]
     if record.remark:
-        lines += [f"Remark: {record.remark}.", ""]
+        lines += [f"Remark: {sentence(record.remark)}", ""]
     lines += ["| robot | states | error | printed form |", "|---|---:|---:|---:|"]
     for row in group.rows:
         printed = size(row.printed.max_error) if row.printed is not None else ""

@@ -62,14 +62,18 @@ def load(robot: Any) -> Robot:
     if isinstance(robot, DHTable):
         return Robot.from_dh(robot)
     if isinstance(robot, (str, Path)):
-        return _named(str(robot))
+        name = str(robot)
+        # a file may change between two calls, what ships does not
+        return (
+            _shipped(name) if name in SPECIAL or name in library.shipped() else library.load(name)
+        )
     raise NameUnknownError(
         f"robot: {type(robot).__name__} is no Robot, DHTable, name or path of one"
     )
 
 
 @cache
-def _named(name: str) -> Robot:
+def _shipped(name: str) -> Robot:
     special = SPECIAL.get(name)
     return library.load(name) if special is None else Robot.from_dh(special())
 

@@ -234,7 +234,23 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", _well_conditioned),
 )  # fmt: skip
 
+_JOINTS = {
+    "singular_jacobian": 3,
+    "planar_determinant": 3,
+    "newton_step": 3,
+    "newton_stops": 3,
+    "loss": 3,
+    "loss_gradient": 3,
+    "gradient_step": 3,
+    "planar_position_determinant": 2,
+    "orthogonal_columns_cosine": 2,
+    "equal_columns_cosine": 2,
+    "isotropic_jacobian": 2,
+}
+
 QUANTITIES = tuple(
-    Quantity(name, tuple(arguments.split()), engine, about, SERIAL, sample)
+    Quantity(
+        name, tuple(arguments.split()), engine, about, SERIAL, sample, joints=_JOINTS.get(name)
+    )
     for name, arguments, engine, about, sample in _ROWS
 )

@@ -63,12 +63,15 @@ def definite(robot: Robot, q: Any) -> Array:
 
 
 def skew_residue(robot: Robot, q: Any, v: Any) -> Array:
-    """Symmetric part of Mdot - 2C over the size of Mdot and 2C, (n, n)."""
+    """Symmetric part of Mdot - 2C over the size of M times that of the motion, (n, n).
+
+    Not over the size of Mdot, which is rounding where M does not depend on q.
+    """
     rate = mass_derivatives.mass_matrix_dot(robot, q, v)
     twice = 2.0 * dynamics.coriolis_matrix(robot, q, v)
-    size = np.max(np.abs(rate), axis=(1, 2)) + np.max(np.abs(twice), axis=(1, 2))
+    size = np.max(np.abs(dynamics.mass_matrix(robot, q)), axis=(1, 2)) * np.max(np.abs(v), axis=1)
     part = (rate - twice) + np.swapaxes(rate - twice, -1, -2)
-    share: Array = part / np.where(size > 0.0, size, 1.0)[:, None, None]
+    share: Array = part / size[:, None, None]
     return share
 
 

@@ -10,10 +10,17 @@ import sys
 
 import typer
 
-from kinlab.cli import analysis, check, fivebar, robots, view
+from kinlab.cli import analysis, check, fivebar, ik, robots, view
 from kinlab.errors import KinlabError
 
-_GROUPS = (robots, check, analysis, fivebar, view)
+_GROUPS = (
+    robots,
+    check,
+    ik,
+    analysis,
+    fivebar,
+    view,
+)
 
 app = typer.Typer(
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",

@@ -24,7 +24,8 @@ WHAT = Annotated[
     ),
 ]
 REPORT = Annotated[
-    Path | None, typer.Option("--report", help="Write a report to this .html or .md file.")
+    list[Path] | None,
+    typer.Option("--report", help="Write a report to this .html or .md file; may be repeated."),
 ]
 JSON = Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")]
 ROWS = Annotated[bool, typer.Option("--rows", help="One line for each robot of a formula.")]
@@ -59,16 +60,16 @@ def check(
     if quantities:
         _list_quantities()
         return
-    if report is not None:
-        check_report_path(report)
+    for file in report or ():
+        check_report_path(file)
     done = _run(tasks(what or ()), samples, seed)
     if json:
         _print_json(done)
     else:
         _print_table(done, rows)
-    if report is not None:
-        write_report(report, done)
-        typer.echo(f"wrote {report}", err=json)
+    for file in report or ():
+        write_report(file, done)
+        typer.echo(f"wrote {file}", err=json)
     if not all(row.ok for row in done):
         raise typer.Exit(1)
 
@@ -135,12 +136,14 @@ def _print_failures(console: Console, done: Sequence[Row]) -> None:
 
 
 def _print_closing(console: Console, done: Sequence[Row], formulas: int) -> None:
+    from kinlab.check.headings import several
+
     wrong = sum(not row.ok for row in done)
     misprints = len({id(row.formula) for row in done if row.printed is not None})
     agree = sum(row.corrected.agrees for row in done)
-    text = f"\n{formulas} formulas, {len(done)} rows: {agree} agree to 1e-9"
+    text = f"\n{several(formulas, 'formula')}, {several(len(done), 'row')}: {agree} agree to 1e-9"
     if misprints:
-        text += f", {misprints} misprints shown"
+        text += f", {several(misprints, 'misprint')} shown"
     console.print(text + (f", {wrong} WRONG" if wrong else ""), highlight=False)
 
 

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from kinlab.cli.robots import NAME, TOOL
+from kinlab.cli.robots import NAME, TIP
 
 
 def register(app: typer.Typer) -> None:
@@ -38,35 +38,40 @@ def ik(
     history: Annotated[
         Path | None, typer.Option(help="Draw the error over the iterations into this file.")
     ] = None,
-    tool: TOOL = None,
+    tip: TIP = None,
 ) -> None:
-    """Find joint positions that bring the tool to a pose; exit code 1 where none is found."""
+    """Find joint positions that bring the tool to a pose.
+
+    Exit code 1 where the pose is not met within the limits; the closest pose found, or one that
+    is met only outside the limits, is printed all the same.
+    """
     import numpy as np
 
-    from kinlab.expressions import evaluate
+    from kinlab.expressions import parse_angle
     from kinlab.library import load
     from kinlab.rotations import rpy_matrix
 
     _announce_compilation()
-    robot = load(name, tool)
+    robot = load(name, tip)
     pose = np.eye(4)
-    pose[:3, :3] = rpy_matrix(*(evaluate(text, "--rpy") for text in rpy))
+    pose[:3, :3] = rpy_matrix(*(parse_angle(text) for text in rpy))
     pose[:3, 3] = xyz
     if branches:
         _print_branches(robot, pose)
         return
+    from kinlab.chain_arrays import chain
     from kinlab.inverse.single import ik as solve
 
-    start = None if q0 is None else [evaluate(text, "--q0") for text in q0.split(",")]
+    start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
     answer = solve(
         robot, pose, start, method, tol_position, tol_rotation, seed, task=task,
         history=history is not None,
     )  # fmt: skip
-    slides = ["deg" if "P" not in j.shortname() else "mm" for j in list(robot.model.joints)[1:]]
+    slides = np.resize(chain(robot).prismatic, robot.n)
     width = max(len(joint) for joint in robot.joint_names)
-    for joint, value, unit in zip(robot.joint_names, answer.q, slides, strict=True):
-        shown = np.degrees(value) if unit == "deg" else 1e3 * value
-        typer.echo(f"{joint:{width}}  {value:+.9f}  ({shown:+.4f} {unit})")
+    for joint, value, slide in zip(robot.joint_names, answer.q, slides, strict=True):
+        shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
+        typer.echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
     typer.echo(
         f"{answer.status}: position error {1e3 * answer.position_error:.3g} mm, rotation error "
         f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
@@ -75,10 +80,20 @@ def ik(
     for remark in answer.remarks:
         typer.echo(f"note: {remark}")
     if history is not None and answer.history is not None:
-        from kinlab.inverse.plot import history_figure, save
+        from kinlab.plots.canvas import save
+        from kinlab.plots.searches import plot_searches
 
-        save(history_figure({f"{robot.name}, {method}": answer.history}), history)
+        save(plot_searches({method: answer.history}, f"{robot.name}: {answer.status}"), history)
         typer.echo(f"wrote {history}")
+    broken = [
+        f"{joint} ({low:g} to {high:g})"
+        for joint, value, low, high in zip(
+            robot.joint_names, answer.q, robot.lower, robot.upper, strict=True
+        )
+        if not low <= value <= high
+    ]
+    if broken:
+        typer.echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
     if not answer.success:
         raise typer.Exit(1)
 

@@ -61,14 +61,15 @@ def view(
 
 
 def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool) -> Page:
-    from kinlab.errors import NameUnknownError
+    from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
     from kinlab.library import load
-    from kinlab.viewer import motions
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
     if name in presets() or _holds_five_bar(name):
+        if tip is not None:
+            raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
         return _open_five_bar(name, start, animate)
     try:
         robot = load(name, tip)
@@ -78,6 +79,8 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
     if animate is not None:
+        from kinlab.viewer import motions  # brings the compiled inverse kinematics
+
         shown = motions.motion(robot, animate, scene.q)
         scene.animate(shown.q, shown.duration, shown.name)
     return scene
@@ -85,11 +88,12 @@ def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes
 
 def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
     from kinlab.fivebar import FiveBar
-    from kinlab.viewer import fivebar_motions
     from kinlab.viewer.scene import FiveBarScene
 
     page = FiveBarScene(FiveBar.load(name), theta)
     if animate is not None:
+        from kinlab.viewer import fivebar_motions
+
         shown = fivebar_motions.motion(page.linkage, animate, page.mode, page.assembly)
         page.animate(shown.q, shown.duration, shown.name)
     return page
@@ -125,6 +129,8 @@ def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
     if port not in (0, server.port):
         typer.echo(f"port {port} is taken; using {server.port}")
     typer.echo(f"{name}: {server.url}   (Ctrl-C ends)")
+    if host not in ("127.0.0.1", "::1", "localhost"):
+        typer.echo(f"note: {host} is not loopback; others on the network can open this page")
     if os.environ.get("SSH_CONNECTION"):
         typer.echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
     if browser and not open_browser(server.url):

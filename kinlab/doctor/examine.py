@@ -65,7 +65,7 @@ def diagnose(
     if not callable(function):
         raise OptionError(f"function: {type(function).__name__} cannot be called")
     plain, index = split_name(quantity)
-    case, engine = _case(robot, plain, index, samples, seed)
+    case, engine = prepare(robot, plain, index, samples, seed)
     stacked = state_by_state(function)
     hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(function), {})
@@ -86,7 +86,8 @@ def examine(
     worst = float(np.max(errors))
     label = str(case.robot.name)
     if worst <= TOLERANCES.formula_agrees:
-        return Diagnosis(quantity, label, name, True, worst)
+        hidden, gap = _hidden(case, engine, written)
+        return Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
     tried = readings(case)
     causes = [*_singly(case, tried)]
     partial: tuple[str, ...] = ()
@@ -108,9 +109,35 @@ def examine(
     )  # fmt: skip
 
 
-def _case(
+def _hidden(case: Case, engine: Array, written: dict[str, Node]) -> tuple[list[Cause], float]:
+    """Slips of a text that only the robot's numbers cover up (l1/2 for l1**2 where l1 is 0.5)."""
+    table = case.robot.table
+    derived = derivation(table, case.quantity.name) if written and table is not None else None
+    if derived is None:
+        return [], 0.0
+    slips: list[Slip] = []
+    largest = 0.0
+    for entry in entries(case, engine):
+        poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+        text = written.get(entry.label)
+        if text is None:
+            continue
+        gap = terms.hidden_gap(text, derived, poly, case.quantity.arguments)
+        if gap > TOLERANCES.formula_agrees:
+            found = [s for s in _of_entry(case, entry, text) if len(s.kinds) == 1]
+            slips += found[:1]
+            largest = max(largest, gap) if found else largest
+    return ([_slip_cause(tuple(slips))] if slips else []), largest
+
+
+def prepare(
     robot: Any, plain: str, index: tuple[Any, ...], samples: int, seed: int
 ) -> tuple[Case, Array]:
+    """The case of a comparison, without an answer yet, and what the engine says.
+
+    Raises:
+        NameUnknownError, OptionError: as :func:`diagnose`.
+    """
     if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 10:
         raise OptionError(f"samples is {samples!r}; it must be a whole number from 10 up")
     found = find_quantity(plain)

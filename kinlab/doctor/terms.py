@@ -82,15 +82,19 @@ def in_text(
     if not searchable(poly):
         return []
     names = names_for(derived, arguments)
-    at = _anywhere(names)
-    right = derived.tree(poly)
-    target = np.broadcast_to(tree.evaluate(right, at), (_POINTS,))
-    extra = [t for form in _forms(derived, poly) for t in _split(form)]
-    repairs = search.single(written, target, at, names, list(dict.fromkeys(extra)))
-    if not repairs:
-        repairs = search.double(written, target, at, names, list(dict.fromkeys(extra)))
-        repairs += search.double_in_term(written, target, at, names)
     here = environment(derived, states)
+    right = derived.tree(poly)
+    extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
+    repairs: list[Repair] = []
+    # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
+    for at in (_anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
+        target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
+        repairs = search.single(written, target, at, names, extra)
+        if not repairs:
+            repairs = search.double(written, target, at, names, extra)
+            repairs += search.double_in_term(written, target, at, names)
+        if repairs:
+            break
     slips = []
     for repair in sorted(repairs, key=lambda r: r.cost):
         told = "; ".join(_told_text(label, written, e) for e in repair.edits)
@@ -98,6 +102,24 @@ def in_text(
         kinds = tuple(e.kind for e in repair.edits)
         slips.append(Slip(label, kinds, told, str(repair.result), repair.cost, values, True))
     return slips
+
+
+def hidden_gap(written: Node, derived: Derivation, poly: Poly, arguments: tuple[str, ...]) -> float:
+    """How far a text is off with other numbers for the parameters, relative.
+
+    Zero where the text has numbers in place of parameters: it is meant for one robot only.
+    """
+    if not searchable(poly):
+        return 0.0
+    names = names_for(derived, arguments)
+    right = derived.tree(poly)
+    plain = all(n.value.denominator <= 12 for _, n in tree.nodes(written) if n.op == "num")
+    if not plain or not tree.names(written) >= tree.names(right) & set(names.parameters):
+        return 0.0
+    at = _anywhere(names)
+    target = tree.evaluate(right, at)
+    scale = float(np.max(np.abs(target))) or 1.0
+    return float(np.max(np.abs(tree.evaluate(written, at) - target))) / scale
 
 
 def in_function(

@@ -14,7 +14,7 @@ from kinlab.files import write_bytes
 from kinlab.fivebar.dynamics import crank_inertia
 from kinlab.fivebar.isotropy import isotropic_poses
 from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.loci import type_one, type_two
+from kinlab.fivebar.loci import type_one, type_two, type_two_contour
 from kinlab.fivebar.pose import HANGING, Mode, solve_pose
 from kinlab.fivebar.rods import rod_model
 from kinlab.fivebar.room import Rectangle
@@ -86,6 +86,9 @@ def _loci(axes: Any, linkage: Linkage, mode: Mode) -> None:
         axes.plot(*locus.points.T, color="crimson", lw=0.6, ls=":",
                   label="type II, other modes" if first else None)  # fmt: skip
         first = False
+    for k, line in enumerate(type_two_contour(linkage, mode)):
+        label = "type II, by contour" if k == 0 else None
+        axes.plot(*line.T, color="black", lw=0.9, ls=(0, (1, 4)), label=label)
 
 
 def _bars(axes: Any, linkage: Linkage, xy: Array, mode: Mode) -> None:

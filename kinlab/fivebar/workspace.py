@@ -98,7 +98,8 @@ def largest_circle(
     """The largest circle without a singularity in one working and assembly mode.
 
     The grid's best places are refined by halving steps, so the answer is a local best to
-    1e-6 m; a second room narrower than a cell of the grid can be missed.
+    1e-6 m; a second room narrower than a cell of the grid can be missed. With both cranks on
+    one axis (e = 0) it can be turned about that axis; the one straight below is returned.
 
     Raises:
         StructureError: no pose in that mode and assembly.
@@ -122,7 +123,10 @@ def largest_circle(
         radii = np.where(better, found[rows, pick], radii)
         step *= 1.0 if better.any() else 0.5
     top = int(radii.argmax())
-    return Circle((float(centres[top, 0]), float(centres[top, 1])), float(radii[top]))
+    x_best, y_best = map(float, centres[top])
+    if linkage.e == 0.0:
+        x_best, y_best = 0.0, -float(np.hypot(x_best, y_best))
+    return Circle((x_best, y_best), float(radii[top]))
 
 
 def largest_rectangle(

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
 from kinlab.compiled import over_rows
 from kinlab.inverse import kernel, methods
+from kinlab.inverse.failed import failure, look_again
 from kinlab.inverse.request import (
     RESTARTS,
     read_guess,
@@ -19,11 +19,9 @@ from kinlab.inverse.request import (
     whole,
 )
 from kinlab.inverse.result import IKBatch, IKStatus
-from kinlab.inverse.setup import STARTS, Setup, setup
-from kinlab.inverse.single import failure, lm_numbers
+from kinlab.inverse.setup import STARTS, lm_numbers, rows_of, setup
 from kinlab.inverse.verify import measure_all
 from kinlab.robot import Robot
-from kinlab.tasks import task_rows
 
 _GRAIN = 32
 """Poses worth handing to a thread: some 0.2 ms of work."""
@@ -67,7 +65,7 @@ def ik_batch(
     tolerances = read_tolerances(tol_position, tol_rotation)
     searches = 1 + whole(restarts, "restarts", 0)
     seed = whole(seed, "seed", 0)
-    arm = setup(robot, task_rows(task), seed, max(searches, STARTS))
+    arm = setup(robot, rows_of(robot, task), seed, max(searches, STARTS))
     count = len(targets)
     remarks: list[str] = []
     guesses = arm.centre
@@ -82,12 +80,17 @@ def ik_batch(
 
     def verify(first: int, last: int) -> None:
         part = slice(first, last)
-        _settle(arm, flat[part], q[part], outcome[part, 0])
+        ends = outcome[part, 0]
+        failed = first + np.flatnonzero((ends != kernel.CONVERGED) & (ends != kernel.OUTSIDE))
+        if len(failed):
+            closest, codes = q[failed], outcome[failed, 0]
+            look_again(arm, targets[failed], closest, codes, searches, tolerances)
+            q[failed], outcome[failed, 0] = closest, codes
         measure_all(robot, q[part], targets[part], arm.weight, errors[part])
 
     over_rows(
         kernel.search_rows, count, *arm[:4], arm.wide, arm.weight,
-        lm_numbers(arm, tolerances, iterations, searches), arm.table, arm.starts, flat,
+        lm_numbers(arm.reach, tolerances, iterations, searches), arm.table, arm.starts, flat,
         guesses.reshape(-1, robot.n), q0 is not None, q, outcome,
         threads=threads, grain=_GRAIN, then=verify,
     )  # fmt: skip
@@ -104,14 +107,3 @@ def ik_batch(
         q, success, status, position, rotation, outcome[:, 1].copy(), outcome[:, 2] - 1,
         tuple(remarks),
     )  # fmt: skip
-
-
-def _settle(arm: Setup, targets: Array, q: Array, ends: Any) -> None:
-    """Brings the failed rows of q to rest at the closest pose, in place."""
-    failed = np.flatnonzero((ends != kernel.CONVERGED) & (ends != kernel.OUTSIDE))
-    if len(failed):
-        part = q[failed]
-        kernel.settle_rows(
-            *arm[:4], arm.weight, methods.SETTLE, targets[failed], part, 0, len(part)
-        )
-        q[failed] = part

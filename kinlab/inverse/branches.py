@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.chain import columns, frames
 from kinlab.chain_arrays import Chain, chain
-from kinlab.inverse import analytic, kernel, methods, planar, wrist
+from kinlab.inverse import analytic, kernel, kernel_parts, methods, planar, wrist
 from kinlab.inverse.branch_names import planar_name, wrist_arm_name
 from kinlab.inverse.request import read_target, require_robot
 from kinlab.inverse.verify import measure
@@ -151,7 +151,7 @@ def _polish(
     )  # fmt: skip
     best = out[0]
     lower, upper = np.array(robot.lower), np.array(robot.upper)
-    inside = bool(kernel.wrap(arm.prismatic, lower, upper, np.clip(0.0, lower, upper), best))
+    inside = bool(kernel_parts.wrap(arm.prismatic, lower, upper, np.clip(0.0, lower, upper), best))
     position, rotation = measure(robot, best, target, weight)
     error = max(position, rotation)
     if error > _TOLERANCE:

@@ -11,11 +11,10 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.inverse.request import positive, read_guess, read_targets, require_robot
 from kinlab.inverse.result import IKResult
-from kinlab.inverse.setup import setup
+from kinlab.inverse.setup import rows_of, setup
 from kinlab.inverse.single import ik
 from kinlab.kinematics import jacobian
 from kinlab.robot import Robot
-from kinlab.tasks import task_rows
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""
@@ -82,7 +81,7 @@ def ik_path(
     targets = read_targets(robot, Ts)
     here, remarks = read_guess(robot, q0)
     largest = positive(max_step, "max_step")
-    arm = setup(robot, task_rows(task), seed)
+    arm = setup(robot, rows_of(robot, task), seed)
     answers: list[IKResult] = []
     jumps = []
     for row, target in enumerate(targets):

@@ -10,9 +10,10 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.chain_arrays import chain
+from kinlab.inverse import methods
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
-from kinlab.tasks import TASKS, require_task
+from kinlab.tasks import TASKS, require_task, task_rows
 
 STARTS = 256
 """States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to
@@ -24,6 +25,9 @@ holding wider ones at their limits makes dead ends (Stanford needs twice the ite
 
 LENGTH = 0.35
 """Length that divides metres beside radians, as a share of the arm's; flat from 0.25 to 0.5."""
+
+_ENDLESS = 1e6
+"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
 
 _KEPT = 16
 
@@ -85,12 +89,26 @@ def setup(robot: Robot, rows: tuple[int, ...], seed: int, starts: int = STARTS) 
     return found
 
 
+def rows_of(robot: Robot, task: Any) -> tuple[int, ...]:
+    """The rows of a task; ``"auto"`` is the largest that suits the arm.
+
+    Raises:
+        NameUnknownError, OptionError: as :func:`kinlab.tasks.task_rows`.
+    """
+    if isinstance(task, str) and task == "auto":
+        from kinlab.analysis.task_space import read_task
+
+        return read_task(robot, task).rows
+    return task_rows(task)
+
+
 def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Setup:
     fixed, prismatic = chain(robot)
     k, n = len(prismatic), robot.n
     slides = np.zeros(n, dtype=np.bool_)
     slides[:k] = prismatic
-    lower, upper = np.array(robot.lower), np.array(robot.upper)
+    lower = np.where(robot.lower < -_ENDLESS, -np.inf, robot.lower)
+    upper = np.where(robot.upper > _ENDLESS, np.inf, robot.upper)
     rigid = float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum())
     low, high = _window(lower, upper, slides, max(rigid, 1.0))
     sample = np.random.default_rng(seed).uniform(low, high, (count, n))
@@ -116,3 +134,20 @@ def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Arr
     half = np.where(slides, length, math.pi)
     middle = np.clip(0.0, np.minimum(lower + half, upper), np.maximum(upper - half, lower))
     return np.maximum(lower, middle - half), np.minimum(upper, middle + half)
+
+
+def lm_numbers(
+    reach: float, tolerances: tuple[float, float], iterations: int, searches: int
+) -> Array:
+    """The kernel's ``numbers``, in its order."""
+    return np.array(
+        (*tolerances, methods.DAMPING, methods.FLOOR, iterations, searches,
+         methods.PATIENCE["lm"], reach)
+    )  # fmt: skip
+
+
+def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
+    """Whether the target is farther from the first joint than the arm is long."""
+    asked = arm.weight[:3] > 0.0
+    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
+    return float(np.linalg.norm(away)) > arm.reach + tolerance

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.inverse import kernel, methods, solve
+from kinlab.inverse.failed import failure, look_again
 from kinlab.inverse.request import (
     RESTARTS,
     positive,
@@ -19,21 +20,12 @@ from kinlab.inverse.request import (
     whole,
 )
 from kinlab.inverse.result import IKHistory, IKResult, IKStatus
-from kinlab.inverse.setup import STARTS, Setup, setup
+from kinlab.inverse.setup import STARTS, Setup, lm_numbers, rows_of, setup
 from kinlab.inverse.verify import measure
-from kinlab.kinematics import jacobian
 from kinlab.robot import Robot
-from kinlab.tasks import task_rows
 
 TOL_STEP = 1e-13
 """||q_{k+1} - q_k|| below which the readable search stops, where the caller gives none."""
-
-_MANY = 10
-"""Searches that must all have come to rest before a pose is suspected to be unreachable."""
-
-_SINGULAR = 1e-3
-"""sigma_min / sigma_max of J, metres over the arm's length, below which a rest is at a
-singularity."""
 
 
 def ik(
@@ -68,8 +60,8 @@ def ik(
         tol_rotation: radians, of the rotation vector log(R_d R^T) in the base's axes, in the
             coordinates of the task.
         seed: of the table of starts.
-        task: a name of :data:`kinlab.tasks.TASKS` or a mask of six booleans. With ``"pose"``,
-            an arm of fewer joints than six meets only those T that lie on its way.
+        task: a name of :data:`kinlab.tasks.TASKS`, a mask of six booleans, or ``"auto"``.
+            With ``"pose"``, an arm of fewer than six joints meets only those T on its way.
         restarts: searches after the first.
         max_iterations: of one search; left out, 60 (gradient: 5000).
         tol_step: also stop where ||q_{k+1} - q_k|| is below this, rad or m.
@@ -92,7 +84,7 @@ def ik(
     searches = 1 + whole(restarts, "restarts", 0)
     seed = whole(seed, "seed", 0)
     step = methods.choose(method, alpha)
-    arm = setup(robot, task_rows(task), seed, max(searches, STARTS))
+    arm = setup(robot, rows_of(robot, task), seed, max(searches, STARTS))
     remarks: list[str] = []
     start: Array | None = None
     if q0 is not None:
@@ -102,7 +94,7 @@ def ik(
     else:
         iterations = whole(max_iterations, "max_iterations", 1)
     if method == "lm" and not history and tol_step is None:
-        numbers = lm_numbers(arm, tolerances, iterations, searches)
+        numbers = lm_numbers(arm.reach, tolerances, iterations, searches)
         q, outcome = np.empty((1, robot.n)), np.empty((1, 3), dtype=np.int64)
         guess = arm.centre if start is None else start
         kernel.search_rows(
@@ -126,16 +118,6 @@ def ik(
     )  # fmt: skip
 
 
-def lm_numbers(
-    arm: Setup, tolerances: tuple[float, float], iterations: int, searches: int
-) -> Array:
-    """The kernel's ``numbers``, in its order."""
-    return np.array(
-        (*tolerances, methods.DAMPING, methods.FLOOR, iterations, searches,
-         methods.PATIENCE["lm"], arm.reach)
-    )  # fmt: skip
-
-
 def _finish(
     robot: Robot,
     arm: Setup,
@@ -151,9 +133,9 @@ def _finish(
 ) -> IKResult:
     """Brings a failed damped search to rest, measures with Pinocchio, says what it is."""
     if settle and end not in (kernel.CONVERGED, kernel.OUTSIDE):
-        kernel.settle_rows(
-            *arm[:4], arm.weight, methods.SETTLE, target[:3].reshape(1, 12), q[np.newaxis], 0, 1
-        )
+        ends = np.array([end])
+        look_again(arm, target[np.newaxis], q[np.newaxis], ends, searches, tolerances)
+        end = int(ends[0])
     position, rotation = measure(robot, q, target, arm.weight)
     met = position <= tolerances[0] and rotation <= tolerances[1]
     status = IKStatus.CONVERGED
@@ -163,35 +145,3 @@ def _finish(
         q, status is IKStatus.CONVERGED, status, position, rotation, iterations, searches - 1,
         tuple(remarks), record,
     )  # fmt: skip
-
-
-def failure(
-    robot: Robot,
-    arm: Setup,
-    target: Array,
-    q: Array,
-    end: int,
-    met: bool,
-    searches: int,
-    tolerance: float,
-) -> IKStatus:
-    """Why a search did not succeed.
-
-    Args:
-        robot, arm, target: what was asked.
-        q: the closest found. end: the kernel's code. met: whether Pinocchio's errors are within
-            tolerance at q. searches: how many were made. tolerance: metres.
-    """
-    if end == kernel.OUTSIDE and met:
-        return IKStatus.OUTSIDE_LIMITS
-    if solve.beyond_reach(arm, target, tolerance):
-        return IKStatus.UNREACHABLE
-    if end == kernel.RUNNING:
-        return IKStatus.ITERATION_LIMIT
-    if searches >= _MANY:
-        return IKStatus.UNREACHABLE
-    rows = list(arm.rows)
-    scaled = np.sqrt(arm.weight[rows])[:, None] * jacobian(robot, q)[rows]
-    values = np.linalg.svd(scaled, compute_uv=False)
-    lost = values[-1] <= _SINGULAR * values[0]
-    return IKStatus.SINGULARITY if lost else IKStatus.LOCAL_MINIMUM

@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.inverse import kernel
+from kinlab.inverse import kernel, kernel_parts
 from kinlab.inverse.methods import Step
 from kinlab.inverse.result import IKHistory
-from kinlab.inverse.setup import Setup
+from kinlab.inverse.setup import Setup, beyond_reach
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 
@@ -68,7 +68,7 @@ def search(
     record: list[tuple[Array, float, float, int]] = []
     best, best_q, best_end = math.inf, arm.centre, kernel.STALLED
     distance = np.empty(len(arm.starts))
-    kernel.nearest(arm.table, target[:3].ravel(), arm.weight, distance)
+    kernel_parts.nearest(arm.table, target[:3].ravel(), arm.weight, distance)
     tries = 1 if beyond_reach(arm, target, limits.position) else limits.searches
     tried = 0
     while tried < tries:
@@ -93,13 +93,6 @@ def search(
             if energy < best:
                 best, best_q, best_end = energy, q, end
     return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
-
-
-def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
-    """Whether the target is farther from the first joint than the arm is long."""
-    asked = arm.weight[:3] > 0.0
-    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
-    return float(np.linalg.norm(away)) > arm.reach + tolerance
 
 
 def _one_search(
@@ -142,7 +135,7 @@ def _one_search(
             mark = energy
         jac = jacobian(robot, q)
         if partly:
-            kernel.turn_rows(jac, error, robot.n)
+            kernel_parts.turn_rows(jac, error, robot.n)
         jac, e = scale[:, None] * jac[rows], scale * error[rows]
         slope = jac.T @ e
         held = ~free & (((q >= arm.upper) & (slope > 0)) | ((q <= arm.lower) & (slope < 0)))
@@ -166,7 +159,7 @@ def _one_search(
 def _error(robot: Robot, q: Array, target: Array) -> Array:
     """(p_d - p, log(R_d R^T)) in the base's axes, (6,)."""
     error, turned = np.empty(6), np.empty(9)
-    kernel.pose_error(fk(robot, q)[:3].ravel(), target[:3].ravel(), turned, error)
+    kernel_parts.pose_error(fk(robot, q)[:3].ravel(), target[:3].ravel(), turned, error)
     return error
 
 
@@ -180,7 +173,7 @@ def _energy(error: Array) -> float:
 
 def _wrap(arm: Setup, q: Array, q0: Array | None) -> bool:
     centre = arm.centre if q0 is None else q0
-    return bool(kernel.wrap(arm.prismatic, arm.lower, arm.upper, centre, q))
+    return bool(kernel_parts.wrap(arm.prismatic, arm.lower, arm.upper, centre, q))
 
 
 def _history(record: list[tuple[Array, float, float, int]], n: int) -> IKHistory:

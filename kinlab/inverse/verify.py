@@ -13,7 +13,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.compiled import kernel
-from kinlab.inverse.kernel import rotation_vector
+from kinlab.inverse.kernel_parts import rotation_vector
 from kinlab.robot import Robot, scratch
 
 

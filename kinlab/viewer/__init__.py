@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING, Any
 from kinlab.viewer.show import view
 
 if TYPE_CHECKING:
+    from kinlab.viewer.scene import FiveBarScene as FiveBarScene
     from kinlab.viewer.scene import Scene as Scene
 
-__all__ = ["Scene", "view"]
+__all__ = ["FiveBarScene", "Scene", "view"]
 
 
 def __getattr__(name: str) -> Any:
-    """Loads :class:`Scene`, and meshcat with it, when it is first asked for."""
-    if name == "Scene":
-        from kinlab.viewer.scene import Scene
+    """Loads the scenes, and meshcat with them, when they are first asked for."""
+    if name in ("FiveBarScene", "Scene"):
+        from kinlab.viewer import scene
 
-        return Scene
+        return getattr(scene, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -173,9 +173,9 @@ def _common_normal(
         text = f'<b class="x">a<sub>{number}</sub> = {a:.4g}</b>'
         picture.labels.append(Label(path, 0.5 * end, text, group))
     if abs(alpha) > 1e-6:
-        radius = 0.1 * size
+        radius = 0.08 * size
         turn = _z_to_x(a, np.sign(alpha))
-        scene[f"{path}/alpha"].set_object(shapes.Torus(radius, radius / 22, abs(alpha)), red)
+        scene[f"{path}/alpha"].set_object(shapes.Torus(radius, radius / 36, abs(alpha)), red)
         scene[f"{path}/alpha"].set_transform(turn)
         middle = (turn @ [radius * np.cos(alpha / 2), radius * np.sin(abs(alpha) / 2), 0, 1])[:3]
         text = f'<b class="x">α<sub>{number}</sub> = {np.degrees(alpha):.4g}°</b>'

@@ -12,7 +12,8 @@ import errno
 import json
 import signal
 import threading
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Protocol
 
 import numpy as np
 import tornado.httpserver
@@ -20,11 +21,26 @@ import tornado.netutil
 import tornado.web
 import tornado.websocket
 
+from kinlab.arrays import Array
 from kinlab.errors import KinlabError, OptionError
-from kinlab.viewer.page import Page
 
 _TRIES = 50
 """How many ports after the wanted one are tried."""
+
+
+class Served(Protocol):
+    """What the server asks of a :class:`kinlab.viewer.page.Page`."""
+
+    revision: int
+
+    def html(self, *, live: str = "") -> str:
+        """The page, in touch with this server."""
+
+    def listen(self, listener: Callable[[bytes | dict[str, Any]], None]) -> None:
+        """Has every later change told to ``listener``."""
+
+    def remember(self, q: Array) -> None:
+        """Keeps where the sliders stand."""
 
 
 class LiveServer:
@@ -38,7 +54,7 @@ class LiveServer:
         OptionError: the address is not this machine's, or no port near the wanted one is free.
     """
 
-    def __init__(self, page: Page, host: str, port: int) -> None:
+    def __init__(self, page: Served, host: str, port: int) -> None:
         self._sockets, self.port = _bind(host, port)
         shown = f"[{host}]" if ":" in host else host
         self.url = f"http://{shown}:{self.port}/"
@@ -113,7 +129,7 @@ class LiveServer:
 
 
 class _Html(tornado.web.RequestHandler):
-    def initialize(self, page: Page) -> None:
+    def initialize(self, page: Served) -> None:
         self.page = page
 
     def get(self) -> None:

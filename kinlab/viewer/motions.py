@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, StructureError, near
+from kinlab.inverse.path import ik_path
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
 from kinlab.viewer.arm import reach
@@ -154,24 +154,15 @@ def _comfortable(robot: Robot, rows: list[int]) -> Array:
 def _track(
     robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array
 ) -> Array | None:  # fmt: skip
-    """Follows positions from pose to pose by Newton steps; None where that leads nowhere."""
-    walk: list[Array] = []
-    for offset in offsets:
-        for _ in range(8):
-            now = fk(robot, q)
-            shift = pose[:3, 3] + offset - now[:3, 3]
-            error = np.concatenate([shift, pin.log3(pose[:3, :3] @ now[:3, :3].T)])[rows]
-            if np.linalg.norm(error) < 1e-9:
-                break
-            q = q + np.linalg.pinv(jacobian(robot, q)[rows]) @ error
-        else:
+    """Follows a path of positions by IK; None where it cannot be had on one branch."""
+    goals = np.tile(pose, (len(offsets), 1, 1))
+    goals[:, :3, 3] += offsets
+    task = [r in rows for r in range(6)]
+    for pick in (goals[::10], goals):  # a few first: most paths that fail do so there
+        way = ik_path(robot, pick, q, 1e-8, 1e-8, task=task)
+        if not way.success.all() or len(way.jumps):
             return None
-        if np.any(q < robot.lower) or np.any(q > robot.upper):
-            return None
-        if walk and np.abs(q - walk[-1]).max() > 0.3:  # a jump to another branch
-            return None
-        walk.append(q)
-    return np.array(walk)
+    return way.q
 
 
 def _on_locus(robot: Robot, det: Callable[[Array], Array], rng: np.random.Generator) -> Array:

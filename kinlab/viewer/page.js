@@ -213,7 +213,8 @@ const kinlab = (() => {
         const pose = loop(q);
         for (const i of [0, 1]) {
           place(`${home}/crank${i + 1}`, bar(q[i], pins[i], 0));
-          place(`${home}/rod${i + 1}`, bar(Math.atan2(pose.w[i][1], pose.w[i][0]), ...pose.elbow[i]));
+          const [wx, wy] = pose.w[i];
+          place(`${home}/rod${i + 1}`, bar(Math.atan2(wy, wx), ...pose.elbow[i]));
         }
         place(`${home}/tool`, tool(q));
       },
@@ -227,7 +228,8 @@ const kinlab = (() => {
     const size = Math.abs(value);
     if (size < 1e-12) return "0";
     const plain = size >= 1e-3 && size < 1e5;
-    return plain ? String(Number(value.toPrecision(digits))) : value.toExponential(digits - 2);
+    if (plain) return String(Number(value.toPrecision(digits)));
+    return value.toExponential(Math.max(0, digits - 2));
   }
 
   const node = (path) => viewer.scene_tree.find(path.split("/").filter((x) => x)).object;
@@ -248,6 +250,8 @@ const kinlab = (() => {
     };
   }
 
+  const arcPaint = new THREE.MeshBasicMaterial({ side: THREE.DoubleSide });
+
   // d and theta of one DH row: a rod along z and an arc about it, at the foot of the row.
   function drawDhRow(row, q) {
     const { theta, d } = dhValues(row, q);
@@ -258,9 +262,9 @@ const kinlab = (() => {
       old.geometry.dispose();
     }
     if (Math.abs(theta) < 1e-3) return;
-    const ring = new THREE.TorusGeometry(row.radius, row.radius / 18, 8, 40, Math.abs(theta));
-    const paint = new THREE.MeshBasicMaterial({ color: row.color, side: THREE.DoubleSide });
-    const mesh = new THREE.Mesh(ring, paint);
+    const ring = new THREE.TorusGeometry(row.radius, row.radius / 24, 8, 40, Math.abs(theta));
+    const mesh = new THREE.Mesh(ring, arcPaint);
+    arcPaint.color.set(row.color);
     mesh.scale.y = Math.sign(theta);
     arc.add(mesh);
   }
@@ -276,7 +280,8 @@ const kinlab = (() => {
         ...at,
         update(label, q) {
           const { theta } = dhValues(row, q);
-          label.at = [Math.cos(theta / 2), Math.sin(theta / 2), 0].map((x) => 1.15 * row.radius * x);
+          const far = 1.15 * row.radius;
+          label.at = [far * Math.cos(theta / 2), far * Math.sin(theta / 2), 0];
           write(label, `<b class="z">θ<sub>${row.name}</sub> = ${degrees(theta)}</b>`);
         },
       },
@@ -285,7 +290,8 @@ const kinlab = (() => {
         update(label, q) {
           const { d } = dhValues(row, q);
           label.at = [0, 0, d / 2];
-          write(label, Math.abs(d) < 1e-9 ? "" : `<b class="z">d<sub>${row.name}</sub> = ${number(d)}</b>`);
+          const text = `<b class="z">d<sub>${row.name}</sub> = ${number(d)}</b>`;
+          write(label, Math.abs(d) < 1e-9 ? "" : text);
         },
       },
     ];
@@ -304,8 +310,18 @@ const kinlab = (() => {
     });
     const [x, y] = [axes[0].vector, axes[1].vector];
     const z = cross(x, y);
-    const T = [0, 1, 2].flatMap((r) => [radius[0] * x[r], radius[1] * y[r], radius[2] * z[r], at[r]]);
+    const [a, b, c] = radius;
+    const T = [0, 1, 2].flatMap((r) => [a * x[r], b * y[r], c * z[r], at[r]]);
     place(entry.path, [...T, 0, 0, 0, 1]);
+  }
+
+  // meshcat merges the parts of a Collada file and gives each part one slot for its material; a
+  // part that has several materials itself would stay invisible. It gets the first of them.
+  function mendMaterials(root) {
+    root.traverse((object) => {
+      if (!Array.isArray(object.material)) return;
+      object.material = object.material.map((material) => [material].flat()[0]);
+    });
   }
 
   // Fades the arm's bodies, so that lines inside them can be seen.
@@ -358,6 +374,7 @@ const kinlab = (() => {
     const overlay = document.getElementById("labels");
     const sliders = [];
     const report = {};
+    const boxes = {};
     const trace = [];
 
     function setJoints(wanted, { tell = true } = {}) {
@@ -386,9 +403,11 @@ const kinlab = (() => {
       report.sigma.textContent = number(sigmaMin);
       report.kappa.textContent = number(kappa);
       for (const entry of spec.ellipsoids) drawEllipsoid(entry, model.linear(state.q), at);
-      trace.push(at);
-      if (trace.length > 2000) trace.shift();
-      drawTrace();
+      if (active.has("trace")) {
+        trace.push(at);
+        if (trace.length > 2000) trace.shift();
+        drawTrace();
+      }
       for (const [i, row] of spec.dh.entries()) {
         const { theta, d } = dhValues(row, state.q);
         report.dh[i].theta.textContent = degrees(theta);
@@ -404,9 +423,11 @@ const kinlab = (() => {
         line.frustumCulled = false;
         holder.add(line);
       }
-      const points = active.has("trace") ? trace.flat() : [];
-      const attribute = new THREE.Float32BufferAttribute(points, 3);
-      holder.children[0].geometry.setAttribute("position", attribute);
+      const line = holder.children[0];
+      line.geometry.dispose(); // or every frame would leave its points on the graphics card
+      line.geometry = new THREE.BufferGeometry();
+      const points = new THREE.Float32BufferAttribute(trace.flat(), 3);
+      line.geometry.setAttribute("position", points);
     }
 
     // -- groups of nodes and labels that are shown or hidden together
@@ -414,6 +435,7 @@ const kinlab = (() => {
     function show(group, on) {
       if (on) active.add(group);
       else active.delete(group);
+      if (boxes[group]) boxes[group].checked = on;
       const seen = new Set([...active].flatMap((name) => spec.groups[name] || []));
       for (const path of Object.values(spec.groups).flat()) node(path).visible = seen.has(path);
       if (group === "trace") {
@@ -531,14 +553,15 @@ const kinlab = (() => {
     function check(group, text) {
       const box = element("input", { type: "checkbox",
         onchange: (event) => show(group, event.target.checked) });
-      box.checked = active.has(group);
+      boxes[group] = box;
       return element("label", { class: "check" }, box, text);
     }
 
     function dhTable() {
       report.dh = spec.dh.map((row, i) => {
         const [theta, d] = [element("td"), element("td")];
-        const cells = [row.name, number(row.a), degrees(row.alpha)].map((x) => element("td", {}, x));
+        const fixed = [row.name, number(row.a), degrees(row.alpha)];
+        const cells = fixed.map((x) => element("td", {}, x));
         const tr = element("tr", { onclick: () => showRow(String(i)) }, ...cells, d, theta);
         return { line: tr, theta, d };
       });
@@ -576,7 +599,7 @@ const kinlab = (() => {
           element("span", { class: "swatch", style: `background: ${color}` }));
       }
       return element("div", { class: "line legend" }, element("span", {}, name),
-        element("span", {}, number(low), element("i"), number(high)));
+        element("span", {}, number(low, 2), element("i"), number(high, 2)));
     }
 
     // -- a live page tells its server where the sliders stand, and draws what the script adds
@@ -587,7 +610,10 @@ const kinlab = (() => {
       const socket = new WebSocket(address);
       socket.binaryType = "arraybuffer";
       socket.onmessage = ({ data }) => {
-        if (data instanceof ArrayBuffer) return viewer.handle_command_bytearray(new Uint8Array(data));
+        if (data instanceof ArrayBuffer) {
+          viewer.handle_command_bytearray(new Uint8Array(data));
+          return;
+        }
         const { q, reload, revision } = JSON.parse(data);
         if (q) setJoints(q, { tell: false });
         if (reload || (revision !== undefined && revision !== spec.live)) location.reload();
@@ -616,17 +642,18 @@ const kinlab = (() => {
       element("div", { class: "buttons" },
         ...Object.entries(spec.poses).map(([name, q]) => poseButton(name, q))),
       element("h2", {}, "Tool"),
-      line(spec.planar ? "x, y [m]" : "x, y, z [m]", "position", "position of the tool in the base"),
+      line(`x, y${spec.planar ? "" : ", z"} [m]`, "position", "position of the tool in the base"),
       spec.planar ? "" : turns,
       element("h2", {}, `Jacobian, ${spec.task}`),
       line("det J", "det", "determinant of the Jacobian's task rows"),
       line("σ<sub>min</sub>", "sigma", "smallest singular value: 0 in a singular pose"),
-      line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", "condition number: 1 where isotropic"),
+      line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", "condition number: 1 if isotropic"),
       element("h2", {}, "Show"),
       ...spec.checks.map(([group, text]) => check(group, text)),
       ...spec.legend.map(legend),
       ...dhTable(),
     );
+    mendMaterials(viewer.scene);
     for (const group of spec.shown) show(group, true);
 
     const [x, y, z] = spec.camera.position, target = spec.camera.target;

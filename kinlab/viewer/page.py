@@ -26,6 +26,17 @@ COLORS = (0x8E24AA, 0xEF6C00, 0x00897B, 0xC62828, 0x1565C0, 0x6D4C41)
 """Given out in turn to what asks for no colour."""
 
 
+def one_pose(q: Array, name: str) -> Array:
+    """Refuses a stack of poses where one is wanted.
+
+    Raises:
+        StateError: naming the mechanism.
+    """
+    if q.ndim != 1:
+        raise StateError(f"{name!r}: q has shape {q.shape}; give one pose")
+    return q
+
+
 class Page:
     """A drawn mechanism and what a script adds to it.
 
@@ -190,9 +201,9 @@ class Page:
         self._recorder.tell({"reload": True})
 
     def _node(self, name: str) -> str:
-        if not name or "/" in name:
-            raise OptionError(f"name {name!r}: give a word without '/'")
-        return f"{self._spec['root']}/added/{name}"
+        if not name.strip():
+            raise OptionError(f"name {name!r}: what is drawn must have a name")
+        return f"{self._spec['root']}/added/{name.replace('/', '_')}"
 
     def _points(self, name: str, points: ArrayLike, least: int = 1) -> Array:
         array = real_array(points, f"points {name!r}")
@@ -209,10 +220,7 @@ class Page:
         return COLORS[(self._lines - 1) % len(COLORS)]
 
     def _one(self, q: ArrayLike) -> Array:
-        pose = self._read(q)
-        if pose.ndim != 1:
-            raise StateError(f"{self._spec['title']!r}: q has shape {pose.shape}; give one pose")
-        return pose
+        return one_pose(self._read(q), self._spec["title"])
 
     def _forget(self, name: str) -> None:
         path = self._node(name)

@@ -19,7 +19,7 @@ from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import draw_page
 from kinlab.viewer.fivebar_page import best_start, size_of
 from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
-from kinlab.viewer.page import COLORS, Page
+from kinlab.viewer.page import COLORS, Page, one_pose
 from kinlab.viewer.recorder import new_scene
 
 
@@ -36,13 +36,16 @@ class Scene(Page):
     """
 
     def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
-        vis, recorder = new_scene()
         self.robot = robot
-        self._read = lambda q: joint_vector(robot, q, "q")
-        self._spec = {"title": robot.name}
-        start = np.clip(np.zeros(robot.n), robot.lower, robot.upper) if q is None else self._one(q)
+        start = np.zeros(robot.n) if q is None else one_pose(self._joints(q), robot.name)
+        if q is None:
+            start = np.clip(start, robot.lower, robot.upper)
+        vis, recorder = new_scene()
         spec = draw_page(vis, robot, start, meshes=meshes)
-        super().__init__(vis, recorder, spec, reach(robot), self._read)
+        super().__init__(vis, recorder, spec, reach(robot), self._joints)
+
+    def _joints(self, q: ArrayLike) -> Array:
+        return joint_vector(self.robot, q, "q")
 
     def ellipsoid(self, name: str, q: ArrayLike, kind: str = "velocity") -> None:
         """Draws the ellipsoid of the tool's velocities or forces at a pose, and leaves it there.

@@ -12,29 +12,34 @@ from numpy.typing import ArrayLike
 from kinlab.robot import Robot
 
 if TYPE_CHECKING:
-    from kinlab.viewer.scene import Scene
+    from kinlab.fivebar.linkage import Linkage
+    from kinlab.viewer.scene import FiveBarScene, Scene
 
 
-def view(robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> Scene:
-    """Shows a robot: inline in a notebook, otherwise in the browser.
+def view(
+    robot: Robot | Linkage, q: ArrayLike | None = None, *, meshes: bool = True
+) -> Scene | FiveBarScene:
+    """Shows an arm or a five-bar: inline in a notebook, otherwise in the browser.
 
     The browser page is served on loopback in the background until the program ends; its address
     is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
 
     Args:
-        robot: the robot.
-        q: joint positions at the start, (n,); left out, zero.
+        robot: the arm, or a :class:`kinlab.FiveBar`.
+        q: joint positions at the start, (n,); of a five-bar the crank angles, (2,). Left out,
+            zero, and for a five-bar its best-conditioned hanging pose.
         meshes: draw the URDF's meshes; otherwise rods from joint to joint.
 
     Returns:
-        The scene, to which frames, paths, clouds and ghosts can be added.
+        The scene, to which frames, paths, clouds and (of an arm) ghosts can be added.
 
     Raises:
         StateError: q of another shape, or not finite.
+        UnreachableError, SingularError: a five-bar that cannot close at q, or is singular there.
     """
-    from kinlab.viewer.scene import Scene
+    from kinlab.viewer.scene import FiveBarScene, Scene
 
-    scene = Scene(robot, q, meshes=meshes)
+    scene = Scene(robot, q, meshes=meshes) if isinstance(robot, Robot) else FiveBarScene(robot, q)
     if not in_notebook():
         server = scene.serve()
         print(f"{robot.name}: {server.url}")

@@ -1,0 +1,202 @@
+"""A file of formulas as text, examined entry by entry."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor import tree
+from kinlab.doctor.changes import Case
+from kinlab.doctor.derived import LETTERS
+from kinlab.doctor.diagnosis import Diagnosis
+from kinlab.doctor.entries import split_name
+from kinlab.doctor.examine import examine, prepare
+from kinlab.doctor.input import FormulaFile, canonical, read_file
+from kinlab.doctor.labels import quantity_of
+from kinlab.doctor.tree import Node
+from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
+from kinlab.files import read_text
+from kinlab.library import load
+from kinlab.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
+
+_SAME = 1e-9
+_MIRRORED = ("mass_matrix",)
+"""Quantities whose missing lower half is the upper one."""
+
+
+def is_formula_file(path: str | Path) -> bool:
+    """Whether a TOML file holds formulas (it names a robot) and not a DH table.
+
+    Raises:
+        FileError: the file cannot be read.
+    """
+    if Path(path).suffix.lower() != ".toml":
+        return False
+    try:
+        document = tomllib.loads(read_text(path, limit=1 << 20))
+    except (tomllib.TOMLDecodeError, RecursionError):
+        return False
+    return "links" not in document and ("robot" in document or "formulas" in document)
+
+
+def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
+    """Judges every formula of a file (:func:`kinlab.doctor.input.read_file` has the format).
+
+    Entries that make up a whole quantity are judged together, so that a confusion of the whole
+    (a frame, gravity's sign) is seen; others each for itself.
+
+    Args:
+        path: the TOML file.
+        samples, seed: the states, as in :func:`kinlab.diagnose`.
+
+    Raises:
+        FileError, ExpressionError: the file, an expression or a name cannot be read.
+        NameUnknownError: no such robot.
+    """
+    file = read_file(path)
+    robot = _robot(file)
+    wanted: dict[str, dict[str, Node]] = {}
+    titles: dict[str, str] = {}
+    for entry, text in file.formulas.items():
+        try:
+            name = quantity_of(entry, robot.table)
+            plain, index = split_name(name)
+        except KinlabError as problem:
+            raise ExpressionError(f"{file.path}: {entry}: {problem}") from None
+        if any(isinstance(k, slice) for k in index):
+            raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
+        label = f"{plain}[{','.join(map(str, index))}]" if index else plain
+        wanted.setdefault(plain, {})[label] = _meant(text, file, robot, entry)
+        titles[label] = entry
+    done: list[Diagnosis] = []
+    for plain, formulas in wanted.items():
+        done += _of_quantity(plain, formulas, titles, robot, file, samples, seed)
+    return done
+
+
+def _of_quantity(
+    plain: str,
+    formulas: dict[str, Node],
+    titles: dict[str, str],
+    robot: Robot,
+    file: FormulaFile,
+    samples: int,
+    seed: int,
+) -> Iterable[Diagnosis]:
+    case, engine = prepare(robot, plain, (), samples, seed)
+    shape = engine.shape[1:]
+    labels = [f"{plain}[{','.join(map(str, k))}]" for k in np.ndindex(shape)] if shape else [plain]
+    for label in formulas:
+        if label not in labels:
+            raise ExpressionError(
+                f"{file.path}: {titles[label]}: {label} does not exist; {plain} has shape {shape}"
+            )
+    if plain in _MIRRORED:
+        for i, j in np.ndindex(shape):
+            here, there = f"{plain}[{i},{j}]", f"{plain}[{j},{i}]"
+            if here not in formulas and there in formulas:
+                formulas[here] = formulas[there]
+    values = {label: _values(node, case, file, titles.get(label, label))
+              for label, node in formulas.items()}  # fmt: skip
+    if len(formulas) == len(labels):
+        hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
+        shown = ", ".join(titles[label] for label in labels if label in titles)
+        yield examine(case, hand, engine, plain, shown, formulas)
+        return
+    for label, answer in values.items():
+        _, index = split_name(label)
+        part = replace(case, index=index)
+        one = {label: formulas[label]}
+        yield examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
+
+
+def _robot(file: FormulaFile) -> Robot:
+    """The robot, by name, or by a path that may be relative to the file."""
+    beside = Path(file.path).parent / file.robot
+    try:
+        return load(beside if beside.suffix and beside.is_file() else file.robot)
+    except NameUnknownError as problem:
+        raise NameUnknownError(f"{file.path}: {problem}") from None
+    except FileError as problem:
+        raise FileError(f"{file.path}: robot: {problem}") from None
+
+
+def _meant(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
+    """The formula with the robot's own names."""
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
+    return _resolved(text, file, words, known, f"{file.path}: {entry}", ())
+
+
+def _resolved(
+    text: Node,
+    file: FormulaFile,
+    words: dict[str, float],
+    known: set[str],
+    place: str,
+    open_names: tuple[str, ...],
+) -> Node:
+    mapping = {}
+    for name in sorted(tree.names(text)):
+        if name in open_names:
+            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
+        if name in file.symbols:
+            given = file.symbols[name]
+            if given.op == "num":
+                mapping[name] = _by_value(name, given, words, place)
+            else:
+                mapping[name] = _resolved(given, file, words, known, place, (*open_names, name))
+            continue
+        if name in words:
+            continue
+        meant = canonical(name)
+        if not tree.names(meant) <= known:
+            choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
+            raise ExpressionError(
+                f"{place}: {name[:40]!r} is unknown; {choices} Give other names a meaning in "
+                "[symbols]"
+            )
+        mapping[name] = meant
+    return tree.renamed(text, mapping)
+
+
+def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> Node:
+    """A user's symbol with a number: the robot's parameter of that value, or the number."""
+    value = float(given.value)
+    if name in words:
+        if abs(words[name] - value) > _SAME * abs(words[name]):
+            raise ExpressionError(
+                f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
+                "give the robot's number, or another name"
+            )
+        return tree.sym(name)
+    alike = [w for w, x in words.items() if abs(x - value) <= _SAME * abs(x)]
+    close = [w for w in alike if w[0].lower() == name[0].lower()]
+    for found in (alike, close):
+        if len(found) == 1:
+            return tree.sym(found[0])
+    return given
+
+
+def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
+    count = len(next(iter(case.arguments.values())))
+    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
+    at = {name: np.full(count, value) for name, value in words.items()}
+    for argument, stack in case.arguments.items():
+        if argument in LETTERS:
+            for i in range(case.robot.n):
+                at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+    missing = tree.names(node) - set(at)
+    if missing:
+        raise ExpressionError(
+            f"{file.path}: {entry}: {sorted(missing)[0]} does not belong into "
+            f"{case.quantity.name}, which depends on {', '.join(case.quantity.arguments)}"
+        )
+    with np.errstate(all="ignore"):
+        return np.array(np.broadcast_to(tree.evaluate(node, at), (count,)), dtype=float)
