@@ -12,10 +12,14 @@ module                    what it holds
 ``singular_set``          projection onto the singular set, and where to start
 ``structure``             wrist, shoulder, elbow: names from the geometry of the axes
 ``singularity``           ``find_singularities``
+``reach``                 whether a pose is reachable within the limits, by many bounded solves
 ``nearest``               distance to the nearest singularity
 ``determinant``           det J in factors, each with its meaning
 ``loci``                  curves of the singular set by continuation
-``isotropy``              ``find_isotropic``; ``design`` holds ``design_isotropic``
+``isotropy_system``       J J^T = a 1 as smooth equations; ``best_condition`` where it has no zero
+``isotropy``              ``find_isotropic``
+``design_model``          a table with open numbers; ``design_system`` its isotropy equations
+``design``                ``design_isotropic``
 ``workspace``             maps of reach and dexterity; ``boundary`` the planar boundary
 ========================  =====================================================================
 """

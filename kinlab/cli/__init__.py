@@ -10,12 +10,13 @@ import sys
 
 import typer
 
-from kinlab.cli import analysis, check, fivebar, ik, robots, view
+from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
 from kinlab.errors import KinlabError
 
 _GROUPS = (
     robots,
     check,
+    derive,
     ik,
     analysis,
     fivebar,

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from kinlab.errors import OptionError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -62,6 +64,12 @@ def check(
         return
     for file in report or ():
         check_report_path(file)
+    texts, rest = _formula_files(what or [])
+    if texts and (rest or report):
+        raise OptionError("check: give files of formulas alone, without robots, notes or --report")
+    if texts:
+        _examine(texts, json, max(samples, 10), seed)
+        return
     done = _run(tasks(what or ()), samples, seed)
     if json:
         _print_json(done)
@@ -71,6 +79,30 @@ def check(
         write_report(file, done)
         typer.echo(f"wrote {file}", err=json)
     if not all(row.ok for row in done):
+        raise typer.Exit(1)
+
+
+def _formula_files(what: list[str]) -> tuple[list[str], list[str]]:
+    from kinlab.doctor.file import is_formula_file
+
+    texts = [w for w in what if w.endswith(".toml") and is_formula_file(w)]
+    return texts, [w for w in what if w not in texts]
+
+
+def _examine(files: list[str], as_json: bool, samples: int, seed: int) -> None:
+    """Formulas as text: what is wrong in each."""
+    import json
+
+    from kinlab.doctor.file import examine_file
+
+    found = [d for file in files for d in examine_file(file, samples, seed)]
+    if as_json:
+        rows = [d.as_dict() for d in found]
+        typer.echo(json.dumps(rows, indent=1, ensure_ascii=False, allow_nan=False))
+    else:
+        for diagnosis in found:
+            typer.echo(str(diagnosis))
+    if not all(d.agrees for d in found):
         raise typer.Exit(1)
 
 

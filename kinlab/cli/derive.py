@@ -1,0 +1,38 @@
+"""The command derive: an arm's formulas, derived from its DH table."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+ROBOT = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv file.")]
+WHAT = Annotated[str, typer.Option("--what", help="fk, J, det, M, C, g, tau, D, T or V.")]
+FORMAT = Annotated[str, typer.Option("--format", help="text, latex or python.")]
+NUMBERS = Annotated[bool, typer.Option("--numbers", help="Keep the table's numbers.")]
+OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command of this file."""
+    app.command("derive")(derive)
+
+
+def derive(
+    robot: ROBOT,
+    what: WHAT = "tau",
+    format: FORMAT = "text",
+    numbers: NUMBERS = False,
+    output: OUTPUT = None,
+) -> None:
+    """Derive FK, J, det J, M, C, g or tau of an arm from its DH table."""
+    from kinlab.files import write_text
+    from kinlab.symbolic.derive import derived_text
+
+    text = derived_text(robot, what, format, numbers)
+    if output is None:
+        typer.echo(text)
+    else:
+        write_text(output, text + "\n")
+        typer.echo(f"wrote {output}")

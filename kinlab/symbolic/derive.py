@@ -1,0 +1,85 @@
+"""Derived formulas as text, by the letters of the textbooks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import sympy
+
+from kinlab.errors import NameUnknownError, OptionError, StructureError, near
+from kinlab.library import load
+from kinlab.symbolic import dynamics, kinematics
+from kinlab.symbolic.arm import SymbolicArm, arm
+from kinlab.symbolic.determinant import det_jacobian
+from kinlab.symbolic.output import to_latex, to_python
+
+FORMATS = ("text", "latex", "python")
+_LARGEST = 3
+"""Joints up to which M, C and tau are short enough to print."""
+
+
+def _coefficients(a: SymbolicArm) -> Any:
+    cube = dynamics.christoffel(a)
+    return sympy.Matrix([[cube[i][j][k] for j in range(a.n) for k in range(a.n)]
+                         for i in range(a.n)])  # fmt: skip
+
+
+WHAT: dict[str, Callable[[SymbolicArm], Any]] = {
+    "fk": kinematics.fk,
+    "J": kinematics.jacobian,
+    "det": lambda a: det_jacobian(a).expression,
+    "M": dynamics.mass_matrix,
+    "C": dynamics.coriolis_matrix,
+    "g": dynamics.gravity_torques,
+    "tau": dynamics.inverse_dynamics,
+    "D": _coefficients,
+    "T": dynamics.kinetic_energy,
+    "V": dynamics.potential_energy,
+}
+"""What can be derived. D has row i and columns jk = 11, 12, ... of D_ijk."""
+
+_HEAVY = ("M", "C", "tau", "D", "T")
+
+
+def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
+    """One formula of an arm as text.
+
+    Args:
+        robot: a name or path with a DH table.
+        what: a key of :data:`WHAT`.
+        form: ``"text"``, ``"latex"`` or ``"python"``.
+        numbers: keep the table's numbers instead of names.
+
+    Raises:
+        NameUnknownError: another robot, formula or format.
+        StructureError: the robot has no DH table.
+        OptionError: M, C or tau of more than four joints.
+    """
+    for given, known in ((what, tuple(WHAT)), (form, FORMATS)):
+        if given not in known:
+            raise NameUnknownError(f"derive: {given!r} is unknown; {near(given, known)}")
+    table = load(robot).table
+    if table is None:
+        raise StructureError(
+            f"robot {robot!r} has no DH table to derive from (kinlab dh makes one)"
+        )
+    if what in _HEAVY and table.n > _LARGEST + 1:
+        raise OptionError(
+            f"{what} of {table.n} joints fills hundreds of pages; it is offered up to "
+            f"{_LARGEST + 1} joints (fk, J, det, g and V: any number)"
+        )
+    made = arm(table, "none" if numbers else "all")
+    expression = WHAT[what](made)
+    if form == "latex":
+        return to_latex(expression)
+    if form == "python":
+        return to_python(made, expression, what).rstrip()
+    if not isinstance(expression, sympy.MatrixBase):
+        return f"{what} = {expression}"
+    single = expression.cols == 1
+    return "\n".join(
+        f"{what}{r + 1}{'' if single else c + 1} = {expression[r, c]}"
+        for r in range(expression.rows)
+        for c in range(expression.cols)
+    )
