@@ -129,3 +129,9 @@ def test_hostile_files_and_messages(tmp_path: Path) -> None:
         one(tmp_path, "q1", "frob")
     with pytest.raises(OptionError, match="samples"):
         kl.diagnose(PUMA, "fk", lambda q: q, samples=1)
+
+
+def test_one_entry_of_a_matrix_alone(tmp_path: Path) -> None:
+    assert one(tmp_path, "m2*l2**2 + m2*l1*l2*c2", "M12").agrees
+    found = one(tmp_path, "cos(q1)", "jacobian[5,1]")
+    assert not found.agrees
