@@ -129,7 +129,10 @@ def main() -> None:
                 cases.append(("two mistakes", rng.choice(list(second.values()))))
             for name, bad in cases:
                 began = time.perf_counter()
-                answer = judge(robot, entry, bad, Path(folder))
+                try:
+                    answer = judge(robot, entry, bad, Path(folder))
+                except kl.KinlabError:  # a name that this robot does not have is refused
+                    continue
                 slowest = max(slowest, time.perf_counter() - began)
                 if answer.agrees:
                     continue  # the mistake changed nothing
