@@ -21,7 +21,7 @@ TAU1 = (
 
 def one(tmp_path: Path, text: str, entry: str = "tau1"):
     file = tmp_path / "f.toml"
-    file.write_text(f'robot = "planar2r"\n[formulas]\n{entry} = "{text}"\n')
+    file.write_text(f'robot = "planar2r"\n[formulas]\n"{entry}" = "{text}"\n')
     return examine_file(file)[0]
 
 
@@ -97,7 +97,9 @@ def test_a_function_with_a_term_twice() -> None:
 
 def test_nothing_is_guessed() -> None:
     robot = kl.load("planar2r")
-    found = kl.diagnose(robot, "gravity_torques", lambda q: kl.gravity_torques(robot, q) + np.tanh(q))
+    found = kl.diagnose(
+        robot, "gravity_torques", lambda q: kl.gravity_torques(robot, q) + np.tanh(q)
+    )
     assert found.verdict == "differs, cause unknown"
     assert not found.causes
 
@@ -129,3 +131,17 @@ def test_hostile_files_and_messages(tmp_path: Path) -> None:
         one(tmp_path, "q1", "frob")
     with pytest.raises(OptionError, match="samples"):
         kl.diagnose(PUMA, "fk", lambda q: q, samples=1)
+
+
+def test_one_entry_of_a_matrix_alone(tmp_path: Path) -> None:
+    assert one(tmp_path, "m2*l2**2 + m2*l1*l2*c2", "M12").agrees
+    found = one(tmp_path, "cos(q1)", "jacobian[5,1]")
+    assert not found.agrees
+
+
+def test_one_joint() -> None:
+    robot = kl.load("single_link")
+    found = kl.diagnose(
+        robot, "inverse_dynamics", lambda q, v, a: -kl.inverse_dynamics(robot, q, v, a)
+    )
+    assert found.causes[0].kinds in (("sign",), ("row sign",))

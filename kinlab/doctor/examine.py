@@ -170,8 +170,8 @@ def _matches(case: Case, chosen: tuple[Reading, ...]) -> float | None:
     try:
         with np.errstate(all="ignore"):
             answer = case.answer(chosen)
-    except (KinlabError, np.linalg.LinAlgError):
-        return None  # the changed robot cannot be built or has no inertia: not what was meant
+    except (KinlabError, np.linalg.LinAlgError, IndexError):
+        return None  # no such robot, no inertia, or no such entry (6 by n transposed)
     if answer.shape != case.hand.shape:
         return None
     error = float(np.max(relative_errors(case.hand, answer)))

@@ -98,10 +98,10 @@ def _of_quantity(
                 f"{file.path}: {titles[label]}: {label} does not exist; {plain} has shape {shape}"
             )
     if plain in _MIRRORED:
-        for i, j in np.ndindex(shape):
-            here, there = f"{plain}[{i},{j}]", f"{plain}[{j},{i}]"
-            if here not in formulas and there in formulas:
-                formulas[here] = formulas[there]
+        mirrored = {f"{plain}[{j},{i}]": formulas[f"{plain}[{i},{j}]"]
+                    for i, j in np.ndindex(shape) if f"{plain}[{i},{j}]" in formulas}  # fmt: skip
+        if len({**mirrored, **formulas}) == len(labels):
+            formulas = {**mirrored, **formulas}
     values = {label: _values(node, case, file, titles.get(label, label))
               for label, node in formulas.items()}  # fmt: skip
     if len(formulas) == len(labels):

@@ -377,7 +377,8 @@ def _gyroscopic(robot: Robot, q: Array, v: Array) -> Array:
     for row, (position, speed) in enumerate(zip(q, v, strict=True)):
         pin.computeJointJacobians(robot.model, data, position)
         for i in range(1, robot.model.njoints):
-            turning = pin.getJointJacobian(robot.model, data, i, pin.ReferenceFrame.LOCAL)[3:]
+            jac = pin.getJointJacobian(robot.model, data, i, pin.ReferenceFrame.LOCAL)
+            turning = jac.reshape(6, -1)[3:]  # one column comes flat
             spin = turning @ speed
             out[row] -= turning.T @ np.cross(spin, robot.model.inertias[i].inertia @ spin)
     return out
@@ -393,7 +394,7 @@ def _unturned(name: str) -> Callable[[Engine], Engine]:
             for i in range(1, robot.model.njoints):
                 turning = pin.getJointJacobian(
                     robot.model, data, i, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-                )[3:]
+                ).reshape(6, -1)[3:]
                 turn, tensor = data.oMi[i].rotation, robot.model.inertias[i].inertia
                 out[row] += turning.T @ (tensor - turn @ tensor @ turn.T) @ turning
         return out
