@@ -7,8 +7,7 @@ from html import escape
 from itertools import groupby
 
 from kinlab.check.finding import Finding, Typeset
-from kinlab.check.headings import sentence
-from kinlab.check.summary import size
+from kinlab.check.headings import errors, sentence
 from kinlab.check.typeset import mathml
 
 
@@ -22,21 +21,11 @@ def sections(findings: Sequence[Finding]) -> dict[str, str]:
 
 def diagnosis(finding: Finding) -> str:
     """The verdict with its evidence and the corrected formula."""
-    parts = [f'<p class="verdict">{_lead(finding)}{escape(sentence(finding.sentence))}</p>']
-    if finding.known and finding.error_after is not None:
-        parts.append(
-            f'<p class="evidence">Relative error {size(finding.error_before)} as written, '
-            f"{size(finding.error_after)} once repaired.</p>"
-        )
-    elif finding.agrees:
-        parts.append(
-            f'<p class="evidence">Largest relative error {size(finding.error_before)}.</p>'
-        )
-    else:
-        parts.append(f'<p class="evidence">Relative error {size(finding.error_before)}.</p>')
+    parts = [f'<p class="verdict">{escape(_told(finding))}</p>']
+    parts.append(f'<p class="evidence">{errors(finding)}.</p>')
     parts += [f'<p class="evidence">{escape(text)}</p>' for text in finding.evidence]
     if finding.others:
-        listed = "".join(f"<li>{escape(sentence(text))}</li>" for text in finding.others)
+        listed = "".join(f"<li>{escape(text)}</li>" for text in finding.others)
         parts.append(f'<div class="evidence">Explains it as well:<ul>{listed}</ul></div>')
     return "\n".join(parts)
 
@@ -58,10 +47,11 @@ def _card(finding: Finding) -> str:
 </article>"""
 
 
-def _lead(finding: Finding) -> str:
+def _told(finding: Finding) -> str:
     if finding.agrees:
-        return "Agrees: "
-    return "Differs: " if finding.known else "Differs, cause unknown: "
+        return f"Agrees with {finding.quantity} of {finding.robot}."
+    # no capital: the sentence may begin with a name
+    return f"{sentence(finding.verdict)[:-1]}: {finding.sentence}."
 
 
 def _forms(caption: str, name: str, forms: Sequence[Typeset]) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from kinlab.check.finding import Finding
-from kinlab.check.summary import Group
+from kinlab.check.summary import Group, size
 
 NOTES = {
     "000": "Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics",
@@ -40,6 +41,17 @@ def lead(groups: Sequence[Group], findings: Sequence[Finding]) -> str:
         unknown = len(findings) - right - named
         parts.append(told + (f", unknown of {unknown}." if unknown else "."))
     return " ".join(parts)
+
+
+def errors(finding: Finding) -> str:
+    """How far off a formula is, and how far once it is repaired."""
+    if not math.isfinite(finding.error_before):
+        text = "The answer has another shape, or is no number"
+    else:
+        text = f"Largest relative error {size(finding.error_before)}"
+    if finding.error_after is None:
+        return text
+    return f"{text}; {size(finding.error_after)} once repaired"
 
 
 def counts(groups: Sequence[Group]) -> str:

@@ -105,12 +105,15 @@ def _card(group: Group) -> str:
         for row in group.rows
         if row.finding is not None
     )
+    source = f"{escape(record.source)} · " if record.source else ""
+    told = found and len(group.rows) == 1  # the diagnosis begins with the verdict
+    verdict = "" if told else f'<p class="verdict">{escape(sentence(group.verdict))}</p>'
     remark = f'<p class="remark">{escape(sentence(record.remark))}</p>' if record.remark else ""
     return f"""<article class="{state}" id="{escape(record.key)}">
 <h3><code>{escape(record.key)}</code> {escape(record.title)}</h3>
-<p class="source">{escape(record.source)} · engine: <code>{escape(record.quantity)}</code></p>
+<p class="source">{source}engine: <code>{escape(record.quantity)}</code></p>
 <div class="forms">{forms}</div>
-<p class="verdict">{escape(sentence(group.verdict))}</p>{remark}
+{verdict}{remark}
 {found}
 <div class="measured">{histogram.svg(group.errors, group.printed_errors)}{_robots(group)}</div>
 </article>"""

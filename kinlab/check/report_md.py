@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinlab.check.finding import Finding
-from kinlab.check.headings import HOW, NOTES, TAKEN_APART, lead, origin, sentence
+from kinlab.check.headings import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import plain
 
@@ -37,8 +37,8 @@ def text(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
 def _formula(group: Group) -> list[str]:
     record = group.formula
     mark = "" if group.ok else " **FAILS**"
-    lines = [f"### `{record.key}` {record.title}{mark}", "", f"{record.source}; "
-             f"`{record.quantity}`", ""]  # fmt: skip
+    source = f"{record.source}; " if record.source else ""
+    lines = [f"### `{record.key}` {record.title}{mark}", "", f"{source}`{record.quantity}`", ""]
     if group.printed_error is not None and record.printed is not None:
         lines += ["Printed:", "", f"$${plain(record.printed.latex)}$$", "", "Corrected:", ""]
     if record.latex:
@@ -67,12 +67,9 @@ def _entry(finding: Finding) -> list[str]:
 
 
 def _diagnosis(finding: Finding) -> list[str]:
-    error = f"relative error {size(finding.error_before)}"
-    if finding.error_after is not None:
-        error += f", once repaired {size(finding.error_after)}"
-    lines = [f"**{finding.verdict.capitalize()}**: {finding.sentence} ({error}).", ""]
+    lines = [f"**{finding.verdict.capitalize()}**: {finding.sentence}. {errors(finding)}.", ""]
     for text in finding.evidence:
-        lines += [sentence(text), ""]
+        lines += [f"{text}.", ""]
     lines += [f"- or: {text}" for text in finding.others] + ([""] if finding.others else [])
     if finding.corrected:
         lines += ["Should be:", ""]

@@ -76,7 +76,9 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
         return finding
     if row.corrected.agrees or not task.file or not serial:
         return row
-    return Row(row.formula, row.robot, row.corrected, row.printed, _of_function(task, samples, seed))
+    return Row(
+        row.formula, row.robot, row.corrected, row.printed, _of_function(task, samples, seed)
+    )
 
 
 def _of_function(task: Task, samples: int, seed: int) -> Finding:

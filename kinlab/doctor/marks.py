@@ -59,9 +59,7 @@ def _compare(
     marks[1].update((*other, m) for m in theirs)
 
 
-def _unpaired(
-    hand: Node, right: Node, meaning: Mapping[str, Node]
-) -> tuple[list[int], list[int]]:
+def _unpaired(hand: Node, right: Node, meaning: Mapping[str, Node]) -> tuple[list[int], list[int]]:
     """Children without an equal on the other side."""
     ours, theirs = [], list(range(len(right.args)))
     for k, child in enumerate(hand.args):

@@ -51,7 +51,7 @@ def equation(name: str, formula: Node, marks: Marks | None = None) -> tuple[str,
     lines: list[str] = [""]
     used = 0
     for k, term in enumerate(terms):
-        piece = _joined(latex(term, marks, (k,)), first=k == 0)
+        piece = _joined(term, marks, (k,))
         length = _visible(piece)
         if used and used + length > _LINE:
             lines.append("")
@@ -60,7 +60,7 @@ def equation(name: str, formula: Node, marks: Marks | None = None) -> tuple[str,
         used += length
     if len(lines) == 1:
         return symbol(name), lines[0].strip()
-    rows = r" \\ ".join(line.strip() for line in lines)
+    rows = r" \\ {} ".join(line.strip() for line in lines)
     return symbol(name), rf"\begin{{array}}{{l}} {rows} \end{{array}}"
 
 
@@ -114,10 +114,7 @@ def _plain(node: Node, marks: Marks, path: Path) -> str:
         return symbol(str(node.value))
     children = [(child, (*path, k)) for k, child in enumerate(node.args)]
     if node.op == "add":
-        return "".join(
-            _joined(latex(child, marks, at), first=k == 0)
-            for k, (child, at) in enumerate(children)
-        ).strip()
+        return "".join(_joined(child, marks, at) for child, at in children).strip()
     if node.op == "mul":
         return _product(children, marks)
     if node.op == "pow":
@@ -127,16 +124,14 @@ def _plain(node: Node, marks: Marks, path: Path) -> str:
     return rf"{name}({inside})"
 
 
-def _joined(piece: str, *, first: bool) -> str:
-    """A term with the sign that joins it to what stands before; a mark takes its sign inside."""
-    marked = re.match(r"\\(wrong|fixed)\{", piece)
-    if marked:
-        body = piece[marked.end() :]
-        inside = body if first or body.startswith("-") else f"+ {body}"
-        return rf" \{marked.group(1)}{{{inside}"
-    if first:
-        return piece
-    return f" - {piece[1:].lstrip()}" if piece.startswith("-") else f" + {piece}"
+def _joined(term: Node, marks: Marks, path: Path) -> str:
+    """A term of a sum with the sign that joins it to the one before; a mark takes the sign in."""
+    body = _plain(term, marks, path)
+    if body.startswith("-"):
+        body = body if path[-1] == 0 else f" - {body[1:].lstrip()}"
+    elif path[-1] > 0:
+        body = f" + {body}"
+    return rf" \{marks.command}{{{body.strip()}}}" if path in marks.paths else body
 
 
 def _product(children: list[tuple[Node, Path]], marks: Marks) -> str:
