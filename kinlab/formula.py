@@ -33,6 +33,10 @@ class FormulaError(KinlabError, ValueError):
     """A hand formula failed, or answered with another shape or type than its quantity has."""
 
 
+class AnswerShapeError(FormulaError):
+    """A hand formula answered with another shape than its quantity has."""
+
+
 @dataclass(frozen=True)
 class Printed:
     """The form a note prints, where it is wrong.
@@ -211,6 +215,7 @@ def state_by_state(function: Function) -> Function:
                 )
         return np.stack(answers)
 
+    stacked.__name__ = function_name(function)  # what messages call it
     return stacked
 
 

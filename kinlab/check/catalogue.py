@@ -9,6 +9,7 @@ from functools import cache
 from typing import Any
 
 from kinlab.check.compare import Comparison, compare_stacked
+from kinlab.check.finding import Finding
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.formula import Formula, formulas_in, function_name
 from kinlab.tolerances import TOLERANCES
@@ -45,12 +46,14 @@ class Row:
         corrected: the corrected form beside the engine.
         printed: the printed form beside the engine, where the note has a misprint that shows on
             this robot.
+        finding: what is wrong in a user's formula that differs, where it was looked for.
     """
 
     formula: Formula
     robot: str
     corrected: Comparison
     printed: Comparison | None = None
+    finding: Finding | None = None
 
     @property
     def misprint_shown(self) -> bool:

@@ -21,7 +21,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.check.quantity import Quantity
 from kinlab.errors import OptionError
-from kinlab.formula import FormulaError, function_name, state_by_state
+from kinlab.formula import AnswerShapeError, FormulaError, function_name, state_by_state
 from kinlab.tolerances import TOLERANCES
 
 VANISHES = 1e-12
@@ -166,7 +166,7 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
             "numbers"
         )
     if values.shape != engine.shape:
-        raise FormulaError(
+        raise AnswerShapeError(
             f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
             f"shape {engine.shape[1:]} ({quantity.about})"
         )

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
-from kinlab.check.summary import Group
+from kinlab.check.finding import Finding
+from kinlab.check.summary import Group, size
 
 NOTES = {
     "000": "Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics",
@@ -20,6 +22,36 @@ HOW = (
     "of a state is the largest difference of an entry over the largest entry of the engine's "
     "answer. A corrected form must stay below 1e-9; a misprint must show above 1e-3."
 )
+
+
+TAKEN_APART = (
+    "Where a formula of yours differs, the doctor looks for what is wrong in it. It names a cause "
+    "only if repairing it leaves less than 1e-9 at every state."
+)
+
+
+def lead(groups: Sequence[Group], findings: Sequence[Finding]) -> str:
+    """What was found, in a sentence or two."""
+    parts = [counts(groups)] if groups or not findings else []
+    if findings:
+        right = sum(one.agrees for one in findings)
+        named = sum(one.known and not one.agrees for one in findings)
+        told = f"Formulas in files: {right} of {len(findings)} right"
+        told += f", what is wrong is known of {named}" if named else ""
+        unknown = len(findings) - right - named
+        parts.append(told + (f", unknown of {unknown}." if unknown else "."))
+    return " ".join(parts)
+
+
+def errors(finding: Finding) -> str:
+    """How far off a formula is, and how far once it is repaired."""
+    if not math.isfinite(finding.error_before):
+        text = "The answer has another shape, or is no number"
+    else:
+        text = f"Largest relative error {size(finding.error_before)}"
+    if finding.error_after is None:
+        return text
+    return f"{text}; {size(finding.error_after)} once repaired"
 
 
 def counts(groups: Sequence[Group]) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from kinlab.check import report_html, report_md
 from kinlab.check.catalogue import Row
+from kinlab.check.finding import Finding
 from kinlab.check.summary import grouped
 from kinlab.errors import FileError
 from kinlab.files import write_text
@@ -27,15 +28,16 @@ def check_report_path(path: str | Path) -> None:
         raise FileError(f"{file}: the folder {str(file.parent)!r} does not exist")
 
 
-def write_report(path: str | Path, rows: Sequence[Row]) -> None:
+def write_report(path: str | Path, rows: Sequence[Row], findings: Sequence[Finding] = ()) -> None:
     """Writes a report.
 
     Args:
         path: ends in .html or .md.
         rows: what :func:`kinlab.check.catalogue.run` gave.
+        findings: formulas that were taken apart, from :mod:`kinlab.doctor.findings`.
 
     Raises:
         FileError: another kind of file, or it cannot be written; an old one stays whole.
     """
     check_report_path(path)
-    write_text(path, _WRITERS[Path(path).suffix.lower()](grouped(rows)))
+    write_text(path, _WRITERS[Path(path).suffix.lower()](grouped(rows), findings))

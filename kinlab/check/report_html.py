@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from kinlab.check import histogram
-from kinlab.check.headings import HOW, NOTES, counts, origin, sentence, several
+from kinlab.check import finding_html, histogram
+from kinlab.check.finding import Finding
+from kinlab.check.headings import HOW, NOTES, TAKEN_APART, lead, origin, sentence, several
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import mathml
 
@@ -17,26 +18,30 @@ LONG = 110
 _STYLE = Path(__file__).with_name("report.css")
 
 
-def page(groups: Sequence[Group]) -> str:
+def page(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
     """The whole page.
 
     Args:
         groups: from :func:`kinlab.check.summary.grouped`.
+        findings: formulas that were taken apart.
     """
     sections: dict[str, list[Group]] = {}
     for group in groups:
         name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
         sections.setdefault(name, []).append(group)
     style = _STYLE.read_text(encoding="utf-8")
+    cards = [
+        (name, _tally(members), "\n".join(_card(group) for group in members))
+        for name, members in sections.items()
+    ]
+    cards += [(name, "", text) for name, text in finding_html.sections(findings).items()]
     body = "\n".join(
-        f'<section id="s{k}"><h2>{escape(name)}</h2>\n'
-        + "\n".join(_card(group) for group in members)
-        + "\n</section>"
-        for k, (name, members) in enumerate(sections.items())
+        f'<section id="s{k}"><h2>{escape(name)}</h2>\n{text}\n</section>'
+        for k, (name, _, text) in enumerate(cards)
     )
     links = "".join(
-        f'<li><a href="#s{k}">{escape(name)}</a> {_tally(members)}</li>'
-        for k, (name, members) in enumerate(sections.items())
+        f'<li><a href="#s{k}">{escape(name)}</a> {tally}</li>'
+        for k, (name, tally, _) in enumerate(cards)
     )
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -51,11 +56,8 @@ def page(groups: Sequence[Group]) -> str:
 <body>
 <header>
 <h1>Hand formulas beside the engine</h1>
-<p class="lead">{escape(counts(groups))}</p>
-<p>{escape(HOW)} In the pictures <span class="key good">corrected</span> and
-<span class="key bad">printed</span> errors are spread over the decades; the dashed line is 1e-9.
-In the formulas <span class="key wrong">what is wrong</span> stands beside
-<span class="key fixed">what it should be</span>.</p>
+<p class="lead">{escape(lead(groups, findings))}</p>
+<p>{escape(HOW)} {_legend(groups, findings)}</p>
 <nav><ul>{links}</ul></nav>
 </header>
 <main>
@@ -65,6 +67,19 @@ In the formulas <span class="key wrong">what is wrong</span> stands beside
 </body>
 </html>
 """
+
+
+def _legend(groups: Sequence[Group], findings: Sequence[Finding]) -> str:
+    """What the pictures, colours and diagnoses on this page mean."""
+    text = ""
+    if groups:
+        text += """In the pictures <span class="key good">corrected</span> and
+<span class="key bad">printed</span> errors are spread over the decades; the dashed line is 1e-9.
+"""
+    if findings or any(row.finding for group in groups for row in group.rows):
+        text += escape(TAKEN_APART)
+    return f"""{text} In the formulas <span class="key wrong">what is wrong</span> stands beside
+<span class="key fixed">what it should be</span>."""
 
 
 def _tally(members: Sequence[Group]) -> str:
@@ -83,12 +98,23 @@ def _card(group: Group) -> str:
         forms += _form("printed", record.printed.latex)
     if record.latex:
         forms += _form("corrected" if misprinted else "", record.latex)
+    found = "".join(
+        (f"<h4>{escape(row.robot)}</h4>" if len(group.rows) > 1 else "")
+        + finding_html.diagnosis(row.finding)
+        + f'<div class="forms">{finding_html.corrected(row.finding)}</div>'
+        for row in group.rows
+        if row.finding is not None
+    )
+    source = f"{escape(record.source)} · " if record.source else ""
+    told = found and len(group.rows) == 1  # the diagnosis begins with the verdict
+    verdict = "" if told else f'<p class="verdict">{escape(sentence(group.verdict))}</p>'
     remark = f'<p class="remark">{escape(sentence(record.remark))}</p>' if record.remark else ""
     return f"""<article class="{state}" id="{escape(record.key)}">
 <h3><code>{escape(record.key)}</code> {escape(record.title)}</h3>
-<p class="source">{escape(record.source)} · engine: <code>{escape(record.quantity)}</code></p>
+<p class="source">{source}engine: <code>{escape(record.quantity)}</code></p>
 <div class="forms">{forms}</div>
-<p class="verdict">{escape(sentence(group.verdict))}</p>{remark}
+{verdict}{remark}
+{found}
 <div class="measured">{histogram.svg(group.errors, group.printed_errors)}{_robots(group)}</div>
 </article>"""
 

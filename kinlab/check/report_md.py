@@ -4,18 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinlab.check.headings import HOW, NOTES, counts, origin, sentence
+from kinlab.check.finding import Finding
+from kinlab.check.headings import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import plain
 
 
-def text(groups: Sequence[Group]) -> str:
+def text(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
     """The whole report.
 
     Args:
         groups: from :func:`kinlab.check.summary.grouped`.
+        findings: formulas that were taken apart.
     """
-    lines = ["# Hand formulas beside the engine", "", counts(groups), "", HOW, ""]
+    how = f"{HOW} {TAKEN_APART}" if findings else HOW
+    lines = ["# Hand formulas beside the engine", "", lead(groups, findings), "", how, ""]
     section = None
     for group in groups:
         name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
@@ -23,14 +26,19 @@ def text(groups: Sequence[Group]) -> str:
             lines += [f"## {name}", ""]
             section = name
         lines += _formula(group)
+    for finding in findings:
+        if finding.source != section:
+            lines += [f"## {finding.source}: your formulas", ""]
+            section = finding.source
+        lines += _entry(finding)
     return "\n".join([*lines, origin(groups)]) + "\n"
 
 
 def _formula(group: Group) -> list[str]:
     record = group.formula
     mark = "" if group.ok else " **FAILS**"
-    lines = [f"### `{record.key}` {record.title}{mark}", "", f"{record.source}; "
-             f"`{record.quantity}`", ""]  # fmt: skip
+    source = f"{record.source}; " if record.source else ""
+    lines = [f"### `{record.key}` {record.title}{mark}", "", f"{source}`{record.quantity}`", ""]
     if group.printed_error is not None and record.printed is not None:
         lines += ["Printed:", "", f"$${plain(record.printed.latex)}$$", "", "Corrected:", ""]
     if record.latex:
@@ -43,4 +51,28 @@ def _formula(group: Group) -> list[str]:
         printed = size(row.printed.max_error) if row.printed is not None else ""
         error = size(row.corrected.max_error)
         lines.append(f"| {row.robot} | {row.corrected.samples} | {error} | {printed} |")
-    return [*lines, ""]
+    lines.append("")
+    for row in group.rows:
+        if row.finding is not None:
+            lines += [f"On {row.robot}:", "", *_diagnosis(row.finding)]
+    return lines
+
+
+def _entry(finding: Finding) -> list[str]:
+    mark = "" if finding.agrees else " **DIFFERS**"
+    lines = [f"### `{finding.title}`{mark}", "", f"`{finding.quantity}` of {finding.robot}", ""]
+    for left, right in finding.given:
+        lines += [f"$${plain(f'{left} = {right}')}$$", ""]
+    return lines + _diagnosis(finding)
+
+
+def _diagnosis(finding: Finding) -> list[str]:
+    lines = [f"**{finding.verdict.capitalize()}**: {finding.sentence}. {errors(finding)}.", ""]
+    for text in finding.evidence:
+        lines += [f"{text}.", ""]
+    lines += [f"- or: {text}" for text in finding.others] + ([""] if finding.others else [])
+    if finding.corrected:
+        lines += ["Should be:", ""]
+    for left, right in finding.corrected:
+        lines += [f"$${plain(f'{left} = {right}')}$$", ""]
+    return lines

@@ -11,6 +11,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.catalogue import Row
+from kinlab.check.finding import Finding
 from kinlab.formula import Formula
 
 
@@ -79,14 +80,18 @@ def grouped(rows: Iterable[Row]) -> list[Group]:
     return [Group(several[0].formula, tuple(several)) for several in found.values()]
 
 
-def as_data(rows: Iterable[Row]) -> dict[str, Any]:
-    """The rows as plain data; an infinite error is null.
+def as_data(rows: Iterable[Row], findings: Iterable[Finding] = ()) -> dict[str, Any]:
+    """The rows and findings as plain data; an infinite error is null.
 
     Returns:
-        ``{"ok": bool, "rows": [...]}``.
+        ``{"ok": bool, "rows": [...], "formulas": [...]}``.
     """
-    listed = list(rows)
-    return {"ok": all(row.ok for row in listed), "rows": [_row(row) for row in listed]}
+    listed, judged = list(rows), list(findings)
+    return {
+        "ok": all(row.ok for row in listed) and all(one.agrees for one in judged),
+        "rows": [_row(row) for row in listed],
+        "formulas": [one.data for one in judged],
+    }
 
 
 def _row(row: Row) -> dict[str, Any]:
@@ -107,6 +112,7 @@ def _row(row: Row) -> dict[str, Any]:
         "misprint": record.printed.misprint if record.printed and row.printed else None,
         "remark": record.remark,
         "verdict": row.verdict,
+        "diagnosis": None if row.finding is None else row.finding.data,
         "ok": row.ok,
     }
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import importlib.util
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from kinlab.check.catalogue import Row, catalogue, plan, run_one
 from kinlab.check.serial import SERIAL
@@ -19,10 +20,28 @@ from kinlab.library import shipped
 
 @dataclass(frozen=True)
 class Task:
-    """One row to come: its label for the progress bar, and how to get it."""
+    """One row to come.
 
-    label: str
-    run: Callable[[int, int], Row]
+    Attributes:
+        record: the formula.
+        robot: the mechanism, or its name.
+        name: what to call the mechanism.
+        file: the user's file that the formula is from; empty for what ships.
+    """
+
+    record: Formula
+    robot: Any
+    name: str
+    file: str = ""
+
+    @property
+    def label(self) -> str:
+        """What a progress bar shows."""
+        return f"{self.record.key} {self.name}"
+
+    def run(self, samples: int, seed: int) -> Row:
+        """Puts the formula beside the engine."""
+        return run_one(self.record, self.robot, samples, seed)
 
 
 def tasks(arguments: Iterable[str]) -> list[Task]:
@@ -54,7 +73,7 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
 
 def _tasks_of(text: str) -> list[Task]:
     if text.endswith(".py"):
-        return [_one(record, name) for record, name in plan(_user_formulas(text))]
+        return [Task(record, name, name, text) for record, name in plan(_user_formulas(text))]
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
         return [_one(record, name) for record, name in plan(by_id)]
@@ -72,18 +91,12 @@ def _tasks_of(text: str) -> list[Task]:
 
 
 def _one(record: Formula, name: str) -> Task:
-    return Task(f"{record.key} {name}", lambda samples, seed: run_one(record, name, samples, seed))
+    return Task(record, name, name)
 
 
 def _table(name: str) -> list[Task]:
     robot = SERIAL.load(name)
-
-    def task(record: Formula) -> Task:
-        return Task(
-            f"{record.key} {name}", lambda samples, seed: run_one(record, robot, samples, seed)
-        )
-
-    return [task(record) for record in checks_of(robot)]
+    return [Task(record, robot, name) for record in checks_of(robot)]
 
 
 def _user_formulas(path: str) -> list[Formula]:

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from kinlab.errors import OptionError
-
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rich.console import Console
 
     from kinlab.check.catalogue import Row
+    from kinlab.check.finding import Finding
     from kinlab.check.targets import Task
 
 WHAT = Annotated[
@@ -56,6 +55,7 @@ def check(
 
     Exit code 0 if every correct form agrees (and every misprint shows), 1 if not, 2 for bad input.
     """
+    from kinlab.check.catalogue import Row
     from kinlab.check.report import check_report_path, write_report
     from kinlab.check.targets import tasks
 
@@ -65,68 +65,81 @@ def check(
     for file in report or ():
         check_report_path(file)
     texts, rest = _formula_files(what or [])
-    if texts and (rest or report):
-        raise OptionError("check: give files of formulas alone, without robots, notes or --report")
-    if texts:
-        _examine(texts, json, max(samples, 10), seed)
-        return
-    done = _run(tasks(what or ()), samples, seed)
+    todo = tasks(rest) if rest or not texts else []
+    findings = _examine(texts, samples, seed)
+    done = []
+    for one in _run(todo, samples, seed):
+        if isinstance(one, Row):
+            done.append(one)
+        else:
+            findings.append(one)
     if json:
-        _print_json(done)
+        _print_json(done, findings)
     else:
-        _print_table(done, rows)
+        _print_all(done, findings, rows)
     for file in report or ():
-        write_report(file, done)
+        write_report(file, done, findings)
         typer.echo(f"wrote {file}", err=json)
-    if not all(row.ok for row in done):
+    if not all(row.ok for row in done) or not all(one.agrees for one in findings):
         raise typer.Exit(1)
 
 
 def _formula_files(what: list[str]) -> tuple[list[str], list[str]]:
+    """Files of formulas as text, and the other arguments."""
+    candidates = [w for w in what if w.lower().endswith(".toml")]
+    if not candidates:
+        return [], what
     from kinlab.doctor.file import is_formula_file
 
-    texts = [w for w in what if w.endswith(".toml") and is_formula_file(w)]
+    texts = [w for w in candidates if is_formula_file(w)]
     return texts, [w for w in what if w not in texts]
 
 
-def _examine(files: list[str], as_json: bool, samples: int, seed: int) -> None:
-    """Formulas as text: what is wrong in each."""
-    import json
+def _examine(files: list[str], samples: int, seed: int) -> list[Finding]:
+    if not files:
+        return []
+    from kinlab.doctor.findings import of_file
 
-    from kinlab.doctor.file import examine_file
-
-    found = [d for file in files for d in examine_file(file, samples, seed)]
-    if as_json:
-        rows = [d.as_dict() for d in found]
-        typer.echo(json.dumps(rows, indent=1, ensure_ascii=False, allow_nan=False))
-    else:
-        for diagnosis in found:
-            typer.echo(str(diagnosis))
-    if not all(d.agrees for d in found):
-        raise typer.Exit(1)
+    return [finding for file in files for finding in of_file(file, samples, seed)]
 
 
-def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row]:
+def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Finding]:
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
     columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
-    done = []
+    done: list[Row | Finding] = []
     with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=len(todo))
         for task in todo:
             progress.update(bar, description=task.label)
-            done.append(task.run(samples, seed))
+            done.append(_one(task, samples, seed))
             progress.advance(bar)
     return done
 
 
-def _print_json(done: Sequence[Row]) -> None:
+def _one(task: Task, samples: int, seed: int) -> Row | Finding:
+    if not task.file:
+        return task.run(samples, seed)
+    from kinlab.doctor.findings import of_task
+
+    return of_task(task, samples, seed)
+
+
+def _print_json(done: Sequence[Row], findings: Sequence[Finding]) -> None:
     import json
 
     from kinlab.check.summary import as_data
 
-    typer.echo(json.dumps(as_data(done), indent=1, ensure_ascii=False, allow_nan=False))
+    data = as_data(done, findings)
+    typer.echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
+
+
+def _print_all(done: Sequence[Row], findings: Sequence[Finding], each: bool) -> None:
+    if done:
+        _print_table(done, each)
+    for k, finding in enumerate(findings):
+        typer.echo(("\n" if k or done else "") + finding.text)
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:
@@ -165,6 +178,25 @@ def _print_failures(console: Console, done: Sequence[Row]) -> None:
     for row in done:
         if not row.corrected.agrees:
             console.print(f"\n{row.formula.key}: {row.corrected}", style="red", markup=False)
+            if row.finding is not None:
+                _print_finding(console, row.finding)
+
+
+def _print_finding(console: Console, finding: Finding) -> None:
+    from kinlab.check.summary import size
+
+    def line(text: str) -> None:
+        console.print(text, style="bold" if finding.known else "", markup=False, highlight=False,
+                      soft_wrap=True)  # fmt: skip
+
+    line(f"diagnosis: {finding.sentence}")
+    if finding.known:
+        before, after = size(finding.error_before), size(finding.error_after)
+        line(f"  relative error before {before}, after {after}")
+        for name, text in finding.data["causes"][0]["corrected"].items():
+            line(f"  correct: {name} = {text}")
+    for text in finding.others:
+        line(f"  or: {text}")
 
 
 def _print_closing(console: Console, done: Sequence[Row], formulas: int) -> None:

@@ -60,7 +60,7 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         NameUnknownError: no such robot.
     """
     file = read_file(path)
-    robot = _robot(file)
+    robot = robot_of(file)
     wanted: dict[str, dict[str, Node]] = {}
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
@@ -72,7 +72,7 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         if any(isinstance(k, slice) for k in index):
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
-        wanted.setdefault(plain, {})[label] = _meant(text, file, robot, entry)
+        wanted.setdefault(plain, {})[label] = meant(text, file, robot, entry)
         titles[label] = entry
     done: list[Diagnosis] = []
     for plain, formulas in wanted.items():
@@ -116,8 +116,12 @@ def _of_quantity(
         yield examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
 
 
-def _robot(file: FormulaFile) -> Robot:
-    """The robot, by name, or by a path that may be relative to the file."""
+def robot_of(file: FormulaFile) -> Robot:
+    """The robot of a file, by name, or by a path that may be relative to the file.
+
+    Raises:
+        NameUnknownError, FileError: no such robot; the message names the file.
+    """
     beside = Path(file.path).parent / file.robot
     try:
         return load(beside if beside.suffix and beside.is_file() else file.robot)
@@ -127,8 +131,12 @@ def _robot(file: FormulaFile) -> Robot:
         raise FileError(f"{file.path}: robot: {problem}") from None
 
 
-def _meant(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
-    """The formula with the robot's own names."""
+def meant(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
+    """A formula with the robot's own names in place of the user's.
+
+    Raises:
+        ExpressionError: a name without a meaning; the message names the entry.
+    """
     words = vocabulary(robot.table).values if robot.table is not None else {}
     known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
     return _resolved(text, file, words, known, f"{file.path}: {entry}", ())

@@ -11,6 +11,9 @@ A file looks like this (see :func:`read_file`)::
     [formulas]
     tau1 = "(m1 + m2)*l1**2*qdd1 + ..."
     "mass_matrix[0,0]" = "..."
+
+    [latex]
+    tau2 = '(m_2 l_2^2 + m_2 l_1 l_2 c_2) \\ddot{q}_1 + ...'
 """
 
 from __future__ import annotations
@@ -25,6 +28,7 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.doctor import tree
+from kinlab.doctor.latex_input import expression
 from kinlab.doctor.tree import Node
 from kinlab.errors import ExpressionError, FileError, near
 from kinlab.files import read_text
@@ -79,7 +83,8 @@ def read_file(path: str | Path) -> FormulaFile:
         path: the file. ``robot`` is required; ``[symbols]`` gives numbers or other names to the
             user's symbols; every entry of ``[formulas]`` (or of the top level) is a formula:
             its name says what it claims to be (``tau1``, ``g2``, ``M12``, ``C11``, ``J11``,
-            ``x``, or a quantity such as ``"fk[0,3]"``).
+            ``x``, or a quantity such as ``"fk[0,3]"``). Entries of ``[latex]`` are LaTeX
+            (:mod:`kinlab.doctor.latex_input`).
 
     Raises:
         FileError: missing, too large, no TOML.
@@ -98,12 +103,16 @@ def read_file(path: str | Path) -> FormulaFile:
         raise FileError(f'{place}: robot is missing; write robot = "planar2r" or a path')
     symbols = _table(document.pop("symbols", {}), f"{place}: [symbols]")
     entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
+    typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
     for key, value in document.items():
         if key in ("title", "source", "name"):
             continue
         if not isinstance(value, str):
             raise FileError(f"{place}: {key!r} is no formula; write it as text in [formulas]")
         entries[key] = value
+    for key in typeset.keys() & entries.keys():
+        raise FileError(f"{place}: {key!r} is given twice, as text and as LaTeX; keep one")
+    entries |= {key: _from_latex(value, f"{place}: {key}") for key, value in typeset.items()}
     if not entries:
         raise FileError(f'{place}: no formulas; write [formulas] and lines such as tau1 = "..."')
     if len(entries) > _FORMULAS:
@@ -285,6 +294,12 @@ def _formula(value: Any, place: str) -> Node:
     if not isinstance(value, str):
         raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
     return parse(value, place)
+
+
+def _from_latex(value: Any, place: str) -> str:
+    if not isinstance(value, str):
+        raise ExpressionError(f"{place}: {type(value).__name__}; write the LaTeX as text")
+    return expression(value, place)
 
 
 def _short(text: str) -> str:

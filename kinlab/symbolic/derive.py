@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import sympy
@@ -17,6 +17,8 @@ from kinlab.symbolic.output import to_latex, to_python
 FORMATS = ("text", "latex", "python")
 _LARGEST = 3
 """Joints up to which M, C and tau are short enough to print."""
+_LARGEST_PART = 4
+"""Denominators above this come from the table's decimals, those below from ½ m v² and the like."""
 
 
 def _coefficients(a: SymbolicArm) -> Any:
@@ -71,15 +73,47 @@ def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
         )
     made = arm(table, "none" if numbers else "all")
     expression = WHAT[what](made)
-    if form == "latex":
-        return to_latex(expression)
     if form == "python":
         return to_python(made, expression, what).rstrip()
+    expression = _decimal(_by_rates(made, expression))
+    if form == "latex":
+        return to_latex(expression)
+    return "\n".join([*_lines(made, what, expression), *_where(made, expression)])
+
+
+def _lines(made: SymbolicArm, what: str, expression: Any) -> Iterator[str]:
+    """One line for each entry; that of a coefficient names all three of its indices."""
     if not isinstance(expression, sympy.MatrixBase):
-        return f"{what} = {expression}"
-    single = expression.cols == 1
-    return "\n".join(
-        f"{what}{r + 1}{'' if single else c + 1} = {expression[r, c]}"
-        for r in range(expression.rows)
-        for c in range(expression.cols)
-    )
+        yield f"{what} = {sympy.sstr(expression, full_prec=False)}"
+        return
+    for r in range(expression.rows):
+        for c in range(expression.cols):
+            column = f"{c // made.n + 1}{c % made.n + 1}" if what == "D" else f"{c + 1}"
+            name = f"{what}{r + 1}{'' if expression.cols == 1 else column}"
+            yield f"{name} = {sympy.sstr(expression[r, c], full_prec=False)}"
+
+
+def _where(made: SymbolicArm, expression: Any) -> list[str]:
+    """What the names stand for in this table."""
+    used = [f"{s.name} = {float(value):.12g}" for s, value in made.parameters.items()
+            if s in expression.free_symbols]  # fmt: skip
+    return [f"where {', '.join(used)}"] if used else []
+
+
+def _by_rates(made: SymbolicArm, expression: Any) -> Any:
+    """Terms of the same acceleration or product of speeds put together, as textbooks do."""
+    speeds = [one * other for k, one in enumerate(made.qd) for other in made.qd[k:]]
+    rates = [*made.qdd, *speeds]
+    if not expression.free_symbols & {*made.qdd, *made.qd}:
+        return expression
+    if isinstance(expression, sympy.MatrixBase):
+        return expression.applyfunc(lambda entry: sympy.collect(entry, rates))
+    return sympy.collect(expression, rates)
+
+
+def _decimal(expression: Any) -> Any:
+    """Fractions that come from a table's decimal numbers as decimals; 1/2, 1/3 ... stay."""
+    fractions = {
+        r: sympy.Float(float(r)) for r in expression.atoms(sympy.Rational) if r.q > _LARGEST_PART
+    }
+    return expression.xreplace(fractions)

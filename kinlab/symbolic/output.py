@@ -96,7 +96,7 @@ def to_python(arm: SymbolicArm, expression: Expression, name: str) -> str:
         lines.append(f"    {symbols}{',' if arm.n == 1 else ''} = {letter}")
     for s, value in arm.parameters.items():
         if s in grid.free_symbols:
-            lines.append(f"    {s.name} = {value!r}")
+            lines.append(f"    {s.name} = {float(value)!r}")
     lines += [f"    {s.name} = {printer.doprint(e)}" for s, e in shared]
     entries = [[printer.doprint(reduced[r, c]) for c in range(grid.cols)] for r in range(grid.rows)]
     if scalar:
