@@ -65,7 +65,7 @@ def double(
         return []
     repairs: list[Repair] = []
     for one, two in _pairs(effects, wanted, MATCH * scale):
-        if found[one].path and found[two].path and _nested(found[one], found[two]):
+        if _nested(found[one], found[two]):
             continue
         repair = _both(root, found[one], found[two])
         if np.max(np.abs(tree.evaluate(repair.result, at) - target)) <= MATCH * scale:
@@ -128,8 +128,11 @@ def apply(root: Node, edit: Edit) -> Node:
 
 
 def _nested(one: Edit, two: Edit) -> bool:
+    """Whether one edit replaces what the other changes; an added term is beside everything."""
+    if "missing term" in (one.kind, two.kind):
+        return False
     short, long = sorted((one.path, two.path), key=len)
-    return bool(short) and long[: len(short)] == short
+    return long[: len(short)] == short
 
 
 def _both(root: Node, one: Edit, two: Edit) -> Repair:
