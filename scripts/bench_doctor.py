@@ -121,8 +121,8 @@ def formulas(rng: random.Random) -> list[Formula]:
             if table.n > 3 and quantity not in KINEMATIC:
                 continue
             derived = derive(arm)
-            whole = derived if isinstance(derived, sympy.MatrixBase) else sympy.Matrix([derived])
-            column = whole.cols == 1
+            whole = derived if isinstance(derived, sympy.MatrixBase) else sympy.Matrix([[derived]])
+            vector = quantity.endswith(("torques", "dynamics"))
             entries = {(r, c): sympy.expand(whole[r, c])
                        for r in range(whole.rows) for c in range(whole.cols)}  # fmt: skip
             letters = {"a": "qdd", "v": "qd", "q": "q"}
@@ -131,7 +131,7 @@ def formulas(rng: random.Random) -> list[Formula]:
             for (r, c), entry in entries.items():
                 if not 2 <= len(sympy.Add.make_args(entry)) <= 60:
                     continue
-                index = () if whole.shape == (1, 1) else (r,) if column else (r, c)
+                index = () if whole is not derived else (r,) if vector else (r, c)
                 others = [str(t) for other in entries.values() if other != entry
                           for t in sympy.Add.make_args(other)
                           if t != 0 and t not in entry.args and -t not in entry.args]  # fmt: skip
