@@ -54,6 +54,7 @@ NAMES = {
     "wrong index": ("index",), "missing factor": ("missing factor",),
 }  # fmt: skip
 """Kinds of the doctor that name a class. By values alone a term twice is a coefficient."""
+ADDED = ("doubled term", "extra term")
 
 
 @dataclass
@@ -244,7 +245,8 @@ def slips(bench: Bench, pool: list[Formula], count: int, rng: random.Random, fol
             if bad is None:
                 continue
             one_slip(bench, tallies, formula, form, [rule], bad, folder)
-        rule, other = rng.choice(rules), rng.choice(rules)
+        # what is added comes last: a slip in an added term would be one mistake, not two
+        rule, other = sorted((rng.choice(rules), rng.choice(rules)), key=ADDED.__contains__)
         first = mutate(formula.text, rule, formula.names, formula.others, rng)
         bad = first and mutate(first, other, formula.names, formula.others, rng)
         form = rng.choice(["text", "function"])
@@ -393,7 +395,9 @@ def summed(tallies: dict[str, Tally]) -> Tally:
 
 def report(bench: Bench, compared: int, false: int, options: Any, took: float) -> str:
     """The results as Markdown."""
-    head = "| {} | mutants | exact | first | tied | repaired | wrong | unknown |\n" + "|---" * 8 + "|"
+    head = (
+        "| {} | mutants | exact | first | tied | repaired | wrong | unknown |\n" + "|---" * 8 + "|"
+    )
     lines = [f"`python scripts/bench_doctor.py --count {options.count} --seed {options.seed}`, "
              f"{platform.machine()}, Python {platform.python_version()}, {took:.0f} s."]  # fmt: skip
     single = summed({"t": summed(bench.text), "f": summed(bench.function),
