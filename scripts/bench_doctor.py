@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 import sympy
 from confusions import CONFUSIONS, plain, random_arm
-from mutants import RULES, mutate, pieces, rewritten, value
+from mutants import RULES, mutate, rewritten, value
 
 import kinlab as kl
 from kinlab import symbolic
@@ -335,8 +335,9 @@ def unexplained(bench: Bench) -> None:
                                  + np.tanh(s[0][0] * s[0][-1] + 0.3))  # fmt: skip
             spent(bench, arm.n, answer, start)
             if answer.causes:
+                said = [[c.sentence] for c in answer.causes[:3]]
                 bench.missed.append({"form": "nothing fits", "robot": name, "entry": quantity,
-                                     "said": [[c.sentence] for c in answer.causes[:3]]})  # fmt: skip
+                                     "said": said})  # fmt: skip
 
 
 def alarms(pool: list[Formula], wanted: int, rng: random.Random, folder: Path) -> tuple[int, int]:
@@ -398,7 +399,8 @@ def report(bench: Bench, compared: int, false: int, options: Any, took: float) -
     head = (
         "| {} | mutants | exact | first | tied | repaired | wrong | unknown |\n" + "|---" * 8 + "|"
     )
-    lines = [f"`python scripts/bench_doctor.py --count {options.count} --seed {options.seed}`, "
+    asked = f"--count {options.count} --rounds {options.rounds} --seed {options.seed}"
+    lines = [f"`python scripts/bench_doctor.py {asked}`, "
              f"{platform.machine()}, Python {platform.python_version()}, {took:.0f} s."]  # fmt: skip
     single = summed({"t": summed(bench.text), "f": summed(bench.function),
                      "r": summed(bench.readings)})  # fmt: skip

@@ -6,6 +6,7 @@ does not have what is confused. Nothing of the doctor's readings is used.
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections.abc import Callable
 from dataclasses import replace
@@ -198,7 +199,7 @@ def symmetric(robot: Any, rng: random.Random) -> Made:
         def refined(k: int) -> Any:
             rows = [half(k, 0.4 / 2**i) for i in range(6)]
             for order in range(1, 6):
-                pairs = zip(rows, rows[1:], strict=False)
+                pairs = itertools.pairwise(rows)
                 rows = [(4**order * b - a) / (4**order - 1) for a, b in pairs]
             return rows[0]
 
@@ -284,7 +285,8 @@ def random_arm(rng: random.Random, joints: int) -> Any:
             a=draw.uniform(0.1, 0.6), alpha=rng.choice([0.0, np.pi / 2, -np.pi / 2, 0.7]),
             d=rng.choice([0.0, draw.uniform(0.05, 0.4)]), theta=rng.choice([0.0, np.pi / 2, 0.3]),
             mass=draw.uniform(0.5, 8.0), com=draw.uniform(-0.2, 0.2, 3),
-            inertia=np.trace(mixed @ mixed.T) * np.eye(3) - mixed @ mixed.T, armature=draw.uniform(0.01, 0.5),
+            inertia=np.trace(mixed @ mixed.T) * np.eye(3) - mixed @ mixed.T,
+            armature=draw.uniform(0.01, 0.5),
         ))  # fmt: skip
     base, tool = np.eye(4), np.eye(4)
     turn = pin.rpy.rpyToMatrix(draw.uniform(-1, 1, 3))

@@ -104,9 +104,9 @@ def power(root: ast.Expression, names: list[str]) -> Iterator[Site]:
             bases.add(id(node.left))
             yield node, node.left
     for node in ast.walk(root):
-        if isinstance(node, ast.Name) and id(node) not in inside | bases:
-            if node.id not in ("sin", "cos"):
-                yield node, ast.BinOp(node, ast.Pow(), ast.Constant(2))
+        free = isinstance(node, ast.Name) and id(node) not in inside | bases
+        if free and node.id not in ("sin", "cos"):
+            yield node, ast.BinOp(node, ast.Pow(), ast.Constant(2))
 
 
 def sine(root: ast.Expression, names: list[str]) -> Iterator[Site]:
@@ -191,19 +191,6 @@ def mutate(text: str, rule: str, names: list[str], others: list[str],
         return None
     old, new = rng.choice(sites)
     return ast.unparse(_Swap(old, new).visit(root)).replace(" ** ", "**").replace(" * ", "*")
-
-
-def pieces(text: str) -> list[str]:
-    """The terms of the outermost sum, without their signs."""
-    root = ast.parse(text, mode="eval")
-    inside = _inside_calls(root)
-    spine: ast.expr = root.body
-    found = []
-    while isinstance(spine, ast.BinOp) and _is_sum(spine) and id(spine) not in inside:
-        found.append(spine.right)
-        spine = spine.left
-    found.append(spine)
-    return [ast.unparse(p.operand if isinstance(p, ast.UnaryOp) else p) for p in found]
 
 
 def rewritten(text: str, rng: random.Random) -> str:

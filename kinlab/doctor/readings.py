@@ -17,9 +17,26 @@ from kinlab.robot import Robot, scratch
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
-_KINEMATIC = {"fk", "planar_pose", "planar_jacobian", "jacobian_dot", *_FRAMES, *_STATICS}
-_WEIGHED = {"gravity_torques", "inverse_dynamics", "inverse_dynamics_loaded", "potential_energy",
-            "forward_dynamics"}  # fmt: skip
+_KINEMATIC = {
+    "fk",
+    "planar_pose",
+    "planar_jacobian",
+    "jacobian_dot",
+    "tip_speed_squared",
+    *_FRAMES,
+    *_STATICS,
+}
+_WEIGHED = {
+    "gravity_torques",
+    "inverse_dynamics",
+    "inverse_dynamics_loaded",
+    "potential_energy",
+    "forward_dynamics",
+    "lagrangian",
+    "lagrangian_gradient",
+    "link_potential_energies",
+}
+"""What depends on gravity."""
 
 
 def readings(case: Case) -> list[Reading]:
