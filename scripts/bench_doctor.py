@@ -400,8 +400,8 @@ def report(bench: Bench, compared: int, false: int, options: Any, took: float) -
         "| {} | mutants | exact | first | tied | repaired | wrong | unknown |\n" + "|---" * 8 + "|"
     )
     asked = f"--count {options.count} --rounds {options.rounds} --seed {options.seed}"
-    lines = [f"`python scripts/bench_doctor.py {asked}`, "
-             f"{platform.machine()}, Python {platform.python_version()}, {took:.0f} s."]  # fmt: skip
+    lines = [f"`python scripts/bench_doctor.py {asked}`, {platform.machine()}, "
+             f"Python {platform.python_version()}, {took:.0f} s."]  # fmt: skip
     single = summed({"t": summed(bench.text), "f": summed(bench.function),
                      "r": summed(bench.readings)})  # fmt: skip
     lines += ["", head.format("all"), f"| single mistakes | {single.row()} |",
