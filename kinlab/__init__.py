@@ -67,18 +67,18 @@ if TYPE_CHECKING:
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.redundancy import redundancy
     from kinlab.analysis.singularity import describe_singularity, find_singularities
-    from kinlab.analysis.workspace import WorkspaceMap, sample_workspace
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
     from kinlab.inverse.single import ik
     from kinlab.sweeps.run import SweepResult, sweep
+    from kinlab.workspace_map import WorkspaceMap, sample_workspace
 
 __version__ = "0.1.0"
 
 _LATER = {
     "SweepResult": "kinlab.sweeps.run",
-    "WorkspaceMap": "kinlab.analysis.workspace",
+    "WorkspaceMap": "kinlab.workspace_map",
     "characteristic_length": "kinlab.analysis.lengths",
     "describe_singularity": "kinlab.analysis.singularity",
     "design_isotropic": "kinlab.analysis.design",
@@ -96,7 +96,7 @@ _LATER = {
     "nearest_singularity": "kinlab.analysis.nearest",
     "planar_boundary": "kinlab.analysis.boundary",
     "redundancy": "kinlab.analysis.redundancy",
-    "sample_workspace": "kinlab.analysis.workspace",
+    "sample_workspace": "kinlab.workspace_map",
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
 }

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.analysis import workspace as maps
-from kinlab.analysis.workspace import WorkspaceMap, binned
 from kinlab.errors import FileError, MissingExtraError, NameUnknownError, OptionError
 from kinlab.plots import arms, canvas, curves
 from kinlab.plots import maps as pictures
+from kinlab.sweeps.samples import BLOCK
+from kinlab.workspace_map import WorkspaceMap, binned
 
 PI = np.pi
 
@@ -161,14 +161,35 @@ def test_map_is_saved_and_reloaded(tmp_path):
 
 def test_stopping_keeps_what_was_computed():
     def stop(done, total):
-        if done >= maps._CHUNK:
+        if done >= BLOCK:
             raise KeyboardInterrupt
 
     robot = kl.load("planar3r")
-    part = kl.sample_workspace(robot, samples=3 * maps._CHUNK, progress=stop)
-    assert not part.complete and len(part.values) == maps._CHUNK
-    whole = kl.sample_workspace(robot, samples=3 * maps._CHUNK)
-    assert np.array_equal(part.values, whole.values[: maps._CHUNK])
+    part = kl.sample_workspace(robot, samples=3 * BLOCK, progress=stop)
+    assert not part.complete and len(part.values) == BLOCK
+    whole = kl.sample_workspace(robot, samples=3 * BLOCK)
+    assert np.array_equal(part.values, whole.values[:BLOCK])
+
+
+def test_a_map_on_workers_goes_on_where_it_was_stopped(tmp_path):
+    robot = kl.load("planar3r")
+    whole = kl.sample_workspace(robot, "xy", samples=4 * BLOCK)
+
+    def stop(done, total):
+        if done >= 2 * BLOCK:
+            raise KeyboardInterrupt
+
+    part = kl.sample_workspace(robot, "xy", samples=4 * BLOCK, folder=tmp_path, progress=stop)
+    assert not part.complete and len(part.values) == 2 * BLOCK
+    told = []
+    again = kl.sample_workspace(
+        robot, "xy", samples=4 * BLOCK, folder=tmp_path, workers=2,
+        progress=lambda done, total: told.append(done),
+    )  # fmt: skip
+    assert told[0] == 2 * BLOCK and told[-1] == 4 * BLOCK
+    assert again.complete
+    assert np.array_equal(again.points, whole.points)
+    assert np.array_equal(again.values, whole.values)
 
 
 @pytest.mark.parametrize(

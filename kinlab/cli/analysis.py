@@ -121,6 +121,10 @@ def workspace(
     save: Annotated[
         Path | None, typer.Option("--save", help="Write the samples to this .npz file.")
     ] = None,
+    workers: Annotated[int, typer.Option(help="Processes.", min=1)] = 1,
+    folder: Annotated[
+        Path | None, typer.Option(help="Keep finished chunks there; the same command goes on.")
+    ] = None,
     seed: SEED = 0,
     output: PICTURE = None,
 ) -> None:
@@ -128,8 +132,8 @@ def workspace(
     from rich.console import Console
     from rich.progress import Progress
 
-    from kinlab.analysis.workspace import sample_workspace
     from kinlab.library import load
+    from kinlab.workspace_map import sample_workspace
 
     robot, console = load(name, tip), Console()
     with Progress(console=Console(stderr=True), transient=True) as bar:
@@ -137,6 +141,7 @@ def workspace(
         chart = sample_workspace(
             robot, _task(task), metric, samples=samples, sampling=sampling, length=length,
             seed=seed, progress=lambda done, total: bar.update(row, completed=done, total=total),
+            workers=workers, folder=folder,
         )  # fmt: skip
     console.print(tables.headline(robot, chart.task, task == "auto"), highlight=False)
     if not chart.complete:

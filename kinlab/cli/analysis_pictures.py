@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
-    from kinlab.analysis.workspace import WorkspaceMap
     from kinlab.robot import Robot
+    from kinlab.workspace_map import WorkspaceMap
 
 
 def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path) -> None:
@@ -34,10 +34,10 @@ def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path)
 def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
     """The best conditioned pose with its ellipses, or where a spatial arm is well conditioned."""
     from kinlab.analysis.task_space import TaskSpace
-    from kinlab.analysis.workspace import sample_workspace, stays_in_plane
     from kinlab.plots.arms import plot_ellipse
     from kinlab.plots.canvas import save
     from kinlab.plots.maps import plot_map
+    from kinlab.workspace_map import sample_workspace, stays_in_plane
 
     if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
         save(plot_ellipse(robot, search.best_q), path)

@@ -8,8 +8,8 @@ if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
     from kinlab.analysis.nearest import NearestSingularity
     from kinlab.analysis.singularity import SingularitySearch
-    from kinlab.analysis.workspace import WorkspaceMap
     from kinlab.robot import Robot
+    from kinlab.workspace_map import WorkspaceMap
 
 
 def headline(robot: Robot, task: str, suggested: bool) -> str:

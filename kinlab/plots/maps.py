@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.boundary import PlanarBoundary
-from kinlab.analysis.workspace import BinnedMap, WorkspaceMap, binned
 from kinlab.arrays import Array
 from kinlab.plots.canvas import RED, new_axes
+from kinlab.workspace_map import BinnedMap, WorkspaceMap, binned
 
 _LABELS = {"x": "x [m]", "y": "y [m]", "z": "z [m]", "r": "distance from the z axis [m]"}
 _METRICS = {"inverse_condition": "inverse condition number 1/κ", "yoshikawa": "Yoshikawa's measure",
@@ -33,7 +33,7 @@ def plot_map(
         chart: the map.
         boundary: drawn as lines, for planar arms.
         curves: tool positions of singular loci, each (K, 3); drawn in the same plane.
-        plane, cells: as in :func:`kinlab.analysis.workspace.binned`.
+        plane, cells: as in :func:`kinlab.workspace_map.binned`.
         axes: where to draw; a new figure if left out.
 
     Returns:

@@ -155,23 +155,70 @@ def sweep(
         SweepError: workers keep dying.
         FileError: the folder cannot be written.
     """
+    work = plan(
+        robot, measure, samples, seed=seed, lower=lower, upper=upper, executor=executor,
+        workers=workers, chunk=chunk, folder=folder,
+    )  # fmt: skip
+    with _bar(progress, work.samples.count) as show:
+        for done in work.steps:
+            show(done)
+    runs = work.parts.runs()
+    assert runs and not missing(runs, runs[-1][1], runs[-1][1])
+    return SweepResult(tuple(work.parts.read(runs[0])), work.samples, work.parts)
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """A sweep that is about to run.
+
+    Attributes:
+        samples: where the states come from.
+        parts: where the answers are kept; what is finished is there at any time.
+        steps: runs the sweep as it is iterated; after each chunk, how many states are done.
+    """
+
+    samples: Samples
+    parts: Parts
+    steps: Iterator[int]
+
+
+def plan(
+    robot: Any,
+    measure: str | Iterable[str] | Measure,
+    samples: int | ArrayLike = 100_000,
+    *,
+    seed: int = 0,
+    lower: ArrayLike | None = None,
+    upper: ArrayLike | None = None,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    chunk: int = BLOCK,
+    folder: str | Path | None = None,
+) -> Plan:
+    """As :func:`sweep`, but hands out the sweep before it runs, for those who may stop it."""
     function = read_measure(measure)
     source = read_samples(robot, samples, seed, lower, upper)
     blocks = -(-source.count // BLOCK)
-    parts = _parts(folder, robot, function, source, blocks)
-    runs = missing(parts.runs(), blocks, _whole(chunk, "chunk", BLOCK))
+    size = _whole(chunk, "chunk", BLOCK)
     count = available() if workers is None else _whole(workers, "workers", 1)
+    parts = _parts(folder, robot, function, source, blocks)
+    answers = _answers(
+        robot, function, source, missing(parts.runs(), blocks, size), executor, count
+    )
+    return Plan(source, parts, _steps(parts, answers, source.count))
+
+
+def _steps(parts: Parts, answers: Iterator[tuple[Run, Columns]], count: int) -> Iterator[int]:
+    done = sum(_rows(run, count) for run in parts.runs())
     first: Columns | None = next((parts.read(run) for run in parts.runs()), None)
-    with _bar(progress, source.count) as advance:
-        advance(sum(_rows(run, source.count) for run in parts.runs()))
-        for run, columns in _answers(robot, function, source, runs, executor, count):
-            if first is not None:
-                same_columns(first, columns)
-            first = {name: column[:1] for name, column in columns.items()}
-            parts.write(run, columns)
-            advance(_rows(run, source.count))
-    assert first is not None and not missing(parts.runs(), blocks, blocks)
-    return SweepResult(tuple(first), source, parts)
+    yield done
+    for run, columns in answers:
+        if first is not None:
+            same_columns(first, columns)
+        first = {name: column[:1] for name, column in columns.items()}
+        parts.write(run, columns)
+        done += _rows(run, count)
+        yield done
 
 
 def missing(done: list[Run], blocks: int, size: int) -> list[Run]:
@@ -275,4 +322,4 @@ def _rich_bar(total: int) -> Iterator[Callable[[int], None]]:
     columns = ("sweep", BarColumn(), MofNCompleteColumn(), TextColumn("states"))
     with Progress(*columns, TimeRemainingColumn(), console=console) as bar:
         task = bar.add_task("sweep", total=total)
-        yield lambda rows: bar.advance(task, rows)
+        yield lambda done: bar.update(task, completed=done)

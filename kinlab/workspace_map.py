@@ -6,6 +6,7 @@ import io
 import json
 import zipfile
 from collections.abc import Callable
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,12 +21,11 @@ from kinlab.errors import FileError, NameUnknownError, OptionError, near
 from kinlab.files import write_bytes
 from kinlab.kinematics import fk
 from kinlab.robot import Robot
+from kinlab.sweeps.run import plan
 
 Progress = Callable[[int, int], None]
 """Called with (done, total) after every chunk."""
 
-_CHUNK = 4096
-"""States between two calls of the progress function: about 0.05 s of work."""
 _FORMAT = 1
 
 
@@ -39,7 +39,7 @@ class WorkspaceMap:
         points: tool positions in the base, (N, 3), metres.
         values: the measure, (N,).
         sampling: ``random`` or ``grid``. seed: of random samples.
-        complete: False where the run was stopped; the points are then the first ones.
+        complete: False where the run was stopped; the points are then those of finished chunks.
         planar: the tool stays in a plane z = const.
     """
 
@@ -126,10 +126,15 @@ def sample_workspace(
     length: float = 1.0,
     seed: int = 0,
     progress: Progress | None = None,
+    workers: int = 1,
+    executor: Executor | None = None,
+    folder: str | Path | None = None,
 ) -> WorkspaceMap:
     """Samples joint space within the limits and measures dexterity at every sample.
 
-    Ctrl-C stops the sampling and returns what was computed, marked as not complete.
+    The samples are swept (see :func:`kinlab.sweep`): in this process, or on workers. Ctrl-C stops
+    it and returns what was computed, marked as not complete; with a ``folder`` the same call goes
+    on from there.
 
     Args:
         robot: the robot.
@@ -139,9 +144,11 @@ def sample_workspace(
         length: characteristic length in metres.
         seed: of the random states.
         progress: called with (done, total).
+        workers, executor, folder: as in :func:`kinlab.sweep`.
 
     Raises:
         NameUnknownError: unknown task, metric or sampling. OptionError: samples < 1, length <= 0.
+        FileError: the folder cannot be written.
         InertiaError: metric ``"asada"`` of a robot with a singular mass matrix.
     """
     space, size = read_task(robot, task), read_length(length)
@@ -153,21 +160,43 @@ def sample_workspace(
     if samples < 1:
         raise OptionError(f"samples {samples}; at least 1 is needed")
     states = _random(robot, samples, seed) if sampling == "random" else _grid(robot, samples)
-    points, values, done = np.empty((len(states), 3)), np.empty(len(states)), 0
+    measure = Dexterity(space.rows, metric, size)
+    sweep = plan(robot, measure, states, workers=workers, executor=executor, folder=folder)
     try:
-        for start in range(0, len(states), _CHUNK):
-            q = states[start : start + _CHUNK]
-            points[start : start + len(q)] = fk(robot, q)[:, :3, 3]
-            values[start : start + len(q)] = _measure(space, q, metric, size)
-            done = start + len(q)
+        for done in sweep.steps:
             if progress is not None:
                 progress(done, len(states))
     except KeyboardInterrupt:
         pass  # what was computed is the answer, and says that it is a part
+    kept = [sweep.parts.read(run) for run in sweep.parts.runs()]
+    points = np.concatenate([part["points"] for part in kept] or [np.empty((0, 3))])
+    values = np.concatenate([part["values"] for part in kept] or [np.empty(0)])
     return WorkspaceMap(
-        robot.name, space.name, space.rows, metric, size, frozen(points[:done]),
-        frozen(values[:done]), sampling, seed, done == len(states), stays_in_plane(space),
+        robot.name, space.name, space.rows, metric, size, frozen(points), frozen(values),
+        sampling, seed, len(values) == len(states), stays_in_plane(space),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Dexterity:
+    """The measure that is swept: tool positions and one metric; small enough for any worker.
+
+    Attributes:
+        rows: of the task. metric: as in :func:`kinlab.manipulability`. length: metres.
+    """
+
+    rows: tuple[int, ...]
+    metric: str
+    length: float
+
+    def __call__(self, robot: Robot, q: Array) -> dict[str, Array]:
+        """``points`` (m, 3) and ``values`` (m,) of the states q (m, n)."""
+        space = read_task(robot, tuple(row in self.rows for row in range(6)))
+        matrix = space.jacobian(q, self.length)
+        if self.metric == "asada":
+            matrix = weighted(matrix, mass_matrix(robot, q))
+        values = read_kind(self.metric)(singular_values(matrix))
+        return {"points": fk(robot, q)[:, :3, 3], "values": values}
 
 
 def binned(chart: WorkspaceMap, cells: int = 0, plane: str = "") -> BinnedMap:
@@ -207,13 +236,6 @@ def stays_in_plane(space: TaskSpace) -> bool:
     """Whether the tool never leaves a plane z = const of the base."""
     linear = np.abs(space.sample[:, :3, :])
     return bool(linear[:, 2].max() <= 1e-9 * linear.max(initial=1e-300))
-
-
-def _measure(space: TaskSpace, q: Array, metric: str, length: float) -> Array:
-    matrix = space.jacobian(q, length)
-    if metric == "asada":
-        matrix = weighted(matrix, mass_matrix(space.robot, q))
-    return read_kind(metric)(singular_values(matrix))
 
 
 def _random(robot: Robot, samples: int, seed: int) -> Array:
