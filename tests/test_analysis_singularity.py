@@ -191,7 +191,11 @@ def test_puma_loci_are_complete_and_exact(joints):
 
 def test_two_sheets_side_by_side_stay_two():
     # Puma, arm folded: a2 and hypot(a3, d4) differ by 2 mm, elbow and shoulder run 0.004 rad apart
-    loci = kl.singular_loci(kl.load("puma560"), [1, 2], np.array([0.3, 0.2, 0.4, 0.5, 0.6, 0.1]))
+    table = kl.load("puma560").table
+    wide = [replace(link, lower=-1.95, upper=1.95) for link in table.links]
+    wide[2] = replace(wide[2], lower=-2.3, upper=2.3)
+    robot = kl.Robot.from_dh(replace(table, links=wide))
+    loci = kl.singular_loci(robot, [1, 2], np.array([0.3, 0.2, 0.4, 0.5, 0.6, 0.1]))
     elbow = [c for c in loci.curves if np.ptp(c.q[:, 2]) < 1e-9]
     assert len(elbow) == 2
     assert all(np.ptp(c.q[:, 1]) > 3.8 for c in elbow)

@@ -43,7 +43,7 @@ def test_every_row_of_the_audit_is_there():
 
 
 def test_the_printed_equation_misses_by_a_tenth_of_a_radian():
-    """The audit's own example: e = .1, l1 = .3, l2 = .8; the two equations differ in theta."""
+    """One example: e = .1, l1 = .3, l2 = .8; the two equations differ in theta."""
     fivebar = kl.FiveBar(0.3, 0.8, 0.1)
     xy = np.array([0.2, -0.7])
     loop = numbers(fivebar)

@@ -204,6 +204,15 @@ def test_a_run_that_is_stopped_goes_on(tmp_path, stop, workers):
     assert not list(folder.glob(".*"))  # no half-written file is left
 
 
+def test_a_part_that_was_half_written_is_swept_away(tmp_path):
+    run = partial(kl.sweep, 1.0, sweep_measures.total, 2 * BLOCK, lower=[0], upper=[1])
+    whole = run(folder=tmp_path, workers=1, chunk=1)
+    (tmp_path / ".part-00000001-00000002.npz.abc123").write_bytes(b"half")
+    again = run(folder=tmp_path, workers=1, chunk=1)
+    assert np.array_equal(whole["value"], again["value"])
+    assert not list(tmp_path.glob(".*"))
+
+
 def test_a_worker_that_dies_costs_nothing(tmp_path):
     flag = str(tmp_path / "died")
     run = partial(kl.sweep, flag, sweep_measures.dies_once, COUNT, lower=[0, 0], upper=[1, 2])

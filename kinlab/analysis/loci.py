@@ -24,6 +24,11 @@ from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 
+_LINES = 64
+"""Scan lines along each joint of a slice, stratified over the others' ranges: an arc that spans
+two 64ths of the range of any joint is met, however short it is along the others."""
+
+
 _MOST = 6000
 """Steps after which one curve is cut: a closed curve of 100 turns."""
 
@@ -162,7 +167,7 @@ def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:
 
 def _trace_all(system: sets.SingularSystem, step: float, seed: int) -> tuple[Locus, ...]:
     """Every curve that some start lies on, each once."""
-    starts = sets.seeds(system, np.random.default_rng(seed), points=6)
+    starts = sets.seeds(system, np.random.default_rng(seed), points=_LINES)
     x, good = sets.project(system, starts)
     curves: list[Locus] = []
     traced: list[Array] = []

@@ -141,7 +141,10 @@ def seeds(system: SingularSystem, rng: np.random.Generator, points: int, steps: 
     """
     robot = system.space.robot
     lower, upper = search_box(robot)
-    base = system.states(rng.uniform(lower, upper, (points, robot.n))[:, list(system.moving)])
+    # stratified: each joint's range is cut into `points` parts and every part is used once
+    strata = np.stack([rng.permutation(points) for _ in range(robot.n)], axis=1)
+    drawn = lower + (upper - lower) * (strata + rng.random((points, robot.n))) / points
+    base = system.states(drawn[:, list(system.moving)])
     found = [base]
     for j in system.moving:
         grid = np.linspace(lower[j], upper[j], steps)

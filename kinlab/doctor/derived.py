@@ -12,7 +12,7 @@ import sympy
 
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
-from kinlab.doctor import tree
+from kinlab.doctor import lagrange, tree
 from kinlab.doctor.tree import Node
 from kinlab.symbolic import dynamics, fourier, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
@@ -59,6 +59,15 @@ _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "inverse_dynamics": lambda a: _column(dynamics.torque_column(a)),
     "kinetic_energy": dynamics.kinetic_poly,
     "potential_energy": dynamics.potential_poly,
+    "lagrangian": lagrange.lagrangian,
+    "momentum": lagrange.momentum,
+    "momentum_rate": lagrange.momentum_rate,
+    "lagrangian_gradient": lagrange.lagrangian_gradient,
+    "kinetic_gradient": lagrange.kinetic_gradient,
+    "mass_matrix_dot": lagrange.mass_rate,
+    "mass_rate_velocity": lagrange.mass_rate_velocity,
+    "christoffel": dynamics.christoffel_cube,
+    "tip_speed_squared": lagrange.tip_speed_squared,
 }
 
 LETTERS = {"q": "q", "v": "qd", "a": "qdd"}

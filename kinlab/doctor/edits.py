@@ -32,12 +32,14 @@ class Edit:
         new: what stands there afterwards.
         kind: ``"sign"``, ``"factor"``, ``"power"``, ...
         cost: how far-fetched it is; the simplest explanation is named first.
+        times: the factor, where the new node is the old one times a factor.
     """
 
     path: Path
     new: Node
     kind: str
     cost: float
+    times: Node | None = None
 
 
 @dataclass(frozen=True)
@@ -46,20 +48,21 @@ class Names:
 
     Attributes:
         parameters: l1, m1, g, ...
-        turning: numbers of the joints that turn, from 1.
         n: number of joints.
         letters: which of q, qd, qdd the quantity depends on.
     """
 
     parameters: tuple[str, ...]
-    turning: tuple[int, ...]
     n: int
     letters: tuple[str, ...]
 
     @property
     def angles(self) -> tuple[Node, ...]:
-        """Sums of neighbouring joint angles, differences of two, and doubled ones."""
-        joints = [tree.sym(f"q{i}") for i in self.turning]
+        """Sums of neighbouring joint positions, differences of two, and doubled ones.
+
+        Joints that slide are among them: a wrong index may point at one.
+        """
+        joints = [tree.sym(f"q{i + 1}") for i in range(self.n)]
         sums = [
             tree.add(*joints[i:j])
             for i in range(len(joints))
@@ -103,13 +106,13 @@ def _any_place(path: Path, node: Node, parent: str) -> Iterator[Edit]:
         for factor in _FACTORS:
             kind = "sign" if factor == -1 else "factor"
             cost = 1.0 if factor == -1 else 1.2 if factor in (2, Fraction(1, 2)) else 1.6
-            yield Edit(path, tree.mul(tree.num(factor), node), kind, cost)
+            yield _factor(path, node, tree.num(factor), kind, cost)
     if parent == "add":
         yield Edit(path, tree.num(0), "extra term", 1.1)
     if parent == "mul" and node.op not in ("num",):
         yield Edit(path, tree.num(1), "extra factor", 1.3)
         if node.op == "add":
-            yield Edit(path, tree.mul(tree.num(-1), node), "sign", 1.4)
+            yield _factor(path, node, tree.num(-1), "sign", 1.4)
     if node.op == "num" and parent == "mul":
         yield Edit(path, tree.num(1), "factor", 1.2)
 
@@ -171,13 +174,19 @@ def _product(path: Path, node: Node) -> Iterator[Edit]:
 
 def _more_factors(path: Path, node: Node, names: Names) -> Iterator[Edit]:
     for name in names.parameters:
-        yield Edit(path, tree.mul(node, tree.sym(name)), "missing factor", 1.4)
+        yield _factor(path, node, tree.sym(name), "missing factor", 1.4)
     for letter in names.letters:
         for i in range(1, names.n + 1):
-            yield Edit(path, tree.mul(node, tree.sym(f"{letter}{i}")), "missing factor", 1.5)
+            yield _factor(path, node, tree.sym(f"{letter}{i}"), "missing factor", 1.5)
     for angle in names.angles:
         for function in ("cos", "sin"):
-            yield Edit(path, tree.mul(node, tree.call(function, angle)), "missing factor", 1.4)
+            yield _factor(path, node, tree.call(function, angle), "missing factor", 1.4)
+
+
+def _factor(path: Path, node: Node, times: Node, kind: str, cost: float) -> Edit:
+    # numbers go in front, names behind, as one writes
+    new = tree.mul(times, node) if times.op == "num" else tree.mul(node, times)
+    return Edit(path, new, kind, cost, times)
 
 
 def _signs(path: Path, node: Node) -> Iterator[Edit]:

@@ -37,7 +37,7 @@ _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
-_TIED = 3
+_TIED = 5
 """Slips of one entry that are kept as alternatives."""
 
 
@@ -89,6 +89,9 @@ def examine(
         hidden, gap = _hidden(case, engine, written)
         return Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
     tried = readings(case)
+    if np.isin(values, (-1.0, 0.0, 1.0)).all():
+        # bare signs agree by accident: no evidence for anything about the robot
+        tried = [reading for reading in tried if reading.stage == "answer"]
     causes = [*_singly(case, tried)]
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
@@ -241,7 +244,7 @@ def _slips(
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     per_entry: list[list[Slip]] = []
     for entry in off:
-        per_entry.append(_of_entry(case, entry, written.get(entry.label))[:_TIED])
+        per_entry.append(_varied(_of_entry(case, entry, written.get(entry.label))))
         if sum(not found for found in per_entry) >= _PATIENCE:
             break
     if not all(per_entry):
@@ -249,6 +252,14 @@ def _slips(
     # alternatives are told for one entry at a time; all of all would be a flood
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [_slip_cause(chosen) for chosen in sets], ()
+
+
+def _varied(found: list[Slip]) -> list[Slip]:
+    """The cheapest of each combination of kinds: places that are equal by value say no more."""
+    kinds: dict[tuple[str, ...], Slip] = {}
+    for slip in sorted(found, key=lambda s: s.cost):
+        kinds.setdefault(tuple(sorted(slip.kinds)), slip)
+    return list(kinds.values())[:_TIED]
 
 
 def _slip_cause(slips: tuple[Slip, ...]) -> Cause:

@@ -9,6 +9,7 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
+from kinlab.convention import Convention
 from kinlab.doctor.changes import Arguments, Case, Engine, Reading
 from kinlab.doctor.robot_readings import gravity_readings, inertia_readings, table_readings
 from kinlab.dynamics import coriolis_matrix
@@ -17,9 +18,26 @@ from kinlab.robot import Robot, scratch
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
-_KINEMATIC = {"fk", "planar_pose", "planar_jacobian", "jacobian_dot", *_FRAMES, *_STATICS}
-_WEIGHED = {"gravity_torques", "inverse_dynamics", "inverse_dynamics_loaded", "potential_energy",
-            "forward_dynamics"}  # fmt: skip
+_KINEMATIC = {
+    "fk",
+    "planar_pose",
+    "planar_jacobian",
+    "jacobian_dot",
+    "tip_speed_squared",
+    *_FRAMES,
+    *_STATICS,
+}
+_WEIGHED = {
+    "gravity_torques",
+    "inverse_dynamics",
+    "inverse_dynamics_loaded",
+    "potential_energy",
+    "forward_dynamics",
+    "lagrangian",
+    "lagrangian_gradient",
+    "link_potential_energies",
+}
+"""What depends on gravity."""
 
 
 def readings(case: Case) -> list[Reading]:
@@ -123,8 +141,11 @@ def _engines(case: Case) -> Iterator[Reading]:
         )
         yield _other("Mdot for C", "uses Mdot v for C v", _added(_rate_extra), 1.2)
     if name in ("mass_matrix", "kinetic_energy"):
-        yield _other("inertia frame", "takes the inertia tensors in link axes as if in base axes",
-                     _unturned(name), 1.0)  # fmt: skip
+        said = "takes the inertia tensors in link axes as if in base axes"
+        yield _other("inertia frame", said, _unturned(name, _joint_axes))
+        table = case.robot.table
+        if table is not None and table.convention is Convention.STANDARD:
+            yield _other("inertia frame", said, _unturned(name, _table_axes))
 
 
 def _answers(case: Case) -> Iterator[Reading]:
@@ -384,18 +405,34 @@ def _gyroscopic(robot: Robot, q: Array, v: Array) -> Array:
     return out
 
 
-def _unturned(name: str) -> Callable[[Engine], Engine]:
+Tensors = Callable[[Robot, Array, int], tuple[Array, Array]]
+"""Robot, one q and a link from 0: the tensor, and the rotation of its axes in the base."""
+
+
+def _joint_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
+    data = scratch(robot)
+    return robot.model.inertias[i + 1].inertia, data.oMi[i + 1].rotation
+
+
+def _table_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
+    """A standard table's frame i is turned against the joint's by alpha."""
+    assert robot.table is not None
+    frame = robot.table.frames(q[None])[0, i, :3, :3]
+    return np.asarray(robot.table.links[i].inertia), frame
+
+
+def _unturned(name: str, axes: Tensors) -> Callable[[Engine], Engine]:
     def extra(robot: Robot, q: Array) -> Array:
         """sum Jw^T (I - R I R^T) Jw with Jw in base axes."""
         out = np.zeros((len(q), robot.n, robot.n))
         data = scratch(robot)
         for row, position in enumerate(q):
             pin.computeJointJacobians(robot.model, data, position)
-            for i in range(1, robot.model.njoints):
+            for i in range(robot.n):
                 turning = pin.getJointJacobian(
-                    robot.model, data, i, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+                    robot.model, data, i + 1, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
                 ).reshape(6, -1)[3:]
-                turn, tensor = data.oMi[i].rotation, robot.model.inertias[i].inertia
+                tensor, turn = axes(robot, position, i)
                 out[row] += turning.T @ (tensor - turn @ tensor @ turn.T) @ turning
         return out
 

@@ -51,7 +51,7 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
     if "qdd" in names.letters:
         turning = [tree.sym(f"qdd{i + 1}") for i in range(names.n)]
         speeds += turning
-        speeds += [tree.power(a, Fraction(2)) for a in turning]
+        speeds += [_product(a, b) for a, b in combinations_with_replacement(turning, 2)]
     circles = [own]
     for waves in ([tree.num(1), *met], [tree.num(1), *met, *anything]):
         circles.append([*circles[-1], *(tree.mul(s, w) for s in speeds for w in waves)])

@@ -27,7 +27,7 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
     other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
     yield _table(
         "convention", f"reads the {table.convention} table as {other}",
-        lambda t: replace(t, convention=other),
+        lambda t: replace(t, convention=other), cost=1.05,
     )  # fmt: skip
     for which in ("base", "tool"):
         if not np.array_equal(getattr(table, which), np.eye(4)):
@@ -49,7 +49,7 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
             yield _inertial(
                 "centre's frame",
                 f"measures the centre of mass of link {i + 1} in the frame at its joint, not at "
-                "its far end", i, _placed(com, tensor),
+                "its far end", i, _placed(com, tensor), cost=1.15,
             )  # fmt: skip
 
 

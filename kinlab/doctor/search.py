@@ -8,6 +8,7 @@ product multiply instead, so near misses of the first kind are followed one step
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,10 +16,10 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor import tree
 from kinlab.doctor.edits import Edit, Names, edits
-from kinlab.doctor.tree import Node
+from kinlab.doctor.tree import Node, Path
 
 MATCH = 1e-9
-_CANDIDATES = 12
+_CANDIDATES = 40
 _DENSE = 50
 """Edits with equal effects that are tried as partners of one edit."""
 
@@ -38,10 +39,42 @@ class Repair:
     cost: float
 
 
-def single(
+@dataclass(frozen=True, eq=False)
+class Study:
+    """A formula beside the values it should have, with the effect of every edit.
+
+    Attributes:
+        root: the formula.
+        target: the values wanted at the points, (P,).
+        at: values of every name at the points.
+        value: the formula's own values, (P,).
+        found: the edits. effects: what each adds to the value, (E, P).
+        scale: what differences are relative to.
+    """
+
+    root: Node
+    target: Array
+    at: dict[str, Array]
+    value: Array
+    found: list[Edit]
+    effects: Array
+    scale: float
+
+    @property
+    def wanted(self) -> Array:
+        """What is missing."""
+        return self.target - self.value
+
+    def fits(self, result: Node) -> bool:
+        """Whether a formula has the values wanted."""
+        gap = np.abs(tree.evaluate(result, self.at) - self.target)
+        return bool(np.max(gap) <= MATCH * self.scale)
+
+
+def study(
     root: Node, target: Array, at: dict[str, Array], names: Names, extra: list[Node]
-) -> list[Repair]:
-    """All single edits of ``root`` that give ``target``, the simplest first.
+) -> Study:
+    """Computes the effects of all edits of ``root``, once for all searches.
 
     Args:
         root: the formula.
@@ -50,55 +83,77 @@ def single(
         names: what may be written.
         extra: whole terms that may be missing.
     """
-    found, effects, wanted, scale = _effects(root, target, at, names, extra)
-    good = np.flatnonzero(np.max(np.abs(effects - wanted), axis=1, initial=0.0) <= MATCH * scale)
-    repairs = [Repair((found[k],), apply(root, found[k]), found[k].cost) for k in good]
-    return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
+    climber = Climber(root, at)
+    size = float(np.max(np.abs(target), initial=0.0))
+    scale = size or float(np.max(np.abs(climber.value))) or 1.0
+    found: list[Edit] = []
+    rows: list[Array] = []
+    memory: dict[Node, Array] = {}
+    for edit in edits(root, names):
+        if edit.new not in memory:
+            memory[edit.new] = tree.evaluate(edit.new, at)
+        effect = climber.climb(edit.path, memory[edit.new]) - climber.value
+        if np.isfinite(effect).all() and np.any(effect):
+            found.append(edit)
+            rows.append(effect)
+    for term in extra:
+        for sign in (1, -1):
+            node = tree.mul(tree.num(sign), term)
+            found.append(Edit((), node, "missing term", 1.1 if sign > 0 else 1.9))
+            rows.append(np.broadcast_to(tree.evaluate(node, at), target.shape))
+    effects = np.array(rows) if rows else np.zeros((0, len(target)))
+    return Study(root, target, at, climber.value, found, effects, scale)
 
 
-def double(
-    root: Node, target: Array, at: dict[str, Array], names: Names, extra: list[Node]
-) -> list[Repair]:
+def single(case: Study) -> list[Repair]:
+    """All single edits that give the values wanted, the simplest first."""
+    gaps = np.max(np.abs(case.effects - case.wanted), axis=1, initial=0.0)
+    good = [case.found[k] for k in np.flatnonzero(gaps <= MATCH * case.scale)]
+    return _best(Repair((edit,), apply(case.root, edit), edit.cost) for edit in good)
+
+
+def double(case: Study) -> list[Repair]:
     """As :func:`single` with two edits whose effects add up."""
-    found, effects, wanted, scale = _effects(root, target, at, names, extra)
-    if not len(effects):
+    if not len(case.effects):
         return []
-    repairs: list[Repair] = []
-    for one, two in _pairs(effects, wanted, MATCH * scale):
-        if found[one].path and found[two].path and _nested(found[one], found[two]):
-            continue
-        repair = _both(root, found[one], found[two])
-        if np.max(np.abs(tree.evaluate(repair.result, at) - target)) <= MATCH * scale:
-            repairs.append(repair)
-    return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
+    pairs = _pairs(case.effects, case.wanted, MATCH * case.scale)
+    return _together(case, [(case.found[one], case.found[two]) for one, two in pairs])
 
 
-def double_in_term(root: Node, target: Array, at: dict[str, Array], names: Names) -> list[Repair]:
+def double_in_term(case: Study) -> list[Repair]:
     """As :func:`double` for two edits in factors of one term: their ratios multiply up to it."""
-    found, effects, wanted, scale = _effects(root, target, at, names, [])
-    value = tree.evaluate(root, at)
+    root = case.root
     terms = [((k,), a) for k, a in enumerate(root.args)] if root.op == "add" else [((), root)]
     repairs: list[Repair] = []
     for path, term in terms:
-        if term.op != "mul":
-            continue
-        old = np.broadcast_to(tree.evaluate(term, at), value.shape)
+        old = np.broadcast_to(tree.evaluate(term, case.at), case.value.shape)
+        inside = [
+            k
+            for k, e in enumerate(case.found)
+            if e.path[: len(path)] == path
+            and e.kind != "missing term"
+            and (len(e.path) > len(path) or e.times is not None)
+        ]
         with np.errstate(divide="ignore", invalid="ignore"):
-            goal = np.log(np.abs(1 + wanted / old))
-            inside = [k for k, e in enumerate(found) if e.path[: len(path)] == path]
-            inside = [k for k in inside if len(found[k].path) > len(path)]
-            logs = np.log(np.abs(1 + effects[inside] / old))
+            goal = np.log(np.abs(1 + case.wanted / old))
+            logs = np.log(np.abs(1 + case.effects[inside] / old))
         usable = np.isfinite(logs).all(axis=1)
         chosen = [inside[k] for k in np.flatnonzero(usable)]
         if not chosen or not np.isfinite(goal).all():
             continue
-        for one, two in _pairs(logs[usable], goal, 1e-8):
-            first, second = found[chosen[one]], found[chosen[two]]
-            if _nested(first, second):
-                continue
-            repair = _both(root, first, second)
-            if np.max(np.abs(tree.evaluate(repair.result, at) - target)) <= MATCH * scale:
-                repairs.append(repair)
+        pairs = _pairs(logs[usable], goal, 1e-8)
+        both = [(case.found[chosen[one]], case.found[chosen[two]]) for one, two in pairs]
+        repairs += _together(case, both)
+    return _best(repairs)
+
+
+def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
+    """The pairs that really give the values wanted."""
+    made = (_both(case.root, one, two) for one, two in pairs if not _nested(one, two))
+    return _best(repair for repair in made if case.fits(repair.result))
+
+
+def _best(repairs: Iterable[Repair]) -> list[Repair]:
     return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
 
 
@@ -128,61 +183,36 @@ def apply(root: Node, edit: Edit) -> Node:
 
 
 def _nested(one: Edit, two: Edit) -> bool:
-    short, long = sorted((one.path, two.path), key=len)
-    return bool(short) and long[: len(short)] == short
+    """Whether one edit replaces what the other changes; terms and factors put on do not."""
+    if "missing term" in (one.kind, two.kind):
+        return False
+    outer, inner = sorted((one, two), key=lambda e: (len(e.path), e.times is None))
+    return inner.path[: len(outer.path)] == outer.path and outer.times is None
 
 
 def _both(root: Node, one: Edit, two: Edit) -> Repair:
-    """Applies two edits; added terms last, so that the other's place stays."""
+    """Applies two edits, the inner one first; added terms last, so that places stay."""
     result, added = root, []
-    for edit in (one, two):
+    for edit in sorted((one, two), key=lambda e: (-len(e.path), e.times is not None)):
         if edit.kind == "missing term":
             added.append(edit.new)
         else:
-            result = _raw_node(result, edit)
+            result = _raw_node(result, edit.path, edit)
     return Repair((one, two), tree.add(tidy(result), *added), one.cost + two.cost)
 
 
-def _raw_node(root: Node, edit: Edit) -> Node:
+def _raw_node(root: Node, path: Path, edit: Edit) -> Node:
     """Puts the new node in without tidying, so that other paths stay valid."""
-    if not edit.path:
-        return edit.new
+    if not path:
+        return edit.new if edit.times is None else Node("mul", (edit.times, root))
     args = list(root.args)
-    below = Edit(edit.path[1:], edit.new, edit.kind, edit.cost)
-    args[edit.path[0]] = _raw_node(args[edit.path[0]], below)
+    args[path[0]] = _raw_node(args[path[0]], path[1:], edit)
     return Node(root.op, tuple(args), root.value)
 
 
 def tidy(node: Node) -> Node:
     """The tree rebuilt from its leaves: ones and zeros go."""
     return tree.rebuilt(node, [tidy(a) for a in node.args]) if node.args else node
-
-
-def _effects(
-    root: Node, target: Array, at: dict[str, Array], names: Names, extra: list[Node]
-) -> tuple[list[Edit], Array, Array, float]:
-    climber = Climber(root, at)
-    wanted = target - climber.value
-    scale = (
-        float(np.max(np.abs(target), initial=0.0)) or float(np.max(np.abs(climber.value))) or 1.0
-    )
-    found: list[Edit] = []
-    rows: list[Array] = []
-    memory: dict[Node, Array] = {}
-    for edit in edits(root, names):
-        if edit.new not in memory:
-            memory[edit.new] = tree.evaluate(edit.new, at)
-        effect = climber.climb(edit.path, memory[edit.new]) - climber.value
-        if np.isfinite(effect).all() and np.any(effect):
-            found.append(edit)
-            rows.append(effect)
-    for term in extra:
-        for sign in (1, -1):
-            node = tree.mul(tree.num(sign), term)
-            found.append(Edit((), node, "missing term", 1.1 if sign > 0 else 1.9))
-            rows.append(np.broadcast_to(tree.evaluate(node, at), wanted.shape))
-    effects = np.array(rows) if rows else np.zeros((0, len(wanted)))
-    return found, effects, wanted, scale
 
 
 class Climber:

@@ -58,8 +58,7 @@ def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
     """What may stand in a formula of this quantity."""
     arm = derived.arm
     letters = tuple(LETTERS[a] for a in arguments if a in LETTERS)
-    turning = tuple(i + 1 for i in arm.trig.angles)
-    return Names(arm.trig.parameters, turning, arm.n, letters)
+    return Names(arm.trig.parameters, arm.n, letters)
 
 
 def in_text(
@@ -89,10 +88,8 @@ def in_text(
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
     for at in (_anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        repairs = search.single(written, target, at, names, extra)
-        if not repairs:
-            repairs = search.double(written, target, at, names, extra)
-            repairs += search.double_in_term(written, target, at, names)
+        case = search.study(written, target, at, names, extra)
+        repairs = search.single(case) or [*search.double(case), *search.double_in_term(case)]
         if repairs:
             break
     slips = []
@@ -150,10 +147,11 @@ def in_function(
     target = hand[:_POINTS]
     right = derived.tree(poly)
     forms = _forms(derived, poly)
-    repairs = [(f, r) for f in forms for r in search.single(f, target, at, names, [])]
+    cases = [search.study(form, target, at, names, []) for form in forms]
+    repairs = [(c.root, r) for c in cases for r in search.single(c)]
     if not repairs:
-        repairs = [(f, r) for f in forms for r in search.double(f, target, at, names, [])]
-        repairs += [(f, r) for f in forms for r in search.double_in_term(f, target, at, names)]
+        repairs = [(c.root, r) for c in cases for r in search.double(c)]
+        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
     if not slips:
         for words in regression.dictionaries([right, *others], names):

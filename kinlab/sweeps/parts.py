@@ -23,6 +23,8 @@ Run = tuple[int, int]
 
 MANIFEST = "sweep.json"
 _PART = re.compile(r"part-(\d{8})-(\d{8})\.npz")
+_HALF = ".part-*.npz.*"
+"""What a run that was killed while it wrote leaves behind (see :mod:`kinlab.files`)."""
 
 
 class Parts(Protocol):
@@ -81,6 +83,8 @@ class Folder:
             _same_sweep(manifest, fingerprint)
         else:
             write_text(manifest, json.dumps(fingerprint, indent=1) + "\n")
+        for half in self.path.glob(_HALF):
+            half.unlink(missing_ok=True)
         self._runs: set[Run] = set()
         covered = np.zeros(blocks, dtype=bool)
         for run in self._found():
