@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 WHAT = Annotated[
     list[str] | None,
     typer.Argument(
-        help="Robots, .toml/.csv/.urdf files, .py files with marked functions, notes (001) or "
-        "formula ids (002.C). Nothing: the whole catalogue on the shipped robots.",
+        help="Robots, .toml/.csv/.urdf files of robots, your formulas (.py files with marked "
+        "functions, .toml files of text), notes (001) or formula ids (002.C). Nothing: the whole "
+        "catalogue on the shipped robots.",
         show_default=False,
     ),
 ]
@@ -53,7 +54,9 @@ def check(
 ) -> None:
     """Put hand formulas beside the engine over seeded random states.
 
-    Exit code 0 if every correct form agrees (and every misprint shows), 1 if not, 2 for bad input.
+    A formula of yours that differs is taken apart: what is wrong, and how far off it is before
+    and after the repair. Exit code 0 if every correct form agrees (and every misprint shows), 1 if
+    not, 2 for bad input.
     """
     from kinlab.check.catalogue import Row
     from kinlab.check.report import check_report_path, write_report

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+import pathlib
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from kinlab.check.finding import Finding, Typeset
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.check.serial import SERIAL
 from kinlab.check.targets import Task
+from kinlab.doctor.derived import derivation
 from kinlab.doctor.diagnosis import Diagnosis
 from kinlab.doctor.entries import split_name
 from kinlab.doctor.examine import examine, prepare
@@ -19,7 +20,7 @@ from kinlab.doctor.file import examine_file, meant, robot_of
 from kinlab.doctor.input import FormulaFile, parse, read_file
 from kinlab.doctor.labels import quantity_of
 from kinlab.doctor.marks import differences
-from kinlab.doctor.tree import Node, names, sym
+from kinlab.doctor.tree import Node, Path, names, sym
 from kinlab.doctor.typeset import Marks, equation
 from kinlab.formula import AnswerShapeError
 from kinlab.robot import Robot
@@ -27,6 +28,9 @@ from kinlab.robot import Robot
 FEWEST = 10
 """States that a diagnosis needs at least."""
 _OTHERS = 3
+_NONE: frozenset[Path] = frozenset()
+_SHORT = 40
+"""Terms up to which a derived formula is worth showing."""
 
 _LETTERS = {
     "inverse_dynamics": "tau", "gravity_torques": "g", "coriolis_torques": "c",
@@ -36,7 +40,7 @@ _LETTERS = {
 """What a quantity is called where the user gave no name."""
 
 
-def of_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Finding]:
+def of_file(path: str | pathlib.Path, samples: int = 200, seed: int = 0) -> list[Finding]:
     """Judges a file of formulas; see :func:`kinlab.doctor.file.examine_file`.
 
     Args:
@@ -88,13 +92,14 @@ def _of_function(task: Task, samples: int, seed: int) -> Finding:
     numbers = SERIAL.numbers(case.robot)
     hand = record.function(numbers, *(np.array(s) for s in case.arguments.values()))
     found = examine(case, hand, engine, record.quantity, record.id, {})
-    right = found.causes[0].corrected if found.causes else {}
+    right = _corrected(found)
     corrected = tuple(equation(_name(label), parse(text)) for label, text in right.items())
     return _finding(found, task.file, (), corrected)
 
 
 def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Finding:
-    right = found.causes[0].corrected if found.causes else {}
+    pointed = _corrected(found)
+    right = pointed or _derived(found, robot)
     given: list[Typeset] = []
     corrected: list[Typeset] = []
     for entry, label in _entries(found, file, robot):
@@ -104,10 +109,34 @@ def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Finding:
             continue
         formula = parse(right[label])
         meaning = {name: _meaning(name, file, robot, entry) for name in names(written)}
-        wrong, fixed = differences(written, formula, meaning)
+        wrong, fixed = differences(written, formula, meaning) if pointed else (_NONE, _NONE)
         given.append(equation(entry, written, Marks("wrong", wrong)))
         corrected.append(equation(entry, formula, Marks("fixed", fixed)))
     return _finding(found, file.path, tuple(given), tuple(corrected))
+
+
+def _corrected(found: Diagnosis) -> dict[str, str]:
+    """The right formulas of the first cause that has them: all causes mean the same formula."""
+    return next((cause.corrected for cause in found.causes if cause.corrected), {})
+
+
+def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
+    """The derived formulas, where no cause points at single terms."""
+    if found.agrees or robot.table is None:
+        return {}
+    plain, index = split_name(found.quantity)
+    derived = derivation(robot.table, plain)
+    if derived is None:
+        return {}
+    shape = np.shape(derived.polys)
+    places = [tuple(index)] if index or not shape else list(np.ndindex(shape))
+    right = {}
+    for place in places:
+        poly = derived.polys[place] if place else np.asarray(derived.polys).item()
+        if len(poly) <= _SHORT:
+            label = f"{plain}[{','.join(map(str, place))}]" if place else plain
+            right[label] = str(derived.collected(poly))
+    return right
 
 
 def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:

@@ -184,5 +184,7 @@ def _number(value: Fraction) -> str:
 
 def _visible(text: str) -> int:
     """About how many characters wide LaTeX will be."""
-    text = re.sub(r"\\(?:dot|ddot|wrong|fixed|mathrm|frac|operatorname)", "", text)
-    return len(re.sub(r"\\[a-z]+|[{}_^\\,]", "", text).replace(" ", ""))
+    text = re.sub(r"\\(?:dot|ddot|wrong|fixed|mathrm|frac|operatorname|,)", "", text)
+    text = re.sub(r"\\(sin|cos|tan|exp|ln)", r"\1", text)
+    text = re.sub(r"\\[a-z]+", "x", text)
+    return len(re.sub(r"[{}_^\s]", "", text))

@@ -17,8 +17,6 @@ from kinlab.symbolic.output import to_latex, to_python
 FORMATS = ("text", "latex", "python")
 _LARGEST = 3
 """Joints up to which M, C and tau are short enough to print."""
-_LARGEST_PART = 4
-"""Denominators above this come from the table's decimals, those below from ½ m v² and the like."""
 
 
 def _coefficients(a: SymbolicArm) -> Any:
@@ -40,6 +38,9 @@ WHAT: dict[str, Callable[[SymbolicArm], Any]] = {
     "V": dynamics.potential_energy,
 }
 """What can be derived. D has row i and columns jk = 11, 12, ... of D_ijk."""
+
+_ARGUMENTS = {"C": 2, "T": 2, "tau": 3}
+"""How many of q, qd, qdd a formula's function takes, also where an arm does not need them."""
 
 _HEAVY = ("M", "C", "tau", "D", "T")
 
@@ -73,9 +74,11 @@ def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
         )
     made = arm(table, "none" if numbers else "all")
     expression = WHAT[what](made)
+    if numbers:
+        expression = _decimal(expression)
     if form == "python":
-        return to_python(made, expression, what).rstrip()
-    expression = _decimal(_by_rates(made, expression))
+        return to_python(made, expression, what, _ARGUMENTS.get(what, 1)).rstrip()
+    expression = _by_rates(made, expression)
     if form == "latex":
         return to_latex(expression)
     return "\n".join([*_lines(made, what, expression), *_where(made, expression)])
@@ -88,8 +91,10 @@ def _lines(made: SymbolicArm, what: str, expression: Any) -> Iterator[str]:
         return
     for r in range(expression.rows):
         for c in range(expression.cols):
-            column = f"{c // made.n + 1}{c % made.n + 1}" if what == "D" else f"{c + 1}"
-            name = f"{what}{r + 1}{'' if expression.cols == 1 else column}"
+            column = "" if what in ("g", "tau") else f"{c + 1}"
+            if what == "D":
+                column = f"{c // made.n + 1}{c % made.n + 1}"
+            name = f"{what}{r + 1}{column}"
             yield f"{name} = {sympy.sstr(expression[r, c], full_prec=False)}"
 
 
@@ -112,8 +117,6 @@ def _by_rates(made: SymbolicArm, expression: Any) -> Any:
 
 
 def _decimal(expression: Any) -> Any:
-    """Fractions that come from a table's decimal numbers as decimals; 1/2, 1/3 ... stay."""
-    fractions = {
-        r: sympy.Float(float(r)) for r in expression.atoms(sympy.Rational) if r.q > _LARGEST_PART
-    }
-    return expression.xreplace(fractions)
+    """The decimal numbers of a table, which the derivation keeps as exact fractions."""
+    fractions = (r for r in expression.atoms(sympy.Rational) if r.q > 1)
+    return expression.xreplace({r: sympy.Float(float(r)) for r in fractions})

@@ -70,13 +70,14 @@ def to_latex(expression: Expression) -> str:
     return text
 
 
-def to_python(arm: SymbolicArm, expression: Expression, name: str) -> str:
+def to_python(arm: SymbolicArm, expression: Expression, name: str, arguments: int = 1) -> str:
     """A Python function with numpy as its only import.
 
     Args:
         arm: the arm it was derived from.
         expression: a scalar or a matrix.
         name: the function's name.
+        arguments: how many of q, qd, qdd it takes at least, used or not.
 
     Returns:
         Source text that ends in a newline.
@@ -87,11 +88,13 @@ def to_python(arm: SymbolicArm, expression: Expression, name: str) -> str:
     shared, (reduced,) = sympy.cse(grid, symbols=sympy.numbered_symbols("x"))
     lines = ["import numpy as np", "from numpy import cos, sin", "", ""]
     letters = [
-        x for x in ("qdd", "qd", "q") if any(s in grid.free_symbols for s in getattr(arm, x))
+        x for x in ("q", "qd", "qdd") if any(s in grid.free_symbols for s in getattr(arm, x))
     ]
-    lines.append(f"def {name}({', '.join(letters[::-1]) or 'q'}):")
+    highest = max((len(x) for x in letters), default=1)
+    taken = ("q", "qd", "qdd")[: max(arguments, highest)]
+    lines.append(f"def {name}({', '.join(taken)}):")
     lines.append(f'    """Derived from the DH table {arm.table.name!r}; SI units, radians."""')
-    for letter in letters[::-1]:
+    for letter in letters:
         symbols = ", ".join(s.name for s in getattr(arm, letter))
         lines.append(f"    {symbols}{',' if arm.n == 1 else ''} = {letter}")
     for s, value in arm.parameters.items():
