@@ -20,6 +20,8 @@ from kinlab.doctor.tree import Node, Path
 
 MATCH = 1e-9
 _CANDIDATES = 40
+_TRIED = 150
+"""Pairs that are written out and evaluated, the simplest first."""
 _DENSE = 50
 """Edits with equal effects that are tried as partners of one edit."""
 
@@ -149,7 +151,9 @@ def double_in_term(case: Study) -> list[Repair]:
 
 def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
     """The pairs that really give the values wanted."""
-    made = (_both(case.root, one, two) for one, two in pairs if not _nested(one, two))
+    apart = [(one, two) for one, two in pairs if not _nested(one, two)]
+    cheapest = sorted(apart, key=lambda both: both[0].cost + both[1].cost)[:_TRIED]
+    made = (_both(case.root, one, two) for one, two in cheapest)
     return _best(repair for repair in made if case.fits(repair.result))
 
 
