@@ -37,6 +37,8 @@ _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
+_FLOOD = 8
+"""Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 
@@ -250,6 +252,8 @@ def _slips(
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
     # alternatives are told for one entry at a time; all of all would be a flood
+    if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
+        return [], tuple(found[0].sentence for found in per_entry)
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [_slip_cause(chosen) for chosen in sets], ()
 
