@@ -39,6 +39,8 @@ _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
 _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
+_LIST = 3
+"""Slips in one cause above which a reading with fewer slips is looked for too."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 
@@ -102,8 +104,8 @@ def examine(
         causes += found
     if not causes:
         causes = [*_in_pairs(case, tried)]
-    if not causes and same:
-        causes = [*_reading_and_slips(case, tried, engine)]
+    if same and all(len(cause.kinds) > _LIST for cause in causes):
+        causes += _reading_and_slips(case, tried, engine)
     ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
     k = int(np.argmax(errors))
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
@@ -129,7 +131,7 @@ def _hidden(case: Case, engine: Array, written: dict[str, Node]) -> tuple[list[C
             continue
         gap = terms.hidden_gap(text, derived, poly, case.quantity.arguments)
         if gap > TOLERANCES.formula_agrees:
-            found = [s for s in _of_entry(case, entry, text) if len(s.kinds) == 1]
+            found = _of_entry(case, entry, text)
             slips += found[:1]
             largest = max(largest, gap) if found else largest
     return ([_slip_cause(tuple(slips))] if slips else []), largest

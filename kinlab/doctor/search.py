@@ -20,6 +20,8 @@ from kinlab.doctor.tree import Node, Path
 
 MATCH = 1e-9
 _CANDIDATES = 40
+_EXCHANGED = 0.6
+"""What it costs to exchange a whole term beside mending it."""
 _TRIED = 150
 """Pairs that are written out and evaluated, the simplest first."""
 _DENSE = 50
@@ -202,7 +204,10 @@ def _both(root: Node, one: Edit, two: Edit) -> Repair:
             added.append(edit.new)
         else:
             result = _raw_node(result, edit.path, edit)
-    return Repair((one, two), tree.add(tidy(result), *added), one.cost + two.cost)
+    cost = one.cost + two.cost
+    if {one.kind, two.kind} == {"extra term", "missing term"}:
+        cost += _EXCHANGED  # any two slips in one term can be told so
+    return Repair((one, two), tree.add(tidy(result), *added), cost)
 
 
 def _raw_node(root: Node, path: Path, edit: Edit) -> Node:
