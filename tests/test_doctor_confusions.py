@@ -131,3 +131,18 @@ def test_half_a_symmetric_matrix_is_the_whole(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_rows_come_before_columns(tmp_path: Path, entry: str, text: str) -> None:
     assert of_file(tmp_path, **{entry: text})[0].agrees
+
+
+def test_a_factor_and_an_argument_in_one_term_of_a_function() -> None:
+    def wrong(q):
+        weight = 1.5 * 9.81 * 0.4  # m2 g l2
+        torques = kl.gravity_torques(ARM, q)
+        torques[0] += weight * (3 * np.cos(q[1]) - np.cos(q[0] + q[1]))
+        return torques
+
+    assert sorted(first("gravity_torques", wrong, ARM)) == ["argument", "factor"]
+
+
+def test_a_factor_of_the_whole_sum_left_out(tmp_path: Path) -> None:
+    found = of_file(tmp_path, V="(m1 + m2)*l1*sin(q1) + m2*l2*sin(q1 + q2)")[0]
+    assert found.causes[0].kinds == ("missing factor",)
