@@ -105,7 +105,9 @@ def examine(
     if not causes:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
-        causes += _reading_and_slips(case, tried, engine)
+        # beside a list of slips only the likeliest reading: each costs a search of its own
+        likely = [r for r in tried if r.kind == "sign"] if causes else tried
+        causes += _reading_and_slips(case, likely, engine)
     ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
     k = int(np.argmax(errors))
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
