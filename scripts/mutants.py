@@ -185,11 +185,19 @@ def mutate(text: str, rule: str, names: list[str], others: list[str],
     if rule == "extra term":
         term = rng.choice(others) if others else None
         return f"{text} {rng.choice('+-')} {term}" if term else None
+    count = len(list(RULES[rule](ast.parse(text, mode="eval"), names)))
+    return _slipped(text, rule, names, rng.randrange(count)) if count else None
+
+
+def every(text: str, rule: str, names: list[str]) -> Iterator[str]:
+    """The text with each slip of a class."""
+    for k in range(len(list(RULES[rule](ast.parse(text, mode="eval"), names)))):
+        yield _slipped(text, rule, names, k)
+
+
+def _slipped(text: str, rule: str, names: list[str], k: int) -> str:
     root = ast.parse(text, mode="eval")
-    sites = list(RULES[rule](root, names))
-    if not sites:
-        return None
-    old, new = rng.choice(sites)
+    old, new = list(RULES[rule](root, names))[k]
     return ast.unparse(_Swap(old, new).visit(root)).replace(" ** ", "**").replace(" * ", "*")
 
 

@@ -21,6 +21,8 @@ from kinlab.symbolic.trig import Poly
 _DYNAMIC_JOINTS = 3
 """More joints make the expressions of M, C, g and tau too long to search for a slip in."""
 _KINEMATIC_JOINTS = 7
+_FACTORED = 20
+"""Terms of one entry up to which its factors are looked for."""
 _LONGEST = 1500
 """Terms of one entry above which it is not searched."""
 
@@ -97,6 +99,14 @@ class Derivation:
     def grouped(self, poly: Poly) -> Node:
         """One entry with equal joint functions collected: (m1 + m2)*l1**2*qdd1 + ..."""
         return grouped(self.arm, poly)
+
+    def factored(self, poly: Poly) -> list[Node]:
+        """One entry with what all terms share in front: l2*m2*(l1*cos(q2) + l2), if short."""
+        if len(poly) > _FACTORED:
+            return []
+        plain = self.arm.expression(poly)
+        forms = [sympy.factor_terms(plain), sympy.factor(plain)]
+        return [tree.from_sympy(form) for form in dict.fromkeys(forms)]
 
 
 @lru_cache(maxsize=64)

@@ -95,7 +95,7 @@ def edits(root: Node, names: Names) -> Iterator[Edit]:
             yield from _powers(path, node)
         if node.op == "mul":
             yield from _product(path, node)
-        if parent in ("add", "") and node.op != "add":
+        if not path or (parent == "add" and node.op != "add"):
             yield from _more_factors(path, node, names)
         if node.op == "add":
             yield from _signs(path, node)

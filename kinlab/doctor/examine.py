@@ -37,6 +37,10 @@ _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
+_FLOOD = 8
+"""Slips in all entries together above which a list of them is no diagnosis."""
+_LIST = 3
+"""Slips in one cause above which a reading with fewer slips is looked for too."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 
@@ -100,8 +104,10 @@ def examine(
         causes += found
     if not causes:
         causes = [*_in_pairs(case, tried)]
-    if not causes and same:
-        causes = [*_reading_and_slips(case, tried, engine)]
+    if same and all(len(cause.kinds) > _LIST for cause in causes):
+        # beside a list of slips only the likeliest reading: each costs a search of its own
+        likely = [r for r in tried if r.kind == "sign"] if causes else tried
+        causes += _reading_and_slips(case, likely, engine)
     ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
     k = int(np.argmax(errors))
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
@@ -127,7 +133,7 @@ def _hidden(case: Case, engine: Array, written: dict[str, Node]) -> tuple[list[C
             continue
         gap = terms.hidden_gap(text, derived, poly, case.quantity.arguments)
         if gap > TOLERANCES.formula_agrees:
-            found = [s for s in _of_entry(case, entry, text) if len(s.kinds) == 1]
+            found = _of_entry(case, entry, text)
             slips += found[:1]
             largest = max(largest, gap) if found else largest
     return ([_slip_cause(tuple(slips))] if slips else []), largest
@@ -250,6 +256,8 @@ def _slips(
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
     # alternatives are told for one entry at a time; all of all would be a flood
+    if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
+        return [], tuple(found[0].sentence for found in per_entry)
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [_slip_cause(chosen) for chosen in sets], ()
 

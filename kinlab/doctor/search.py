@@ -20,6 +20,10 @@ from kinlab.doctor.tree import Node, Path
 
 MATCH = 1e-9
 _CANDIDATES = 40
+_EXCHANGED = 0.6
+"""What it costs to exchange a whole term beside mending it."""
+_TRIED = 150
+"""Pairs that are written out and evaluated, the simplest first."""
 _DENSE = 50
 """Edits with equal effects that are tried as partners of one edit."""
 
@@ -149,7 +153,9 @@ def double_in_term(case: Study) -> list[Repair]:
 
 def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
     """The pairs that really give the values wanted."""
-    made = (_both(case.root, one, two) for one, two in pairs if not _nested(one, two))
+    apart = [(one, two) for one, two in pairs if not _nested(one, two)]
+    cheapest = sorted(apart, key=lambda both: both[0].cost + both[1].cost)[:_TRIED]
+    made = (_both(case.root, one, two) for one, two in cheapest)
     return _best(repair for repair in made if case.fits(repair.result))
 
 
@@ -198,7 +204,10 @@ def _both(root: Node, one: Edit, two: Edit) -> Repair:
             added.append(edit.new)
         else:
             result = _raw_node(result, edit.path, edit)
-    return Repair((one, two), tree.add(tidy(result), *added), one.cost + two.cost)
+    cost = one.cost + two.cost
+    if {one.kind, two.kind} == {"extra term", "missing term"}:
+        cost += _EXCHANGED  # any two slips in one term can be told so
+    return Repair((one, two), tree.add(tidy(result), *added), cost)
 
 
 def _raw_node(root: Node, path: Path, edit: Edit) -> Node:

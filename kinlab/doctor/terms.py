@@ -149,12 +149,17 @@ def in_function(
     forms = _forms(derived, poly)
     cases = [search.study(form, target, at, names, []) for form in forms]
     repairs = [(c.root, r) for c in cases for r in search.single(c)]
-    if not repairs:
-        repairs = [(c.root, r) for c in cases for r in search.double(c)]
-        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
+    if repairs:
+        return _by_effect(label, right, repairs, everywhere)
+    circles = regression.dictionaries([right, *others], names)
+    sums = (regression.explain(hand - engine, words, everywhere) for words in circles)
+    alone = [found for found in sums if len(found) == 1][:1]
+    repairs = [(c.root, r) for c in cases for r in search.double(c)]
+    repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
+    slips += [_as_terms(label, right, found, names, everywhere) for found in alone]
     if not slips:
-        for words in regression.dictionaries([right, *others], names):
+        for words in circles:
             found = regression.explain(hand - engine, words, everywhere)
             if found:
                 return [_as_terms(label, right, found, names, everywhere)]
@@ -190,7 +195,9 @@ def _as_terms(
         pieces.append(f"the coefficient of {term.product} is {side} than the engine's by {size}")
     told = f"{label}: " + ", and ".join(pieces)
     kinds = ("coefficient",) * len(found)
-    return Slip(label, kinds, told, str(right), 2.0 + len(found), total, False)
+    # one term is simpler than most pairs of slips
+    cost = 2.25 if len(found) == 1 else 2.0 + len(found)
+    return Slip(label, kinds, told, str(right), cost, total, False)
 
 
 def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[str, Array]) -> str:
@@ -243,6 +250,7 @@ def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
 def _forms(derived: Derivation, poly: Poly) -> list[Node]:
     """The ways in which people write the same entry."""
     made = [derived.tree(poly), derived.grouped(poly), derived.collected(poly)]
+    made += derived.factored(poly)
     return list(dict.fromkeys(made))
 
 
