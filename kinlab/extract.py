@@ -9,7 +9,7 @@ table's ``base`` is a turn and a shift about it, and frame n goes on along x_{n-
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -72,9 +72,7 @@ def to_dh(robot: Robot | Any) -> DHTable:
             f"robot {robot.name!r}: two joint axes are nearly but not quite parallel; its best DH "
             f"table misses the tool by {miss:.2g} m. DH parameters cannot hold this arm"
         )
-    values = {name: getattr(table, name) for name in table.__dataclass_fields__}
-    values["source"] = f"{table.source}; tool poses agree to {miss:.1g}"
-    return DHTable(**values)
+    return replace(table, source=f"{table.source}; tool poses agree to {miss:.1g}")
 
 
 def _axes(model: Any, data: Any) -> list[Axis]:

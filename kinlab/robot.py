@@ -95,8 +95,8 @@ class Robot:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
         text = to_urdf(table)
-        robot = Robot.from_urdf(text, tool=table.tool_name)
-        return Robot(table.name, robot.model, robot.tool, text, table, None, table.source)
+        chain = urdf_chain.read(text, f"table {table.name!r}", table.tool_name)
+        return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
     @staticmethod
     def from_urdf(path_or_xml: str | Path, tool: str | None = None) -> Robot:
