@@ -86,6 +86,47 @@ def rigid_transform(value: ArrayLike, what: str, error: type[KinlabError] = Stat
     return array
 
 
+TIE = 1e-9
+"""Numbers that differ by less than this share of the largest of the list are a tie: rounding,
+which differs from processor to processor, must not decide which of them comes first."""
+
+
+def first_largest(values: ArrayLike) -> int:
+    """Index of the largest number; of several that are equal to :data:`TIE`, the first.
+
+    Args:
+        values: (N,), not empty; infinities may be among them.
+    """
+    array = np.asarray(values, dtype=np.float64)
+    return int(np.argmax(array >= np.max(array) - _slack(array)))
+
+
+def first_smallest(values: ArrayLike) -> int:
+    """Index of the smallest number; ties as in :func:`first_largest`."""
+    return first_largest(-np.asarray(values, dtype=np.float64))
+
+
+def largest_first(values: ArrayLike) -> list[int]:
+    """Indices in falling order; neighbours that are equal to :data:`TIE` keep their own order.
+
+    Args:
+        values: (N,), finite.
+    """
+    array = np.asarray(values, dtype=np.float64)
+    order = np.argsort(-array, kind="stable")
+    group = np.cumsum(-np.diff(array[order], prepend=np.inf) > _slack(array))
+    return [int(k) for k in order[np.lexsort((order, group))]]
+
+
+def smallest_first(values: ArrayLike) -> list[int]:
+    """Indices in rising order; ties as in :func:`largest_first`."""
+    return largest_first(-np.asarray(values, dtype=np.float64))
+
+
+def _slack(array: Array) -> float:
+    return TIE * float(np.max(np.abs(array), where=np.isfinite(array), initial=0.0))
+
+
 def frozen(array: Array) -> Array:
     """A private copy that nobody can write to."""
     copy = np.array(array, dtype=np.float64)

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, first_largest
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.check.quantity import Quantity
 from kinlab.errors import OptionError
@@ -59,8 +59,8 @@ class Comparison:
 
     @property
     def worst(self) -> int:
-        """Index of the state with the largest error."""
-        return int(np.argmax(self.errors))
+        """Index of the state with the largest error; of equal ones, the first."""
+        return first_largest(self.errors)
 
     @property
     def agrees(self) -> bool:
@@ -150,12 +150,25 @@ def relative_errors(hand: Array, engine: Array, scale: float = 0.0) -> Array:
     Returns:
         (N,).
     """
-    count = len(engine)
-    size = np.max(np.abs(engine.reshape(count, -1)), axis=1, initial=0.0)
-    typical = next((x for x in (float(np.median(size)), float(np.max(size))) if x > VANISHES), 1.0)
-    gap = np.max(np.abs((hand - engine).reshape(count, -1)), axis=1, initial=0.0)
-    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / np.maximum(size, max(typical, scale))
+    gap = np.max(np.abs((hand - engine).reshape(len(engine), -1)), axis=1, initial=0.0)
+    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / error_sizes(engine, scale)
     return errors
+
+
+def error_sizes(engine: Array, scale: float = 0.0) -> Array:
+    """What the error of each state is relative to, by the measure of the module's docstring.
+
+    Args:
+        engine: (N, ...).
+        scale: natural size of a quantity that is zero by nature.
+
+    Returns:
+        (N,).
+    """
+    size = np.max(np.abs(engine.reshape(len(engine), -1)), axis=1, initial=0.0)
+    typical = next((x for x in (float(np.median(size)), float(np.max(size))) if x > VANISHES), 1.0)
+    sizes: Array = np.maximum(size, max(typical, scale))
+    return sizes
 
 
 def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.compare import error_sizes
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.doctor.changes import Case
 from kinlab.tolerances import TOLERANCES
@@ -74,9 +75,7 @@ def entries(case: Case, engine: Array) -> Iterator[Entry]:
     for index in np.ndindex(whole):
         places[index] = index
     chosen: Any = places[case.index] if case.index else places
-    size = np.max(np.abs(engine.reshape(len(engine), -1)), axis=1)
-    typical = float(np.median(size)) or float(np.max(size)) or 1.0
-    scale = np.maximum(size, typical)
+    scale = error_sizes(engine)
     if engine.ndim == 1:
         index = chosen if isinstance(chosen, tuple) else ()
         yield Entry(_label(name, index), index, (), case.hand, engine, scale)

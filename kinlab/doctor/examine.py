@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, first_largest
 from kinlab.check.compare import relative_errors
 from kinlab.check.quantities import quantity as find_quantity
 from kinlab.check.serial import SERIAL
@@ -93,7 +93,7 @@ def examine(
         hidden, gap = _hidden(case, engine, written)
         return Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
     tried = readings(case)
-    if np.isin(values, (-1.0, 0.0, 1.0)).all():
+    if _bare_signs(values):
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
     causes = [*_singly(case, tried)]
@@ -109,7 +109,7 @@ def examine(
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
     ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
-    k = int(np.argmax(errors))
+    k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
         quantity, label, name, False, worst, tuple(ranked), partial if not ranked else (), where,
@@ -160,6 +160,12 @@ def prepare(
     arguments = dict(zip(found.arguments, states, strict=True))
     case = Case(mechanism, found, arguments, np.empty(0), index)
     return case, np.asarray(case.answer(()), dtype=float)
+
+
+def _bare_signs(values: Array) -> bool:
+    """Whether every number is -1, 0 or 1, to rounding."""
+    signs = np.clip(np.nan_to_num(np.rint(values)), -1.0, 1.0)
+    return bool(np.all(np.abs(values - signs) <= TOLERANCES.formula_agrees))
 
 
 def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
@@ -330,6 +336,7 @@ _UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", 
 
 def _worst(hand: Array, engine: Array, k: int, case: Case) -> tuple[str, tuple[int, ...]]:
     gap = np.abs(hand[k] - engine[k])
-    place = tuple(int(i) for i in np.unravel_index(int(np.argmax(gap)), gap.shape))
+    gap = np.where(np.isfinite(gap), gap, np.inf)
+    place = tuple(int(i) for i in np.unravel_index(first_largest(np.ravel(gap)), gap.shape))
     labels = {e.local: e.label for e in entries(case, engine)}
     return labels[place], place

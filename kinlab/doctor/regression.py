@@ -1,8 +1,9 @@
 """The difference of a function from the derived formula as a short sum of known terms.
 
 The terms are products of joint functions (sines and cosines of angle sums, velocities,
-accelerations); they are linearly independent, so a difference that is a sum of them has one set
-of coefficients, found by least squares and kept only if it explains every state.
+accelerations), each in one canonical order and each distinct function once. A difference that is
+a sum of them has one set of coefficients, found by least squares and kept only if it explains
+every state.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, first_largest, largest_first
 from kinlab.doctor import tree
 from kinlab.doctor.edits import Names
 from kinlab.doctor.tree import Node
@@ -21,6 +22,8 @@ from kinlab.doctor.tree import Node
 _SMALL = 1e-8
 _SHORT = 6
 """More terms than this are no explanation."""
+_SAME = 1e-9
+"""Two columns of unit length closer than this, up to their sign, are one function."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +42,8 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
         names: what may be written.
 
     Returns:
-        Their own joint functions; their waves with every product of speeds; all waves.
+        Their own joint functions; their waves with every product of speeds; all waves. Each
+        product once, its factors in the order of :func:`kinlab.doctor.tree.ordered`.
     """
     own = [_joint_part(term, names) for entry in derived for term in _terms(entry)]
     met = [wave for part in own for wave in _waves(part)]
@@ -55,7 +59,7 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
     circles = [own]
     for waves in ([tree.num(1), *met], [tree.num(1), *met, *anything]):
         circles.append([*circles[-1], *(tree.mul(s, w) for s in speeds for w in waves)])
-    return [list(dict.fromkeys(circle)) for circle in circles]
+    return [list(dict.fromkeys(map(tree.ordered, circle))) for circle in circles]
 
 
 def explain(difference: Array, words: list[Node], at: dict[str, Array]) -> list[Term]:
@@ -67,20 +71,31 @@ def explain(difference: Array, words: list[Node], at: dict[str, Array]) -> list[
         at: values of the names, (N,) each.
 
     Returns:
-        The terms, the largest first; empty where no short exact sum was found.
+        The terms, the largest first, equal ones in the dictionary's order; empty where no short
+        exact sum was found.
     """
     columns = np.array([np.broadcast_to(tree.evaluate(w, at), difference.shape) for w in words]).T
     size = np.linalg.norm(columns, axis=0)
     usable = np.isfinite(size) & (size > 0)
-    columns, size = columns[:, usable], size[usable]
-    kept = [w for w, fine in zip(words, usable, strict=True) if fine]
+    one = _distinct(columns[:, usable] / size[usable])
+    kept = [np.flatnonzero(usable)[k] for k in one]
+    columns, size = columns[:, kept], size[kept]
     scale = float(np.max(np.abs(difference))) or 1.0
     chosen = _few(columns / size, difference, scale)
     if chosen is None:
         return []
     factors, *_ = np.linalg.lstsq(columns[:, chosen], difference, rcond=None)
-    terms = [Term(float(f), kept[k]) for f, k in zip(factors, chosen, strict=True)]
-    return sorted(terms, key=lambda t: -abs(t.coefficient))
+    order = sorted(range(len(chosen)), key=lambda k: chosen[k])
+    terms = [Term(float(factors[k]), words[kept[chosen[k]]]) for k in order]
+    return [terms[k] for k in largest_first([abs(t.coefficient) for t in terms])]
+
+
+def _distinct(columns: Array) -> list[int]:
+    """The columns of unit length that are not plus or minus one before them."""
+    if not columns.shape[1]:
+        return []
+    alike = np.triu(1.0 - np.abs(columns.T @ columns) < _SAME, 1)
+    return [int(k) for k in np.flatnonzero(~alike.any(axis=0))]
 
 
 def _few(columns: Array, difference: Array, scale: float) -> list[int] | None:
@@ -91,7 +106,7 @@ def _few(columns: Array, difference: Array, scale: float) -> list[int] | None:
     chosen = []
     rest = difference
     for _ in range(_SHORT + 2):
-        chosen.append(int(np.argmax(np.abs(columns.T @ rest))))
+        chosen.append(first_largest(np.abs(columns.T @ rest)))
         factors, *_ = np.linalg.lstsq(columns[:, chosen], difference, rcond=None)
         rest = difference - columns[:, chosen] @ factors
         found = _needed(columns, chosen, difference, scale)

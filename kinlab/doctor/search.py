@@ -26,6 +26,8 @@ _TRIED = 150
 """Pairs that are written out and evaluated, the simplest first."""
 _DENSE = 50
 """Edits with equal effects that are tried as partners of one edit."""
+_NOTHING = 1e-12
+"""An effect below this share of the values is rounding: the edit changes nothing."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,7 @@ def study(
         if edit.new not in memory:
             memory[edit.new] = tree.evaluate(edit.new, at)
         effect = climber.climb(edit.path, memory[edit.new]) - climber.value
-        if np.isfinite(effect).all() and np.any(effect):
+        if np.isfinite(effect).all() and np.max(np.abs(effect)) > _NOTHING * scale:
             found.append(edit)
             rows.append(effect)
     for term in extra:
@@ -139,8 +141,8 @@ def double_in_term(case: Study) -> list[Repair]:
             and (len(e.path) > len(path) or e.times is not None)
         ]
         with np.errstate(divide="ignore", invalid="ignore"):
-            goal = np.log(np.abs(1 + case.wanted / old))
-            logs = np.log(np.abs(1 + case.effects[inside] / old))
+            goal = _log_size(1 + case.wanted / old)
+            logs = _log_size(1 + case.effects[inside] / old)
         usable = np.isfinite(logs).all(axis=1)
         chosen = [inside[k] for k in np.flatnonzero(usable)]
         if not chosen or not np.isfinite(goal).all():
@@ -167,18 +169,30 @@ def _pairs(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
     """Pairs of rows that add up to the goal, by sorting one projection."""
     weights = np.random.default_rng(5).uniform(0.5, 1.5, rows.shape[1])
     line = rows @ weights
-    order = np.argsort(line)
+    order = np.argsort(line, kind="stable")
     line = line[order]
     wide = allowance * rows.shape[1]
     low = np.searchsorted(line, goal @ weights - line - wide)
     high = np.searchsorted(line, goal @ weights - line + wide)
+    # rows with equal projections stand in the order of the list, and are taken or left together
+    group = np.concatenate([[0], np.cumsum(np.diff(line) > wide)])
+    order = order[np.lexsort((order, group))]
     pairs = []
     for i in np.flatnonzero(high > low):
-        for j in range(low[i], min(high[i], low[i] + _DENSE)):
+        first = np.searchsorted(group, group[low[i]])
+        last = np.searchsorted(group, group[high[i] - 1], side="right")
+        for j in range(first, min(last, first + _DENSE)):
             one, two = int(order[i]), int(order[j])
             if one < two and np.max(np.abs(rows[one] + rows[two] - goal)) <= allowance:
                 pairs.append((one, two))
     return pairs
+
+
+def _log_size(ratio: Array) -> Array:
+    """log|ratio|; minus infinity where the ratio is rounding about zero."""
+    size = np.abs(ratio)
+    logs: Array = np.log(np.where(size > _NOTHING, size, 0.0))
+    return logs
 
 
 def apply(root: Node, edit: Edit) -> Node:

@@ -184,6 +184,11 @@ def from_sympy(expression: sympy.Expr) -> Node:
     return call(type(expression).__name__, *args)
 
 
+def ordered(node: Node) -> Node:
+    """A product with its factors in the textbooks' order; anything else as it is."""
+    return mul(*sorted(node.args, key=_factor_order)) if node.op == "mul" else node
+
+
 _HEADS = ("I", "m", "g", "l", "a", "d", "x", "y", "z", "c")
 
 
