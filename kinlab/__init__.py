@@ -6,15 +6,6 @@ from typing import TYPE_CHECKING, Any
 from kinlab.check.compare import Comparison, compare
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
-from kinlab.dynamics import (
-    coriolis_matrix,
-    forward_dynamics,
-    gravity_torques,
-    inverse_dynamics,
-    kinetic_energy,
-    mass_matrix,
-    potential_energy,
-)
 from kinlab.energies import (
     action,
     lagrange_torques,
@@ -27,7 +18,7 @@ from kinlab.errors import KinlabError
 from kinlab.extract import to_dh
 from kinlab.fivebar import FiveBar
 from kinlab.formula import hand_formula
-from kinlab.kinematics import fk, jacobian, jacobian_dot, statics
+from kinlab.kinematics import jacobian_dot
 from kinlab.library import load
 from kinlab.link_forces import (
     inertial_wrenches,
@@ -52,6 +43,18 @@ from kinlab.mass_derivatives import (
     mass_matrix_dot,
 )
 from kinlab.robot import Robot
+from kinlab.stacks import (
+    coriolis_matrix,
+    fk,
+    forward_dynamics,
+    gravity_torques,
+    inverse_dynamics,
+    jacobian,
+    kinetic_energy,
+    mass_matrix,
+    potential_energy,
+    statics,
+)
 from kinlab.urdf import to_urdf
 from kinlab.viewer import view
 

@@ -20,15 +20,6 @@ from kinlab.chain_inertia import inertial_chain
 from kinlab.robot import Robot, model_pool
 from kinlab.threads import thread_count
 
-COMPILED_FROM = 256
-"""Stacks at least this long go through the kernels. Below, loading them (0.5 s, once a process)
-is out of proportion to a loop of 1 to 2 µs a state."""
-
-
-def large(q: Array) -> bool:
-    """Whether q is a stack worth the kernels."""
-    return q.ndim == 2 and len(q) >= COMPILED_FROM
-
 
 def inverse_dynamics(robot: Robot, q: Array, v: Array, a: Array) -> Array:
     """tau of each row, (N, n)."""

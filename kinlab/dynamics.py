@@ -1,7 +1,7 @@
-"""Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies.
+"""Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies, of any number of states.
 
 tau = M(q) qddot + C(q, qdot) qdot + g(q). Armatures are part of M; URDF damping and friction
-are not in any of these.
+are not in any of these. :mod:`kinlab.stacks` has a faster road for long stacks.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab import batches
 from kinlab.arrays import Array
 from kinlab.kinematics import each_state, statics
 from kinlab.robot import Robot, require_inertia, scratch
@@ -34,12 +33,7 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
         InertiaError: a joint moves no inertia.
     """
     require_inertia(robot)
-    q = joint_vector(robot, q, "q")
-    if q.ndim == 1:
-        return _mass_matrix(robot, q)
-    return (
-        batches.mass_matrices(robot, q) if batches.large(q) else each_state(robot, _mass_matrix, q)
-    )
+    return each_state(robot, _mass_matrix, joint_vector(robot, q, "q"))
 
 
 def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
@@ -59,8 +53,6 @@ def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     """
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
-    if batches.large(q):
-        return batches.coriolis_matrices(robot, q, v)
     return each_state(robot, _coriolis, q, v)
 
 
@@ -78,11 +70,7 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    q = joint_vector(robot, q, "q")
-    if q.ndim == 1:
-        return _gravity(robot, q)
-    rest = np.zeros_like(q)
-    return batches.inverse_dynamics(robot, q, rest, rest)
+    return each_state(robot, _gravity, joint_vector(robot, q, "q"))
 
 
 def inverse_dynamics(
@@ -108,10 +96,7 @@ def inverse_dynamics(
         if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
             return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-    if q.ndim == 1:
-        tau = pin.rnea(robot.model, scratch(robot), q, v, a)
-    else:
-        tau = batches.inverse_dynamics(robot, q, v, a)
+    tau = each_state(robot, _inverse, q, v, a)
     if wrench is not None:
         tau = tau + statics(robot, q, wrench)
     return finite_answer(robot, tau, "inverse_dynamics")
@@ -141,11 +126,7 @@ def forward_dynamics(
     q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
     if wrench is not None:
         tau = tau - statics(robot, q, wrench)
-    if q.ndim == 1:
-        a = pin.aba(robot.model, scratch(robot), q, v, tau)
-    else:
-        a = batches.forward_dynamics(robot, q, v, tau)
-    return finite_answer(robot, a, "forward_dynamics")
+    return finite_answer(robot, each_state(robot, _forward, q, v, tau), "forward_dynamics")
 
 
 def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
@@ -164,8 +145,16 @@ def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
     # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
-    inertia = mass_matrix(robot, q)
-    if q.ndim == 1:
+    return moving(robot, mass_matrix(robot, q), v)
+
+
+def moving(robot: Robot, inertia: Array, v: Array) -> Array | float:
+    """½ v^T M v of (n, n) and (n,), or of stacks of them.
+
+    Raises:
+        StateError: the answer overflows.
+    """
+    if v.ndim == 1:
         return float(finite_answer(robot, np.float64(0.5 * v @ inertia @ v), "kinetic_energy"))
     energy: Array = 0.5 * np.einsum("ij,ijk,ik->i", v, inertia, v)
     return finite_answer(robot, energy, "kinetic_energy")
@@ -185,12 +174,7 @@ def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    q = joint_vector(robot, q, "q")
-    return (
-        batches.potential_energies(robot, q)
-        if batches.large(q)
-        else each_state(robot, _potential, q)
-    )
+    return each_state(robot, _potential, joint_vector(robot, q, "q"))
 
 
 # Pinocchio's bindings return these by value, so nothing here needs copying out of the scratch data.
@@ -204,6 +188,16 @@ def _mass_matrix(robot: Robot, q: Array) -> Array:
 def _coriolis(robot: Robot, q: Array, v: Array) -> Array:
     matrix: Array = pin.computeCoriolisMatrix(robot.model, scratch(robot), q, v)
     return matrix
+
+
+def _inverse(robot: Robot, q: Array, v: Array, a: Array) -> Array:
+    tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+    return tau
+
+
+def _forward(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
+    a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
+    return a
 
 
 def _gravity(robot: Robot, q: Array) -> Array:

@@ -1,5 +1,7 @@
-"""Forward kinematics, Jacobians and statics, by Pinocchio.
+"""Forward kinematics, Jacobians and statics, by Pinocchio, for any number of states.
 
+A stack is looped over; :mod:`kinlab.stacks` has the same functions with a faster road for long
+stacks.
 The one place that knows ``pin.ReferenceFrame``. Twists and wrenches are linear first, (v, w)
 and (f, n); see :data:`FRAMES` for the three frames a Jacobian can be in.
 """
@@ -13,7 +15,6 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab import batches
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, StateError, near
 from kinlab.robot import Robot, scratch
@@ -43,9 +44,7 @@ def fk(robot: Robot, q: ArrayLike) -> Array:
         StateError: q of the wrong shape or type, or not finite.
     """
     q = joint_vector(robot, q, "q")
-    if q.ndim == 1:
-        return _fk(robot, q)
-    return batches.poses(robot, q) if batches.large(q) else each_state(robot, _fk, q)
+    return each_state(robot, _fk, q)
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
@@ -63,13 +62,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
         StateError: as :func:`fk`.
         NameUnknownError: another frame.
     """
-    q = joint_vector(robot, q, "q")
-    axes = reference(frame)
-    if q.ndim == 1:
-        return _jacobian(robot, q, axes)
-    if batches.large(q):
-        return batches.jacobians(robot, q, frame)
-    return each_state(robot, _jacobian, q, axes)
+    return each_state(robot, _jacobian, joint_vector(robot, q, "q"), reference(frame))
 
 
 def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") -> Array:
@@ -108,12 +101,27 @@ def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") 
         StateError, NameUnknownError: as :func:`jacobian`.
     """
     q = joint_vector(robot, q, "q")
+    force = wrench_for(robot, q, wrench)
+    return held(jacobian(robot, q, frame), force)
+
+
+def wrench_for(robot: Robot, q: Array, wrench: ArrayLike) -> Array:
+    """Reads the wrench that goes with q, (6,) or (N, 6).
+
+    Raises:
+        StateError: as :func:`read_wrench`, or stacks of different length.
+    """
     force = read_wrench(robot, wrench)
     if q.ndim == 2 and force.ndim == 2 and len(q) != len(force):
         raise StateError(
             f"robot {robot.name!r}: stacks of different length: q {q.shape}, wrench {force.shape}"
         )
-    tau: Array = np.einsum("...ij,...i->...j", jacobian(robot, q, frame), force)
+    return force
+
+
+def held(jacobians: Array, force: Array) -> Array:
+    """tau = J^T F of (..., 6, n) and (..., 6)."""
+    tau: Array = np.einsum("...ij,...i->...j", jacobians, force)
     return tau
 
 

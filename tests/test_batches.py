@@ -12,6 +12,7 @@ from random_tables import random_table
 
 import kinlab as kl
 from kinlab import batches, threads
+from kinlab import stacks as fast_road
 from kinlab.errors import OptionError, StateError
 
 FUNCTIONS = {
@@ -29,7 +30,7 @@ FUNCTIONS = {
     "potential_energy": (kl.potential_energy, 1),
 }
 NAMED = ["puma560", "panda", "stanford", "planar2r", "single_link", "erd:ur5"]
-LARGE = batches.COMPILED_FROM
+LARGE = fast_road.COMPILED_FROM
 
 
 def arms():

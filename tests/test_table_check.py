@@ -7,7 +7,7 @@ import pytest
 from random_tables import random_table
 
 import kinlab as kl
-from kinlab.check.table_check import skew_residue
+from kinlab.check.table_quantities import skew_residue
 
 BODY = {"mass": 3.0, "com": (0.1, 0.2, 0.3), "inertia": 0.1 * np.eye(3)}
 CONSTANT = {

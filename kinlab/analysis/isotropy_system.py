@@ -8,7 +8,7 @@ import numpy as np
 
 from kinlab.analysis.task_space import TaskSpace, jacobian_derivative
 from kinlab.arrays import Array
-from kinlab.kinematics import jacobian
+from kinlab.stacks import jacobian
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from kinlab.analysis.task_space import TaskSpace, search_box
 from kinlab.arrays import Array
-from kinlab.kinematics import fk, jacobian
+from kinlab.stacks import fk, jacobian
 
 _STEP = 1e-3
 """Of the arm's length: how far beyond a singular configuration the tool is asked to go. A fold

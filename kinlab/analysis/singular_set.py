@@ -19,7 +19,7 @@ import numpy as np
 from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box, wrap
 from kinlab.arrays import Array
-from kinlab.kinematics import jacobian
+from kinlab.stacks import jacobian
 
 CONVERGED = 1e-12
 """Norm of the residual, in the arm's own length unit, below which a solution is accepted; far

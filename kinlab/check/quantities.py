@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
-import importlib
 import re
 from dataclasses import replace
 from functools import cache
 from typing import Any
 
+from kinlab.check import (
+    action_quantities,
+    fivebar_quantities,
+    identity,
+    link_quantities,
+    serial_quantities,
+    special_quantities,
+    table_quantities,
+)
 from kinlab.check.quantity import Quantity
 from kinlab.errors import NameUnknownError, near
 
 _MODULES = (
-    "kinlab.check.serial_quantities",
-    "kinlab.check.link_quantities",
-    "kinlab.check.special_quantities",
-    "kinlab.check.action_quantities",
-    "kinlab.check.table_check",
-    "kinlab.check.identity",
-    "kinlab.check.fivebar_quantities",
+    serial_quantities,
+    link_quantities,
+    special_quantities,
+    action_quantities,
+    table_quantities,
+    identity,
+    fivebar_quantities,
 )
 """Modules whose ``QUANTITIES`` belong to the list."""
 
@@ -31,10 +39,10 @@ def quantities() -> dict[str, Quantity]:
     """Every quantity by name."""
     found: dict[str, Quantity] = {}
     for module in _MODULES:
-        for quantity in importlib.import_module(module).QUANTITIES:
-            if quantity.name in found:
-                raise AssertionError(f"two quantities are named {quantity.name!r}")
-            found[quantity.name] = quantity
+        for one in module.QUANTITIES:
+            if one.name in found:
+                raise AssertionError(f"two quantities are named {one.name!r}")
+            found[one.name] = one
     return found
 
 

@@ -6,16 +6,11 @@ print the same way. For a robot from a URDF the table is the extracted one.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from kinlab import dynamics, mass_derivatives
 from kinlab.arrays import Array
 from kinlab.check.catalogue import Row, run_one
-from kinlab.check.quantity import Quantity
-from kinlab.check.serial import SERIAL
-from kinlab.formula import Formula, Function, first_line
+from kinlab.formula import Formula, Function
 from kinlab.notes import mass
 from kinlab.notes.arm import Arm
 from kinlab.notes.frames import tool_pose
@@ -25,54 +20,6 @@ from kinlab.robot import Robot
 _STEP = 2e-2
 _STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))
 """Central differences of order 6: their error is about _STEP^6 / 140."""
-
-
-def yourdfpy_pose(robot: Robot, q: Any) -> Array:
-    """Pose of the tool by yourdfpy's own forward kinematics of the URDF."""
-    import io
-
-    import yourdfpy
-
-    urdf = yourdfpy.URDF.load(
-        io.BytesIO(robot.urdf.encode()), load_meshes=False, build_scene_graph=True
-    )
-    mine = list(urdf.actuated_joint_names)
-    rest = np.zeros(len(mine))
-    poses = []
-    for one in q:
-        rest[[mine.index(name) for name in robot.joint_names]] = one
-        urdf.update_cfg(rest)
-        poses.append(np.array(urdf.get_transform(robot.tool_name)))
-    return np.stack(poses)
-
-
-def terms(robot: Robot, q: Any, v: Any, a: Any) -> Array:
-    """M a + C v + g, each from its own algorithm."""
-    inertia = np.einsum("aij,aj->ai", dynamics.mass_matrix(robot, q), a)
-    velocity = np.einsum("aij,aj->ai", dynamics.coriolis_matrix(robot, q, v), v)
-    total: Array = inertia + velocity + dynamics.gravity_torques(robot, q)
-    return total
-
-
-def definite(robot: Robot, q: Any) -> Array:
-    """1 where M is symmetric and positive definite, 0 elsewhere."""
-    matrix = dynamics.mass_matrix(robot, q)
-    symmetric = np.max(np.abs(matrix - np.swapaxes(matrix, -1, -2)), axis=(1, 2)) == 0.0
-    sound: Array = (symmetric & (np.linalg.eigvalsh(matrix)[:, 0] > 0.0)).astype(float)
-    return sound
-
-
-def skew_residue(robot: Robot, q: Any, v: Any) -> Array:
-    """Symmetric part of Mdot - 2C over the size of M times that of the motion, (n, n).
-
-    Not over the size of Mdot, which is rounding where M does not depend on q.
-    """
-    rate = mass_derivatives.mass_matrix_dot(robot, q, v)
-    twice = 2.0 * dynamics.coriolis_matrix(robot, q, v)
-    size = np.max(np.abs(dynamics.mass_matrix(robot, q)), axis=(1, 2)) * np.max(np.abs(v), axis=1)
-    part = (rate - twice) + np.swapaxes(rate - twice, -1, -2)
-    share: Array = part / size[:, None, None]
-    return share
 
 
 def _ones(arm: Arm, q: Array) -> Array:
@@ -102,19 +49,6 @@ def finite_differences(arm: Arm, q: Array) -> Array:
         omega = [spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]]
         columns.append(np.concatenate([slope[:, :3, 3], np.stack(omega, axis=-1)], axis=-1))
     return np.stack(columns, axis=-1)
-
-
-_QUANTITIES: dict[str, tuple[str, Function, float]] = {
-    "fk_yourdfpy": ("q", yourdfpy_pose, 0.0),
-    "terms": ("q v a", terms, 0.0),
-    "mass_matrix_definite": ("q", definite, 0.0),
-    "skew_residue": ("q v", skew_residue, 1.0),
-}
-
-QUANTITIES = tuple(
-    Quantity(name, tuple(arguments.split()), engine, first_line(engine), SERIAL, scale=scale)
-    for name, (arguments, engine, scale) in _QUANTITIES.items()
-)
 
 
 def _record(part: str, title: str, quantity: str, function: Function, latex: str) -> Formula:

@@ -60,7 +60,7 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
     if chart.planar and robot.n <= 3:
         from kinlab.analysis.boundary import planar_boundary
         from kinlab.analysis.loci import singular_loci
-        from kinlab.kinematics import fk
+        from kinlab.stacks import fk
 
         boundary = planar_boundary(robot)
         needed = abs(len(chart.rows) - robot.n) + 2

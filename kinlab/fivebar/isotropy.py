@@ -95,7 +95,7 @@ def isotropic_poses(
 
 def _factors(linkage: Linkage) -> tuple[int, ...]:
     """Which conditions stand for rows of one length: two factors, or for unequal cranks one, 0."""
-    first, second = linkage.l1
+    first, second = np.asarray(linkage.l1, dtype=float).tolist()
     return (1, -1) if abs(first - second) <= _EQUAL_CRANKS * (first + second) else (0,)
 
 
@@ -114,7 +114,8 @@ def _solved(
     points = np.concatenate([points, jumped])
     points = points[condition_number(linkage, points, mode) - 1.0 < 1e-9]
     _, slope = _conditions(linkage, points, mode, 1e-6 * size, factor)
-    return points, np.linalg.svd(size * slope, compute_uv=False)[:, -1]
+    sharpness = np.asarray(np.linalg.svd(size * slope, compute_uv=False)[:, -1], dtype=float)
+    return points, sharpness
 
 
 def _descend(linkage: Linkage, points: Array, mode: Mode, size: float, factor: int) -> Array:

@@ -10,8 +10,8 @@ from kinlab.arrays import Array
 from kinlab.inverse import kernel, kernel_parts, methods
 from kinlab.inverse.result import IKStatus
 from kinlab.inverse.setup import Setup, beyond_reach, lm_numbers
-from kinlab.kinematics import jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import jacobian
 
 _MANY = 10
 """Searches that must all have come to rest before a pose is suspected to be unreachable; and

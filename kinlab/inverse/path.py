@@ -13,8 +13,8 @@ from kinlab.inverse.request import positive, read_guess, read_targets, require_r
 from kinlab.inverse.result import IKResult
 from kinlab.inverse.setup import rows_of, setup
 from kinlab.inverse.single import ik
-from kinlab.kinematics import jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import jacobian
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""

@@ -11,8 +11,8 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.chain_arrays import chain
 from kinlab.inverse import methods
-from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 from kinlab.tasks import TASKS, require_task, task_rows
 
 STARTS = 256

@@ -16,8 +16,8 @@ from kinlab.inverse import kernel, kernel_parts
 from kinlab.inverse.methods import Step
 from kinlab.inverse.result import IKHistory
 from kinlab.inverse.setup import Setup, beyond_reach
-from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 
 _RUNAWAY = 1e6
 """Radians (or lengths of the arm) in one step, beyond which q has lost its digits."""

@@ -12,9 +12,9 @@ from kinlab.analysis.structure import Axes
 from kinlab.analysis.task_space import TaskSpace
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
-from kinlab.kinematics import fk
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
 from kinlab.robot import Robot
+from kinlab.stacks import fk
 from kinlab.states import joint_vector
 from kinlab.workspace_map import stays_in_plane
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.kinematics import fk, jacobian
+from kinlab.stacks import fk, jacobian
 
 Measure = Callable[[Any, Array], Any]
 """f(robot, q (m, n)) -> an array with m rows, or a dict of such arrays."""

@@ -10,8 +10,8 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.errors import StructureError
 from kinlab.extract import to_dh
-from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 from kinlab.tasks import TASKS, generic_rank
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only

@@ -11,8 +11,8 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, StructureError, near
 from kinlab.inverse.path import ik_path
-from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 from kinlab.viewer.arm import reach
 from kinlab.viewer.arm_page import task_rows
 

@@ -11,8 +11,8 @@ from kinlab.fivebar.geometry import fk as fivebar_fk
 from kinlab.fivebar.geometry import ik, mode_of
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import solve_pose
-from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 from kinlab.states import joint_vector
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
