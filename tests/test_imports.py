@@ -54,13 +54,11 @@ def imports(tree: ast.AST, late: bool = False) -> Iterator[tuple[str, bool]]:
 def owners() -> dict[str, set[str]]:
     """Installed distributions by the names they let one import."""
     found: dict[str, set[str]] = {}
+    # Pinocchio's wheels keep their packages in a second site-packages of their own
+    top = re.compile(r"^(?:[^,\n]*/site-packages/)?(\w+)(?:/|\.py,|\.[^/,\n]*\.so,)", re.MULTILINE)
     for dist in distributions():
-        for file in dist.files or ():
-            # Pinocchio's wheels keep theirs in a second site-packages of their own
-            parts = file.parts
-            start = parts.index("site-packages") + 1 if "site-packages" in parts else 0
-            top = parts[start].split(".")[0] if start < len(parts) else ""
-            found.setdefault(top, set()).add(canonical(dist.metadata["Name"]))
+        for name in set(top.findall(dist.read_text("RECORD") or "")):
+            found.setdefault(name, set()).add(canonical(dist.metadata["Name"]))
     return found
 
 
