@@ -121,7 +121,7 @@ def test_pairs_are_found_whatever_the_last_bit():
         assert _pairs(moved, goal, 1e-9) == plain
 
 
-SHAKEN = (0, 1, 2, 3, 4)
+SHAKEN = (0, 1, 2)
 
 
 @pytest.fixture
@@ -151,38 +151,34 @@ def moved_pose(pose, rng):
     return replace(pose, **{part: moved(getattr(pose, part), rng) for part in ("u", "w", "sine", "rods")})  # fmt: skip
 
 
-FIVE_BARS = ("isotropic", "unequal", "equal_links", "minitaur_leg")
-
-
-def five_bar_verdicts(names=FIVE_BARS):
+def five_bar_verdicts(name):
     from kinlab.fivebar.isotropy import isotropic_poses
     from kinlab.fivebar.singularity import classify
 
     said = []
-    for name in names:
-        fivebar = kl.FiveBar.load(name)
-        for mode in ((-1, 1), (1, -1)):
-            said += [f"{name} {mode} {p.xy[0] + 0.0:.9f} {p.xy[1] + 0.0:.9f}"
-                     for p in isotropic_poses(fivebar, mode, 21)]  # fmt: skip
-            grid = np.random.default_rng(3).uniform(-0.6, 0.6, (200, 2))
-            said.append(" ".join(classify(fivebar, grid, mode)))
+    fivebar = kl.FiveBar.load(name)
+    grid = np.random.default_rng(3).uniform(-0.6, 0.6, (200, 2))
+    for mode in ((-1, 1), (1, -1)):
+        said.append(" ".join(classify(fivebar, grid, mode)))
+        said += [f"{mode} {p.xy[0]:.9f} {p.xy[1]:.9f}" for p in isotropic_poses(fivebar, mode, 15)]
     return [line.replace("-0.000000000", "0.000000000") for line in said]
 
 
-@pytest.mark.parametrize("seed", SHAKEN)
-def test_the_five_bar_says_the_same(shake, seed):
+@pytest.mark.parametrize("name", ["isotropic", "unequal", "equal_links"])
+def test_the_five_bar_says_the_same(shake, name):
     from kinlab.fivebar import isotropy, metrics, singularity
 
-    plain = five_bar_verdicts()
-    assert len(plain) > 10
-    shake(seed, ["solve_pose"], [isotropy, metrics, singularity], moved_pose)
-    assert five_bar_verdicts() == plain
+    plain = five_bar_verdicts(name)
+    assert len(plain) > 3
+    for seed in SHAKEN:
+        shake(seed, ["solve_pose"], [isotropy, metrics, singularity], moved_pose)
+        assert five_bar_verdicts(name) == plain
 
 
 def analysis_verdicts(name):
     from kinlab.analysis.singularity import find_singularities
 
-    search = find_singularities(kl.load(name), seeds=40)
+    search = find_singularities(kl.load(name))
     return [f"{f.kind} {f.deciding} {np.round(f.pinned, 6) + 0.0} {f.beyond} {f.representative.rank} "
             f"{f.representative.joints}" for f in search.families]  # fmt: skip
 
@@ -193,6 +189,6 @@ def test_the_analysis_says_the_same(shake, name):
 
     plain = analysis_verdicts(name)
     assert plain
-    for seed in SHAKEN[:3]:
+    for seed in SHAKEN:
         shake(seed, ["jacobian", "fk"], [reach, singular_set, structure, task_space], moved)
         assert analysis_verdicts(name) == plain
