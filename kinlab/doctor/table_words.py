@@ -1,0 +1,260 @@
+"""What is wrong with a cell, told from what is written and what is meant.
+
+A relation between the two numbers (another sign, 90° apart, thousand times as much) is a likelier
+slip than a number that has nothing to do with the one meant: ``cost`` orders explanations that
+repair the table equally well.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+
+_SAME = 1e-7
+"""Relative difference below which a solved number is the one that a relation gives."""
+_TURN = 2.0 * math.pi
+_ROUND = math.pi / 12
+"""Angles of tables are mostly multiples of 15°."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """One slip.
+
+    Attributes:
+        row: 1-based; a tuple where several rows belong together; None for the whole table.
+        column: ``"a"``, ``"alpha"``, ``"d"``, ``"theta"``, ``"convention"``, ``"joint"``,
+            ``"flip"``, ``"tool"``, ``"base"``, ``"gravity"``, ``"mass"``, ``"com"``,
+            ``"inertia"``, ``"armature"``, ``"order"`` or ``"units"``.
+        written: what stands there.
+        meant: what should stand there.
+        kind: what sort of slip it is, in a word or two.
+        sentence: the slip in words.
+        cost: the less, the likelier among explanations that repair equally much.
+    """
+
+    row: int | tuple[int, ...] | None
+    column: str
+    written: Any
+    meant: Any
+    kind: str
+    sentence: str
+    cost: float = field(default=1.0, repr=False)
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The rows, empty for the whole table."""
+        if self.row is None:
+            return ()
+        return self.row if isinstance(self.row, tuple) else (self.row,)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "row": list(self.row) if isinstance(self.row, tuple) else self.row,
+            "column": self.column,
+            "written": plain(self.written),
+            "meant": plain(self.meant),
+            "kind": self.kind,
+            "sentence": self.sentence,
+        }
+
+
+def plain(value: Any) -> Any:
+    """Numbers, text and lists in place of arrays."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (np.floating, np.bool_)):
+        return value.item()
+    if isinstance(value, tuple):
+        return [plain(v) for v in value]
+    return value
+
+
+def where(row: int | tuple[int, ...]) -> str:
+    """``row 3``, or ``rows 2 and 3``."""
+    if isinstance(row, int):
+        return f"row {row}"
+    return f"rows {listed(row)}"
+
+
+def listed(items: Any) -> str:
+    """``1``, ``1 and 2``, ``1, 2 and 3``."""
+    words = [str(item) for item in items]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def number(value: float) -> str:
+    """A length or mass in up to ten digits."""
+    return f"{value + 0.0:.10g}"
+
+
+def degrees(angle: float) -> str:
+    """An angle in degrees, ``-90 deg``."""
+    return f"{math.degrees(angle) + 0.0:.9g} deg"
+
+
+def wrapped(angle: float) -> float:
+    """The same angle from -180° (excluded) to 180°, and the multiple of 15° it is to rounding."""
+    turned = -((-angle + math.pi) % _TURN) + math.pi
+    nearest = round(turned / _ROUND) * _ROUND
+    return nearest if abs(turned - nearest) < 1e-8 else turned
+
+
+def tidy(length: float, written: float) -> float:
+    """A solved length without its rounding residue: of twelve digits, or zero."""
+    scale = max(abs(length), abs(written), 1e-3)
+    short = float(f"{length:.9g}")
+    if abs(length) < 1e-9 * scale:
+        return 0.0
+    return short if abs(short - length) < 1e-9 * scale else length
+
+
+def angle_cause(row: int, column: str, written: float, meant: float) -> Cause:
+    """Names a slip in alpha or theta.
+
+    Args:
+        row: 1-based.
+        column: ``"alpha"`` or ``"theta"``.
+        written, meant: rad; ``meant`` wrapped.
+    """
+    at = f"row {row}: {column}"
+    change = wrapped(meant - written)
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(row, column, written, meant, kind, told, cost)
+
+    numbers = f"{degrees(written)} written, {degrees(meant)} meant"
+    in_degrees = f"{at} is in degrees: {number(written)} written, {degrees(meant)} meant"
+    if abs(written) > _TURN + 1e-9 and _same_angle(math.radians(written), meant):
+        return cause("degrees for radians", in_degrees, 1.0)
+    if _close(written, 0.0):
+        return cause("missing", f"{at} lacks {degrees(change)}", 1.0 if _round(meant) else 1.6)
+    if _same_angle(meant, -written):
+        return cause("sign", f"{at} has the wrong sign: {numbers}", 1.0)
+    if abs(written) > 0.7 and _same_angle(math.radians(written), meant):
+        return cause("degrees for radians", in_degrees, 1.2)
+    if _same_angle(change, math.pi):
+        return cause("180 deg", f"{at} is 180 deg off: {numbers}", 1.1)
+    if _same_angle(abs(change), math.pi / 2):
+        return cause("90 deg", f"{at} lacks {degrees(change)}: {numbers}", 1.1)
+    if _same_angle(math.degrees(written), meant):
+        return cause("radians for degrees",
+                     f"{at} was turned into radians twice: {numbers}", 1.2)  # fmt: skip
+    for power in (1, -1, 2, -2, 3, -3):
+        if _close(written * 10.0**power, meant):
+            return cause("decimal point", f"{at}: the decimal point is displaced: "
+                         f"{number(written)} rad written, {number(meant)} rad meant", 1.2)  # fmt: skip
+    if _close(meant, 0.0):
+        return cause("superfluous", f"{at} must be zero: {degrees(written)} written", 1.4)
+    kind, cost = _typed(written, meant)
+    if cost > 1.7:
+        kind, cost = _typed(math.degrees(written), math.degrees(meant))
+    return cause(kind, f"{at} lacks {degrees(change)}: {numbers}", cost)
+
+
+def length_cause(row: int, column: str, written: float, meant: float, slides: bool) -> Cause:
+    """Names a slip in a or d.
+
+    Args:
+        row: 1-based.
+        column: ``"a"`` or ``"d"``.
+        written, meant: m.
+        slides: the cell is the offset of a prismatic joint.
+    """
+    at = f"row {row}: {column}"
+    if slides and column == "d":
+        at += ", the offset of the prismatic joint,"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(row, column, written, meant, kind, told, cost)
+
+    numbers = f"{number(written)} written, {number(meant)} meant"
+    if _close(written, 0.0):
+        return cause("missing", f"{at} lacks {number(meant)} m", 1.3)
+    if _close(meant, -written):
+        return cause("sign", f"{at} has the wrong sign: {numbers}", 1.0)
+    if _close(written / 1000.0, meant):
+        return cause("millimetres for metres", f"{at} is in millimetres: {numbers}", 1.0)
+    for power in (1, -1, 2, -2, 3, -3):
+        if _close(written * 10.0**power, meant):
+            return cause("decimal point", f"{at}: the decimal point is displaced: {numbers}", 1.1)
+    if _close(written * 0.0254, meant):
+        return cause("inches for metres", f"{at} is in inches: {numbers}", 1.2)
+    if _close(meant, 0.0):
+        return cause("superfluous", f"{at} must be zero: {number(written)} written", 1.5)
+    kind, cost = _typed(written, meant)
+    return cause(kind, f"{at} is wrong: {numbers}", cost)
+
+
+def _typed(written: float, meant: float) -> tuple[str, float]:
+    """A number that shares its digits with the one meant is a misprint."""
+    one, two = (f"{abs(x):.6g}".replace(".", "").lstrip("0") for x in (written, meant))
+    if written * meant > 0 and len(one) > 1 and abs(len(one) - len(two)) <= 1:
+        if sorted(one) == sorted(two):
+            return "digits exchanged", 1.5
+        if len(one) == len(two) and sum(x != y for x, y in zip(one, two, strict=True)) == 1:
+            return "digit", 1.5
+        if len(one) != len(two) and (one.startswith(two) or two.startswith(one)):
+            return "digit", 1.5
+    return "value", 2.0
+
+
+def pose_cause(which: str, written: Array, meant: Array, known: Array | None = None) -> Cause:
+    """Names a slip in base or tool, (4, 4) each; ``known`` is the reference's own."""
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(None, which, written, meant, kind, f"{which} {told}", cost)
+
+    if _same_pose(written, np.eye(4)):
+        sure = known is not None and _same_pose(known, meant)
+        return cause("missing", f"is missing: {pose_text(meant)}", 1.2 if sure else 1.9)
+    turned = np.array(written)
+    turned[:3, :3] = written[:3, :3].T
+    back = np.array(turned)
+    back[:3, 3] = -turned[:3, :3] @ written[:3, 3]
+    if _same_pose(back, meant):
+        return cause("inverted", f"is inverted: meant is {pose_text(meant)}", 1.0)
+    if _same_pose(turned, meant):
+        return cause("transposed", "has its rotation transposed", 1.0)
+    for factor, kind in ((1e-3, "millimetres for metres"), (0.1, "decimal point"),
+                         (10.0, "decimal point")):  # fmt: skip
+        scaled = np.array(written)
+        scaled[:3, 3] *= factor
+        if _same_pose(scaled, meant) and np.any(written[:3, 3]):
+            return cause(kind, f"translation: {kind}; meant is {pose_text(meant)}", 1.0)
+    if _same_pose(meant, np.eye(4)):
+        return cause("superfluous", "must be the identity", 1.8)
+    return cause("value", f"is wrong: meant is {pose_text(meant)}", 2.2)
+
+
+def pose_text(pose: Array) -> str:
+    """A pose as translation and roll, pitch, yaw."""
+    from kinlab.rotations import matrix_rpy
+
+    place = ", ".join(number(float(round(x, 9))) for x in pose[:3, 3])
+    if np.max(np.abs(pose[:3, :3] - np.eye(3))) < 1e-9:
+        return f"shift ({place}) m"
+    turn = ", ".join(f"{math.degrees(x) + 0.0:.6g}" for x in matrix_rpy(pose[:3, :3]))
+    return f"shift ({place}) m, roll, pitch, yaw ({turn}) deg"
+
+
+def _same_pose(one: Array, two: Array) -> bool:
+    return bool(np.max(np.abs(one - two)) < 1e-8 * max(1.0, float(np.max(np.abs(two)))))
+
+
+def _same_angle(one: float, two: float) -> bool:
+    return abs(math.remainder(one - two, _TURN)) < 1e-7
+
+
+def _close(one: float, two: float) -> bool:
+    return abs(one - two) <= _SAME * max(abs(one), abs(two)) + 1e-10
+
+
+def _round(angle: float) -> bool:
+    return abs(math.remainder(angle, _ROUND)) < 1e-8
