@@ -223,6 +223,8 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
     slides = np.linalg.norm(angular, axis=1) < 0.5
     direction = np.where(slides[:, None], linear, angular)
     q = _states(robot.n, slides, seed)
+    digit = _last_digit(robot.urdf)
+    rounding = 0.5 * digit * 2.0 * (robot.n + 1)
     mass, com, inertia = [], [], []
     for j in range(1, model.njoints):
         body = data.oMi[j].act(model.inertias[j])
@@ -234,6 +236,7 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
         np.array(mass), np.array(com), np.array(inertia),
         np.array(model.armature) if stated else None,
         np.array(model.gravity.linear) if stated else None,
+        digit,
     )  # fmt: skip
     last = model.frames[robot.tool].placement.homogeneous
     tools = [last]
@@ -243,7 +246,7 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
     notes = () if stated else ("a URDF states neither gravity nor armature: not compared",)
     return Reference(
         robot.name,
-        Target(q, fk(robot, q)),
+        Target(q, fk(robot, q), max(1e-9, rounding)),
         None,
         [np.eye(4), model.jointPlacements[1].homogeneous],
         tools,
@@ -285,6 +288,29 @@ def counts(table: DHTable, reference: Reference) -> str:
     )
 
 
+def _last_digit(text: str) -> float:
+    """One unit of the last printed digit of the numbers of a URDF; 0 where all are printed.
+
+    Told by its angles: a file that prints pi/2 with six decimals has rounded its lengths too.
+    Fewer than four decimals are not taken for a rounding: lengths may be meant so.
+    """
+    words = " ".join(m[1] for m in _RPY.finditer(text)).split()
+    places = max((_places(word) for word in words), default=0)
+    if not 4 <= places <= 9:
+        return 0.0
+    lengths = " ".join(m[1] for m in _XYZ.finditer(text)).split()
+    return float(10.0 ** -min(9, max([places, *(_places(word) for word in lengths)])))
+
+
+def _places(word: str) -> int:
+    """Decimals of a printed number that is not whole."""
+    if "." not in word or float(word) == round(float(word)):
+        return 0
+    head, _, power = word.lower().partition("e")
+    return len(head.split(".")[1]) - (int(power) if power else 0)
+
+
+_XYZ = re.compile(r'xyz="([^"]*)"')
 _RPY = re.compile(r'rpy="([^"]*)"')
 
 

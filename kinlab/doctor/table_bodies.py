@@ -40,6 +40,8 @@ class Bodies:
     inertia: Array
     armature: Array | None
     gravity: Array | None
+    digit: float = 0.0
+    """One unit of the last digit of printed numbers; 0 where all digits are known."""
 
     @property
     def any(self) -> bool:
@@ -71,8 +73,18 @@ class _Link:
     mass: float
     com: Array
     inertia: Array
+    slack: float
+    """Absolute error of the numbers meant, from printed digits."""
     poses: Array
     """Frames 0 to n and the tool at q = 0, (n + 2, 4, 4)."""
+
+    def alike(self, one: Array, two: Array, scale: float = 0.0) -> bool:
+        """Whether two arrays are the same to rounding and printed digits."""
+        return _alike(one, two, scale, self.slack)
+
+    def power(self, one: float, two: float) -> int:
+        """k where one is 10^k times two, k not 0; else 0."""
+        return _power(one / two, self.slack / min(abs(one), abs(two)))
 
 
 def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
@@ -90,28 +102,29 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
     size = max(1.0, float(np.max(np.abs(poses[:, :3, 3]))))
     causes: list[Cause] = []
     links = list(table.links)
+    slack = 2.0 * bodies.digit
     for i, link in enumerate(table.links):
         back = inverse(poses[i + 1])
         com = back[:3, :3] @ bodies.com[i] + back[:3, 3]
         inertia = back[:3, :3] @ bodies.inertia[i] @ back[:3, :3].T
-        one = _Link(i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), poses)
+        one = _Link(i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), slack, poses)
         changes: dict[str, object] = {}
-        if abs(one.mass - link.mass) > _REL * max(one.mass, link.mass):
+        if abs(one.mass - link.mass) > _REL * max(one.mass, link.mass) + slack:
             causes.append(_mass_cause(one))
             changes["mass"] = one.mass
         massive = one.mass > 0.0
-        if massive and np.max(np.abs(com - np.asarray(link.com))) > 1e-9 * size:
+        if massive and np.max(np.abs(com - np.asarray(link.com))) > 1e-9 * size + slack * (table.n + 1) * size:
             clean = _tidy(com)
-            causes.append(_com_cause(replace(one, com=clean)))
+            causes.append(_com_cause(replace(one, com=clean, slack=slack * (table.n + 1) * size)))
             changes["com"] = clean
-        limit = (
+        limit = slack * (table.n + 1) * max(1.0, float(np.max(np.abs(inertia)))) + (
             _REL * float(np.max(np.abs(inertia)))
             + 1e-14
             + 1e-10 * float(np.max(np.abs(link.inertia)))
         )
         if np.max(np.abs(one.inertia - np.asarray(link.inertia))) > limit:
             clean = _tidy(one.inertia)
-            causes.append(_inertia_cause(replace(one, inertia=clean)))
+            causes.append(_inertia_cause(replace(one, inertia=clean, slack=limit if slack else 0.0)))
             changes["inertia"] = clean
         if bodies.armature is not None:
             meant = float(bodies.armature[i])
@@ -163,11 +176,11 @@ def _mass_cause(one: _Link) -> Cause:
         return cause("missing", f"{at} is forgotten: {number(meant)} kg", 1.0)
     if meant == 0.0:
         return cause("superfluous", f"{at} must be zero: {number(written)} kg written", 1.5)
-    if _near(written, 1000.0 * meant):
-        return cause("grams for kilograms", f"{at} is in grams: {numbers}", 1.0)
-    power = _power(meant / written)
+    if one.power(written, meant) == 3:
+        return cause("grams", f"{at} is in grams: {numbers}", 1.0)
+    power = one.power(meant, written)
     if power:
-        return cause("decimal point", f"{at}: the decimal point is displaced: {numbers}", 1.0)
+        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
     return cause("value", f"{at} is wrong: {numbers}", 2.0)
 
 
@@ -198,41 +211,41 @@ def _com_cause(one: _Link) -> Cause:
     if not written.any():
         return cause("missing", "is missing", 1.2)
     for signs in _signs(3):
-        if _alike(written, signs * meant):
+        if one.alike(written, signs * meant):
             some = [name for name, s, x in zip("xyz", signs, meant, strict=True) if s < 0 and x]
             told = "has the wrong sign" + ("" if len(some) == 3 else f" in {', '.join(some)}")
             return cause("sign", told, 1.0)
     for factor in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001):
-        if _alike(written, factor * meant):
+        if one.alike(written, factor * meant):
             if factor == 1000.0:
-                return cause("millimetres for metres", "is in millimetres", 1.0)
-            return cause("decimal point", "has the decimal point displaced", 1.0)
-    wrong = np.flatnonzero(np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12)
+                return cause("millimetres", "is in millimetres", 1.0)
+            return cause("decimal", "has the decimal point displaced", 1.0)
+    wrong = np.flatnonzero(np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12 + one.slack)
     if len(wrong) == 1:
         k = int(wrong[0])
-        if meant[k] and written[k] and _power(float(meant[k] / written[k])):
-            return cause("decimal point", f"has the decimal point displaced in {'xyz'[k]}", 1.0)
+        if meant[k] and written[k] and one.power(float(meant[k]), float(written[k])):
+            return cause("decimal", f"has the decimal point displaced in {'xyz'[k]}", 1.0)
     for order in permutations(range(3)):
-        if _alike(written, meant[list(order)]):
+        if one.alike(written, meant[list(order)]):
             return cause("axes", "has its axes in another order", 1.0)
     for name, pose in _frames_of(one):
-        if _alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
+        if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
             return cause("frame", f"is given in {name}", 1.0)
     for name, pose in _frames_of(one):
-        if _alike(written, meant - pose[:3, 3]):
+        if one.alike(written, meant - pose[:3, 3]):
             return cause("other end", f"is counted from the origin of {name}", 1.0)
-        if _alike(written, pose[:3, :3].T @ meant):
+        if one.alike(written, pose[:3, :3].T @ meant):
             return cause("frame", f"has the axes of {name}", 1.05)
     for order in permutations(range(3)):
         for signs in _signs(3):
-            if _alike(written, signs * meant[list(order)]):
+            if one.alike(written, signs * meant[list(order)]):
                 return cause("axes", "has its axes turned", 1.2)
     for name, pose in _frames_of(one):
-        if _alike(written, meant + pose[:3, 3]):
+        if one.alike(written, meant + pose[:3, 3]):
             return cause("other end", f"is shifted against the origin of {name}", 1.2)
-        if _alike(written, (pose @ [*meant, 1.0])[:3]):
+        if one.alike(written, (pose @ [*meant, 1.0])[:3]):
             return cause("frame", f"is transformed the wrong way from {name}", 1.2)
-        if _alike(written, pose[:3, :3] @ meant):
+        if one.alike(written, pose[:3, :3] @ meant):
             return cause("frame", f"is turned the wrong way from the axes of {name}", 1.2)
     return cause("value", "is wrong", 2.0)
 
@@ -249,49 +262,49 @@ def _inertia_cause(one: _Link) -> Cause:
         return cause("missing", "is missing", 1.0)
     for com, whose in ((one.com, ""), (np.asarray(one.written.com), " (of the com written)")):
         shift = steiner(one.mass, com)
-        if shift.any() and _alike(written, meant + shift):
-            return cause("about the origin",
+        if shift.any() and one.alike(written, meant + shift):
+            return cause("origin",
                          f"is about the origin of frame {one.row}, not the centre of mass{whose}",
                          1.0)  # fmt: skip
-        if shift.any() and _alike(written, meant - shift):
-            return cause("about the origin", f"has the shift of origin taken off twice{whose}", 1.1)
-    found = _products(written, meant)
+        if shift.any() and one.alike(written, meant - shift):
+            return cause("origin", f"has the shift of origin taken off twice{whose}", 1.1)
+    found = _products(one)
     if found:
         return cause("products", f"has the wrong sign of {found}", 1.0)
     for factor in (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e6, 1e9):
-        if _alike(written, factor * meant):
+        if one.alike(written, factor * meant):
             if factor >= 1e4:
                 return cause("units", f"is {factor:g} times too large, as in other units", 1.0)
-            return cause("decimal point", "has the decimal point displaced", 1.0)
+            return cause("decimal", "has the decimal point displaced", 1.0)
     wrong = [(i, j) for i in range(3) for j in range(i, 3)
-             if abs(written[i, j] - meant[i, j]) > 1e-8 * np.max(np.abs(meant))]  # fmt: skip
+             if abs(written[i, j] - meant[i, j]) > 1e-8 * np.max(np.abs(meant)) + one.slack]  # fmt: skip
     if len(wrong) == 1:
         i, j = wrong[0]
         name = f"I{'xyz'[i]}{'xyz'[j]}"
-        if meant[i, j] and _power(float(written[i, j] / meant[i, j])):
-            return cause("decimal point", f"has the decimal point displaced in {name}", 1.0)
+        if meant[i, j] and one.power(float(written[i, j]), float(meant[i, j])):
+            return cause("decimal", f"has the decimal point displaced in {name}", 1.0)
         if written[i, j] == 0.0:
             return cause("missing", f"lacks {name}", 1.2)
     off = ~np.eye(3, dtype=bool)
-    if _alike(written[off], meant[off], np.max(np.abs(meant))):
+    if one.alike(written[off], meant[off], np.max(np.abs(meant))):
         for order in permutations(range(3)):
-            if _alike(np.diag(written), np.diag(meant)[list(order)]):
+            if one.alike(np.diag(written), np.diag(meant)[list(order)]):
                 return cause("order", "has its principal values in another order", 1.0)
-    if not written[off].any() and _alike(np.diag(written), np.diag(meant)):
+    if not written[off].any() and one.alike(np.diag(written), np.diag(meant)):
         return cause("missing", "lacks its products", 1.2)
     for name, pose in _frames_of(one):
         turn = pose[:3, :3]
-        if _alike(written, turn.T @ meant @ turn):
+        if one.alike(written, turn.T @ meant @ turn):
             return cause("frame", f"has the axes of {name}", 1.0)
-        if _alike(written, turn @ meant @ turn.T):
+        if one.alike(written, turn @ meant @ turn.T):
             return cause("frame", f"is turned the wrong way from the axes of {name}", 1.1)
     for order in permutations(range(3)):
-        if _alike(written, meant[np.ix_(order, order)]):
+        if one.alike(written, meant[np.ix_(order, order)]):
             return cause("axes", "has its axes in another order", 1.1)
     for name, pose in _frames_of(one):
         shift = steiner(one.mass, one.com - pose[:3, 3])
-        if shift.any() and _alike(written, meant + shift):
-            return cause("about the origin", f"is about the origin of {name}", 1.1)
+        if shift.any() and one.alike(written, meant + shift):
+            return cause("origin", f"is about the origin of {name}", 1.1)
     return cause("value", "is wrong", 2.0)
 
 
@@ -301,18 +314,19 @@ def steiner(mass: float, lever: Array) -> Array:
     return out
 
 
-def _products(written: Array, meant: Array) -> str:
+def _products(one: _Link) -> str:
     """The products of inertia whose sign alone is wrong, in words."""
+    written, meant = np.asarray(one.written.inertia), one.inertia
     places = [(0, 1), (0, 2), (1, 2)]
-    if not _alike(np.diag(written), np.diag(meant)):
+    if not one.alike(np.diag(written), np.diag(meant)):
         return ""
-    nonzero = [p for p in places if meant[p]]
+    nonzero = [p for p in places if abs(meant[p]) > one.slack]
     for count in range(len(nonzero), 0, -1):
         for some in combinations(nonzero, count):
             other = meant.copy()
             for i, j in some:
                 other[i, j] = other[j, i] = -meant[i, j]
-            if _alike(written, other):
+            if one.alike(written, other):
                 if count == len(nonzero):
                     return "its products"
                 return " and ".join(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
@@ -332,13 +346,13 @@ def _armature_cause(row: int, written: float, meant: float) -> Cause:
         return cause("superfluous", f"{at} must be zero: {number(written)} written", 1.5)
     power = _power(meant / written)
     if abs(power) in (1, 3):
-        return cause("decimal point", f"{at}: the decimal point is displaced: {numbers}", 1.0)
+        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
     gear = float(np.sqrt(meant / written))
     if gear > 1.0:
-        return cause("gear ratio",
+        return cause("gear",
                      f"{at} is that of the motor, J in place of G^2 J with G = {gear:.6g}: "
                      f"{numbers}", 1.0)  # fmt: skip
-    return cause("gear ratio", f"{at} has a factor {number(written / meant)} too much: {numbers}",
+    return cause("gear", f"{at} has a factor {number(written / meant)} too much: {numbers}",
                  1.5)  # fmt: skip
 
 
@@ -363,7 +377,7 @@ def _gravity_cause(written: Array, meant: Array, poses: Array) -> Cause:
         return cause("direction", "points in another direction", 1.5)
     power = _power(float(np.linalg.norm(meant) / np.linalg.norm(written)))
     if power and _alike(written * 10.0**power, meant):
-        return cause("decimal point", "has the decimal point displaced", 1.0)
+        return cause("decimal", "has the decimal point displaced", 1.0)
     return cause("value", "is wrong", 2.0)
 
 
@@ -382,21 +396,19 @@ def _tidy(values: Array) -> Array:
     return np.asarray(np.round(values, digits) + 0.0) if digits < 300 else values
 
 
-def _alike(one: Array, two: Array, scale: float = 0.0) -> bool:
+def _alike(one: Array, two: Array, scale: float = 0.0, slack: float = 0.0) -> bool:
     scale = scale or float(np.max(np.abs(two), initial=0.0))
-    return bool(np.max(np.abs(np.asarray(one) - two), initial=0.0) <= 1e-7 * scale + 1e-13)
+    return bool(np.max(np.abs(np.asarray(one) - two), initial=0.0) <= 1e-7 * scale + 1e-13 + slack)
 
 
-def _near(one: float, two: float) -> bool:
-    return abs(one - two) <= 1e-7 * max(abs(one), abs(two))
 
-
-def _power(ratio: float) -> int:
+def _power(ratio: float, slack: float = 0.0) -> int:
     """k where the ratio is 10^k, k from -4 to 4 and not 0; else 0."""
     if ratio <= 0.0:
         return 0
     k = round(float(np.log10(ratio)))
-    return k if k and abs(k) <= 4 and _near(ratio, 10.0**k) else 0
+    close = abs(ratio - 10.0**k) <= (1e-7 + slack) * 10.0**k
+    return k if k and abs(k) <= 4 and close else 0
 
 
 def _vector(values: Array) -> str:

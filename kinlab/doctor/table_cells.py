@@ -32,6 +32,7 @@ from kinlab.doctor.table_chain import (
 from kinlab.doctor.table_readings import Reading
 from kinlab.doctor.table_target import Target
 from kinlab.doctor.table_words import (
+    EXACT,
     Cause,
     angle_cause,
     degrees,
@@ -41,9 +42,6 @@ from kinlab.doctor.table_words import (
     tidy,
     wrapped,
 )  # fmt: skip
-
-_STEADY = 1e-8
-"""Spread over the states below which a difference counts as constant; a candidate only."""
 
 _AXES = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 
@@ -67,12 +65,12 @@ def one_change(bases: Sequence[Reading], target: Target) -> list[Reading]:
         steady, fixed = _spread(gap, target.size), _spread(last, target.size)
         for k, first in enumerate(part):
             n = first.chain.n
-            for frame in np.flatnonzero(steady[k] <= _STEADY):
+            for frame in np.flatnonzero(steady[k] <= target.steady):
                 motion = np.mean(gap[k, :, frame], axis=0)
                 found += _readings_at(first, int(frame), motion, target)
                 if frame == 0:
                     found += _ends(first, "base", first.chain.base @ motion, target)
-            if fixed[k] <= _STEADY and n:
+            if fixed[k] <= target.steady and n:
                 motion = np.mean(last[k], axis=0)
                 found += _ends(first, "tool", first.chain.tool @ motion, target)
     return found
@@ -103,19 +101,19 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
         if not 0 <= row < chain.n:
             continue
         angle, length, rest = _screw(motion, _AXES[turn])
-        if rest > _STEADY * target.size:
+        if rest > target.steady * target.size:
             continue
         changes = {}
-        if abs(angle) > _STEADY:
+        if abs(angle) > target.steady:
             changes[turn] = wrapped(float(chain.cells[row, turn]) + angle)
-        if abs(length) > _STEADY * target.size:
+        if abs(length) > target.steady * target.size:
             written = float(chain.cells[row, slide])
             changes[slide] = tidy(written + length, written)
         if changes:
-            found.append(changed(first, {(row, c): v for c, v in changes.items()}))
+            found.append(changed(first, {(row, c): v for c, v in changes.items()}, target.slack))
     row = frame if chain.modified else frame - 1
     if 0 <= row < chain.n:
-        found += _whole_row(first, row, motion)
+        found += _whole_row(first, row, motion, target)
     return [one for one in found if target.met(one.chain)]
 
 
@@ -140,27 +138,38 @@ def _turn(axis: int, angle: float) -> Array:
     return out
 
 
-def changed(first: Reading, values: dict[tuple[int, int], float]) -> Reading:
-    """A reading with cells (0-based row, column) replaced, each a cause of its own."""
+def changed(
+    first: Reading, values: dict[tuple[int, int], float], slack: float = 0.0
+) -> Reading:
+    """A reading with cells replaced, each a cause of its own.
+
+    Args:
+        first: the reading.
+        values: by 0-based row and column, as solved for.
+        slack: how far these may be off, rad and m; a relation that gives a number within it
+            tells what is meant.
+    """
     chain, causes = first.chain, list(first.causes)
     for (row, column), value in sorted(values.items()):
         written = float(chain.cells[row, column])
         name = COLUMNS[column]
         if column in (ALPHA, THETA):
-            causes.append(angle_cause(row + 1, name, written, value))
+            cause = angle_cause(row + 1, name, written, value, max(slack, EXACT))
         else:
             slides = bool(chain.prismatic[row])
-            causes.append(length_cause(row + 1, name, written, value, slides))
-        chain = chain.with_cell(row, column, value)
+            cause = length_cause(row + 1, name, written, value, slides, slack)
+        causes.append(cause)
+        chain = chain.with_cell(row, column, float(cause.meant))
     return Reading(chain, tuple(causes))
 
 
 def _ends(first: Reading, which: str, meant: Array, target: Target) -> list[Reading]:
     written = getattr(first.chain, which)
     pose = _tidy_pose(meant)
-    if np.max(np.abs(pose - written)) <= 1e-9:
+    if np.max(np.abs(pose - written)) <= target.tolerance:
         return []
-    cause = pose_cause(which, written, pose)
+    cause = pose_cause(which, written, pose, None, target.slack)
+    pose = cause.meant
     one = Reading(replace(first.chain, **{which: pose}), (*first.causes, cause))
     return [one] if target.met(one.chain) else []
 
@@ -173,11 +182,11 @@ def _tidy_pose(pose: Array) -> Array:
     return out
 
 
-def _whole_row(first: Reading, row: int, motion: Array) -> list[Reading]:
+def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[Reading]:
     """The row that a constant motion makes of a row: two cells of it, or a row written twice."""
     chain = first.chain
     step = row_transform(chain.modified, chain.cells[row])
-    solved = row_of(chain.modified, motion @ step if chain.modified else step @ motion, 1e-8)
+    solved = row_of(chain.modified, motion @ step if chain.modified else step @ motion, target.steady)
     if solved is None:
         return []
     written = chain.cells[row]
@@ -185,21 +194,16 @@ def _whole_row(first: Reading, row: int, motion: Array) -> list[Reading]:
     for column in range(4):
         if column in (ALPHA, THETA):
             value = wrapped(float(solved[column]))
-            same = abs(wrapped(value - float(written[column]))) < 1e-8
+            same = abs(wrapped(value - float(written[column]))) < target.steady
         else:
             value = tidy(float(solved[column]), float(written[column]))
-            same = abs(value - written[column]) < 1e-9 * max(1.0, abs(value))
+            same = abs(value - written[column]) < 0.1 * target.steady * target.size
         if not same:
             values[row, column] = value
     if not values:
         return []
-    if len(values) == 2:
-        one, two = sorted(values)
-        if one[1] in (A, ALPHA) and two[1] == one[1] + 2:
-            pass
-        return [changed(first, values)]
-    if len(values) < 2:
-        return [changed(first, values)]
+    if len(values) <= 2:
+        return [changed(first, values, target.slack)]
     new = chain
     for (_, column), value in values.items():
         new = new.with_cell(row, column, value)
@@ -234,9 +238,9 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                 )  # fmt: skip
                 frame = row if chain.modified else row + 1
                 gap, _ = _differences(frames(new, target.few.q)[None], target.few)
-                if _spread(gap, target.size)[0, frame] > _STEADY:
+                if _spread(gap, target.size)[0, frame] > target.steady:
                     continue
-                solved = row_of(chain.modified, np.mean(gap[0, :, frame], axis=0), 1e-8)
+                solved = row_of(chain.modified, np.mean(gap[0, :, frame], axis=0), target.steady)
                 if solved is None:
                     continue
                 for column in range(4):
@@ -307,7 +311,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
     flat_shall = shall[:, each, u] + 1j * shall[:, each, v]
     product = np.sum(np.conj(flat_was) * flat_shall, axis=0)
     found = []
-    for k in np.flatnonzero((still < _STEADY) & (np.abs(product) > 1e-6)):
+    for k in np.flatnonzero((still < target.steady) & (np.abs(product) > 1e-6)):
         first = float(np.angle(product[k]))
         rest = np.swapaxes(between[:, k, :3, :3], -1, -2) @ (
             _turn(int(axis1[k]), -first) @ wanted[:, k, :3, :3]
@@ -315,13 +319,13 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
         s, t = (axis2[k] + 1) % 3, (axis2[k] + 2) % 3
         sine = np.sum(rest[:, t, s] - rest[:, s, t])
         second = float(np.arctan2(sine, np.sum(rest[:, s, s] + rest[:, t, t])))
-        if abs(first) < _STEADY or abs(second) < _STEADY:
+        if abs(first) < target.steady or abs(second) < target.steady:
             continue
         values = {
             cell: wrapped(float(chain.cells[cell]) + turn)
             for cell, turn in zip(pairs[k], (first, second), strict=True)
         }
-        found.append(changed(Reading(chain), values))
+        found.append(changed(Reading(chain), values, target.slack))
     return [found[k] for k in target.met_by([one.chain for one in found])]
 
 
@@ -347,12 +351,12 @@ def _turned(chain: Chain, target: Target) -> list[Reading]:
     for row, column in _in_order(chain, (ALPHA, THETA)):
         motion = gap[0, :, chain.frame_of(row, column)].copy()
         motion[:, :3, 3] = 0.0
-        if _spread(motion[None], 1.0)[0] > _STEADY:
+        if _spread(motion[None], 1.0)[0] > target.steady:
             continue
         angle, _, rest = _screw(np.mean(motion, axis=0), _AXES[column])
-        if rest <= _STEADY and abs(angle) > _STEADY:
+        if rest <= target.steady and abs(angle) > target.steady:
             value = wrapped(float(chain.cells[row, column]) + angle)
-            found.append(changed(Reading(chain), {(row, column): value}))
+            found.append(changed(Reading(chain), {(row, column): value}, target.slack))
     return found
 
 
@@ -361,7 +365,7 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
     chain, few = first.chain, target.few
     poses = frames(chain, few.q)
     turn = np.abs(poses[:, -1, :3, :3] - few.poses[:, :3, :3])
-    if np.max(turn) > _STEADY:
+    if np.max(turn) > target.steady:
         return []
     wanted = (few.poses[:, :3, 3] - poses[:, -1, :3, 3]).reshape(-1)
     cells = _in_order(chain, (A, D))
@@ -375,13 +379,13 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
         if np.linalg.det(gram) < 1e-12 * len(wanted) ** most:
             continue  # these two do the same
         solution = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
-        if np.max(np.abs(matrix @ solution - wanted)) > _STEADY * target.size:
+        if np.max(np.abs(matrix @ solution - wanted)) > target.steady * target.size:
             continue
         values = {}
         for k, change in zip(support, solution, strict=True):
             written = float(chain.cells[cells[k]])
-            if abs(change) > _STEADY * target.size:
+            if abs(change) > target.steady * target.size:
                 values[cells[k]] = tidy(written + float(change), written)
         if len(values) == most:
-            found.append(changed(first, values))
+            found.append(changed(first, values, target.slack))
     return found

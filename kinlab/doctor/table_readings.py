@@ -89,22 +89,22 @@ def _shifted(chain: Chain) -> Iterator[Reading]:
             for column in ("a, alpha",):
                 yield Reading(
                     chain.with_cells(cells),
-                    (Cause(every, column, chain.cells[:, [A, ALPHA]], moved, "index", sentence,
+                    (Cause(every, column, chain.cells[:, [A, ALPHA]], moved, "shifted", sentence,
                            1.1 if fill else 1.15),),
                 )  # fmt: skip
 
 
 _SCALES = (
-    (1e-3, "millimetres for metres", "millimetres"),
-    (1e-2, "centimetres for metres", "centimetres"),
-    (0.0254, "inches for metres", "inches"),
+    (1e-3, "millimetres", "millimetres"),
+    (1e-2, "centimetres", "centimetres"),
+    (0.0254, "inches", "inches"),
     (1e3, "metres for millimetres", "thousandths of metres"),
 )
 
 
 def _units(chain: Chain) -> Iterator[Reading]:
     turn = np.pi / 180.0
-    angles = ((turn, "degrees for radians", "in degrees"),
+    angles = ((turn, "degrees", "in degrees"),
               (1.0 / turn, "radians for degrees", "turned into radians twice"))  # fmt: skip
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
         for factor, kind, told in angles:
@@ -163,7 +163,7 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         cause = Cause(every if len(rows) == chain.n else rows, name, chain.cells[:, column],
                       cells[:, column], "sign", f"column {name} has the wrong sign", 1.1)  # fmt: skip
         yield Reading(chain.with_cells(cells), (cause,))
-    cause = Cause(every, "flip", list(chain.sign < 0), list(chain.sign > 0), "joint sense",
+    cause = Cause(every, "flip", list(chain.sign < 0), list(chain.sign > 0), "sense",
                   "every joint turns the other way", 1.2)  # fmt: skip
     yield Reading(replace(chain, sign=-chain.sign), (cause,))
 
@@ -233,14 +233,14 @@ def _joints(chain: Chain) -> Iterator[Reading]:
         slides = bool(chain.prismatic[k])
         kind = chain.prismatic.copy()
         kind[k] = not slides
-        cause = Cause(k + 1, "joint", kinds[slides], kinds[not slides], "joint type",
+        cause = Cause(k + 1, "joint", kinds[slides], kinds[not slides], "type",
                       f"row {k + 1}: the joint is {kinds[not slides]}, not {kinds[slides]}",
                       1.0)  # fmt: skip
         yield Reading(replace(chain, prismatic=kind), (cause,))
         sign = chain.sign.copy()
         sign[k] *= -1.0
         verb = "slides" if slides else "turns"
-        cause = Cause(k + 1, "flip", bool(chain.sign[k] < 0), bool(sign[k] < 0), "joint sense",
+        cause = Cause(k + 1, "flip", bool(chain.sign[k] < 0), bool(sign[k] < 0), "sense",
                       f"row {k + 1}: the joint {verb} the other way", 1.0)  # fmt: skip
         yield Reading(replace(chain, sign=sign), (cause,))
 

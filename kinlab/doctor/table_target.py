@@ -39,6 +39,16 @@ class Target:
         """The larger of 1 m and the farthest coordinate of the tool."""
         return max(1.0, float(np.max(np.abs(self.poses[:, :3, 3]))))
 
+    @property
+    def steady(self) -> float:
+        """Spread over the states below which a difference counts as constant; a candidate only."""
+        return 10.0 * self.tolerance
+
+    @property
+    def slack(self) -> float:
+        """How far solved numbers may be off; nothing where the poses are exact."""
+        return 0.0 if self.tolerance <= 1e-9 else 5.0 * self.tolerance
+
     def miss(self, poses: Array) -> Array:
         """Largest difference per state, lengths over :attr:`size`, (..., N) for (..., N, 4, 4)."""
         gap = np.abs(poses - self.poses)

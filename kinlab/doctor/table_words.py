@@ -8,6 +8,7 @@ repair the table equally well.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -17,6 +18,9 @@ from kinlab.arrays import Array
 
 _SAME = 1e-7
 """Relative difference below which a solved number is the one that a relation gives."""
+EXACT = 1e-7
+"""rad. Slack of an angle that is solved for from exact poses."""
+
 _TURN = 2.0 * math.pi
 _ROUND = math.pi / 12
 """Angles of tables are mostly multiples of 15°."""
@@ -115,81 +119,120 @@ def tidy(length: float, written: float) -> float:
     return short if abs(short - length) < 1e-9 * scale else length
 
 
-def angle_cause(row: int, column: str, written: float, meant: float) -> Cause:
+def angle_cause(row: int, column: str, written: float, solved: float, slack: float = EXACT) -> Cause:
     """Names a slip in alpha or theta.
 
     Args:
         row: 1-based.
         column: ``"alpha"`` or ``"theta"``.
-        written, meant: rad; ``meant`` wrapped.
+        written, solved: rad; ``solved`` is what the poses ask for.
+        slack: how far ``solved`` may be off, rad. Within it the number that a relation gives is
+            the one meant.
     """
     at = f"row {row}: {column}"
-    change = wrapped(meant - written)
-
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(row, column, written, meant, kind, told, cost)
-
-    numbers = f"{degrees(written)} written, {degrees(meant)} meant"
-    in_degrees = f"{at} is in degrees: {number(written)} written, {degrees(meant)} meant"
-    if abs(written) > _TURN + 1e-9 and _same_angle(math.radians(written), meant):
-        return cause("degrees for radians", in_degrees, 1.0)
+    for kind, value, cost in _angle_relations(written):
+        if not _same_angle(value, solved, slack):
+            continue
+        meant = wrapped(value)
+        if kind == "missing" and not _round(solved, slack):
+            meant, cost = wrapped(solved), 1.6
+        numbers = f"{degrees(written)} written, {degrees(meant)} meant"
+        change = degrees(wrapped(meant - written))
+        told = {
+            "degrees": f"is in degrees: {number(written)} written, {degrees(meant)} meant",
+            "missing": f"lacks {change}",
+            "sign": f"has the wrong sign: {numbers}",
+            "half-turn": f"is 180 deg off: {numbers}",
+            "quarter-turn": f"lacks {change}: {numbers}",
+            "radians for degrees": f"was turned into radians twice: {numbers}",
+            "decimal": f"has the decimal point displaced: {number(written)} rad written, "
+            f"{number(meant)} rad meant",
+            "superfluous": f"must be zero: {degrees(written)} written",
+        }[kind]
+        return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+    meant = wrapped(solved)
+    change = degrees(wrapped(meant - written))
     if _close(written, 0.0):
-        return cause("missing", f"{at} lacks {degrees(change)}", 1.0 if _round(meant) else 1.6)
-    if _same_angle(meant, -written):
-        return cause("sign", f"{at} has the wrong sign: {numbers}", 1.0)
-    if abs(written) > 0.7 and _same_angle(math.radians(written), meant):
-        return cause("degrees for radians", in_degrees, 1.2)
-    if _same_angle(change, math.pi):
-        return cause("180 deg", f"{at} is 180 deg off: {numbers}", 1.1)
-    if _same_angle(abs(change), math.pi / 2):
-        return cause("90 deg", f"{at} lacks {degrees(change)}: {numbers}", 1.1)
-    if _same_angle(math.degrees(written), meant):
-        return cause("radians for degrees",
-                     f"{at} was turned into radians twice: {numbers}", 1.2)  # fmt: skip
-    for power in (1, -1, 2, -2, 3, -3):
-        if _close(written * 10.0**power, meant):
-            return cause("decimal point", f"{at}: the decimal point is displaced: "
-                         f"{number(written)} rad written, {number(meant)} rad meant", 1.2)  # fmt: skip
-    if _close(meant, 0.0):
-        return cause("superfluous", f"{at} must be zero: {degrees(written)} written", 1.4)
+        return Cause(row, column, written, meant, "missing", f"{at} lacks {change}",
+                     1.0 if _round(meant, EXACT) else 1.6)  # fmt: skip
     kind, cost = _typed(written, meant)
     if cost > 1.7:
         kind, cost = _typed(math.degrees(written), math.degrees(meant))
-    return cause(kind, f"{at} lacks {degrees(change)}: {numbers}", cost)
+    told = f"{at} lacks {change}: {degrees(written)} written, {degrees(meant)} meant"
+    return Cause(row, column, written, meant, kind, told, cost)
 
 
-def length_cause(row: int, column: str, written: float, meant: float, slides: bool) -> Cause:
+def _angle_relations(written: float) -> Iterator[tuple[str, float, float]]:
+    """Kinds of slips, the angle each one makes of what is written, and its cost."""
+    in_degrees = math.radians(written)
+    if abs(written) > _TURN + 1e-9:
+        yield "degrees", in_degrees, 1.0
+    if _close(written, 0.0):
+        for k in range(-11, 13):
+            yield "missing", k * _ROUND, 1.0
+        return
+    yield "sign", -written, 1.0
+    if abs(written) > 0.7:
+        yield "degrees", in_degrees, 1.2
+    yield "half-turn", written + math.pi, 1.1
+    yield "quarter-turn", written + math.pi / 2, 1.1
+    yield "quarter-turn", written - math.pi / 2, 1.1
+    yield "radians for degrees", math.degrees(written), 1.2
+    for power in (1, -1, 2, -2, 3, -3):
+        yield "decimal", written * 10.0**power, 1.2
+    yield "superfluous", 0.0, 1.4
+
+
+def length_cause(
+    row: int, column: str, written: float, solved: float, slides: bool, slack: float = 0.0
+) -> Cause:
     """Names a slip in a or d.
 
     Args:
         row: 1-based.
         column: ``"a"`` or ``"d"``.
-        written, meant: m.
+        written, solved: m; ``solved`` is what the poses ask for.
         slides: the cell is the offset of a prismatic joint.
+        slack: how far ``solved`` may be off, m.
     """
     at = f"row {row}: {column}"
     if slides and column == "d":
         at += ", the offset of the prismatic joint,"
-
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(row, column, written, meant, kind, told, cost)
-
-    numbers = f"{number(written)} written, {number(meant)} meant"
+    if not _close(written, 0.0):
+        for kind, meant, cost in _length_relations(written):
+            if abs(meant - solved) > slack and not _close(meant, solved):
+                continue
+            numbers = f"{number(written)} written, {number(meant)} meant"
+            told = {
+                "sign": f"has the wrong sign: {numbers}",
+                "millimetres": f"is in millimetres: {numbers}",
+                "decimal": f"has the decimal point displaced: {numbers}",
+                "inches": f"is in inches: {numbers}",
+                "superfluous": f"must be zero: {number(written)} written",
+            }[kind]
+            return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+    meant = _rounded(solved, slack)
     if _close(written, 0.0):
-        return cause("missing", f"{at} lacks {number(meant)} m", 1.3)
-    if _close(meant, -written):
-        return cause("sign", f"{at} has the wrong sign: {numbers}", 1.0)
-    if _close(written / 1000.0, meant):
-        return cause("millimetres for metres", f"{at} is in millimetres: {numbers}", 1.0)
-    for power in (1, -1, 2, -2, 3, -3):
-        if _close(written * 10.0**power, meant):
-            return cause("decimal point", f"{at}: the decimal point is displaced: {numbers}", 1.1)
-    if _close(written * 0.0254, meant):
-        return cause("inches for metres", f"{at} is in inches: {numbers}", 1.2)
-    if _close(meant, 0.0):
-        return cause("superfluous", f"{at} must be zero: {number(written)} written", 1.5)
+        return Cause(row, column, written, meant, "missing", f"{at} lacks {number(meant)} m", 1.3)
     kind, cost = _typed(written, meant)
-    return cause(kind, f"{at} is wrong: {numbers}", cost)
+    numbers = f"{number(written)} written, {number(meant)} meant"
+    return Cause(row, column, written, meant, kind, f"{at} is wrong: {numbers}", cost)
+
+
+def _length_relations(written: float) -> Iterator[tuple[str, float, float]]:
+    yield "sign", -written, 1.0
+    yield "millimetres", written / 1000.0, 1.0
+    for power in (1, -1, 2, -2, 3, -3):
+        yield "decimal", written * 10.0**power, 1.1
+    yield "inches", written * 0.0254, 1.2
+    yield "superfluous", 0.0, 1.5
+
+
+def _rounded(value: float, slack: float) -> float:
+    """The value in no more digits than its uncertainty allows."""
+    if slack < 1e-9:
+        return value
+    return round(value, max(0, math.ceil(-math.log10(slack))))
 
 
 def _typed(written: float, meant: float) -> tuple[str, float]:
@@ -205,32 +248,49 @@ def _typed(written: float, meant: float) -> tuple[str, float]:
     return "value", 2.0
 
 
-def pose_cause(which: str, written: Array, meant: Array, known: Array | None = None) -> Cause:
-    """Names a slip in base or tool, (4, 4) each; ``known`` is the reference's own."""
+def pose_cause(
+    which: str, written: Array, solved: Array, known: Array | None = None, slack: float = 0.0
+) -> Cause:
+    """Names a slip in base or tool, (4, 4) each.
+
+    Args:
+        which: ``"base"`` or ``"tool"``.
+        written, solved: ``solved`` is what the poses ask for.
+        known: the reference's own.
+        slack: how far entries of ``solved`` may be off.
+    """
+    meant = solved
 
     def cause(kind: str, told: str, cost: float) -> Cause:
         return Cause(None, which, written, meant, kind, f"{which} {told}", cost)
 
     if _same_pose(written, np.eye(4)):
-        sure = known is not None and _same_pose(known, meant)
+        sure = known is not None and _same_pose(known, meant, slack)
         return cause("missing", f"is missing: {pose_text(meant)}", 1.2 if sure else 1.9)
+    for kind, value, told in _pose_relations(written):
+        if _same_pose(value, solved, slack):
+            meant = value
+            return cause(kind, told.format(meant=pose_text(meant)), 1.0)
+    if _same_pose(meant, np.eye(4), slack):
+        meant = np.eye(4)
+        return cause("superfluous", "must be the identity", 1.8)
+    return cause("value", f"is wrong: meant is {pose_text(meant)}", 2.2)
+
+
+def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
     turned = np.array(written)
     turned[:3, :3] = written[:3, :3].T
     back = np.array(turned)
     back[:3, 3] = -turned[:3, :3] @ written[:3, 3]
-    if _same_pose(back, meant):
-        return cause("inverted", f"is inverted: meant is {pose_text(meant)}", 1.0)
-    if _same_pose(turned, meant):
-        return cause("transposed", "has its rotation transposed", 1.0)
-    for factor, kind in ((1e-3, "millimetres for metres"), (0.1, "decimal point"),
-                         (10.0, "decimal point")):  # fmt: skip
+    yield "inverted", back, "is inverted: meant is {meant}"
+    yield "transposed", turned, "has its rotation transposed"
+    if not np.any(written[:3, 3]):
+        return
+    for factor, kind in ((1e-3, "millimetres"), (0.1, "decimal"), (10.0, "decimal"),
+                         (-1.0, "sign")):  # fmt: skip
         scaled = np.array(written)
         scaled[:3, 3] *= factor
-        if _same_pose(scaled, meant) and np.any(written[:3, 3]):
-            return cause(kind, f"translation: {kind}; meant is {pose_text(meant)}", 1.0)
-    if _same_pose(meant, np.eye(4)):
-        return cause("superfluous", "must be the identity", 1.8)
-    return cause("value", f"is wrong: meant is {pose_text(meant)}", 2.2)
+        yield kind, scaled, f"has the slip '{kind}' in its translation: meant is {{meant}}"
 
 
 def pose_text(pose: Array) -> str:
@@ -244,17 +304,18 @@ def pose_text(pose: Array) -> str:
     return f"shift ({place}) m, roll, pitch, yaw ({turn}) deg"
 
 
-def _same_pose(one: Array, two: Array) -> bool:
-    return bool(np.max(np.abs(one - two)) < 1e-8 * max(1.0, float(np.max(np.abs(two)))))
+def _same_pose(one: Array, two: Array, slack: float = 0.0) -> bool:
+    scale = max(1.0, float(np.max(np.abs(two))))
+    return bool(np.max(np.abs(one - two)) < max(slack, 1e-8) * scale)
 
 
-def _same_angle(one: float, two: float) -> bool:
-    return abs(math.remainder(one - two, _TURN)) < 1e-7
+def _same_angle(one: float, two: float, slack: float) -> bool:
+    return abs(math.remainder(one - two, _TURN)) < slack
 
 
 def _close(one: float, two: float) -> bool:
     return abs(one - two) <= _SAME * max(abs(one), abs(two)) + 1e-10
 
 
-def _round(angle: float) -> bool:
-    return abs(math.remainder(angle, _ROUND)) < 1e-8
+def _round(angle: float, slack: float) -> bool:
+    return abs(math.remainder(angle, _ROUND)) < slack
