@@ -107,13 +107,19 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
         back = inverse(poses[i + 1])
         com = back[:3, :3] @ bodies.com[i] + back[:3, 3]
         inertia = back[:3, :3] @ bodies.inertia[i] @ back[:3, :3].T
-        one = _Link(i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), slack, poses)
+        one = _Link(
+            i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), slack, poses
+        )
         changes: dict[str, object] = {}
         if abs(one.mass - link.mass) > _REL * max(one.mass, link.mass) + slack:
             causes.append(_mass_cause(one))
             changes["mass"] = one.mass
         massive = one.mass > 0.0
-        if massive and np.max(np.abs(com - np.asarray(link.com))) > 1e-9 * size + slack * (table.n + 1) * size:
+        if (
+            massive
+            and np.max(np.abs(com - np.asarray(link.com)))
+            > 1e-9 * size + slack * (table.n + 1) * size
+        ):
             clean = _tidy(com)
             causes.append(_com_cause(replace(one, com=clean, slack=slack * (table.n + 1) * size)))
             changes["com"] = clean
@@ -124,7 +130,9 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
         )
         if np.max(np.abs(one.inertia - np.asarray(link.inertia))) > limit:
             clean = _tidy(one.inertia)
-            causes.append(_inertia_cause(replace(one, inertia=clean, slack=limit if slack else 0.0)))
+            causes.append(
+                _inertia_cause(replace(one, inertia=clean, slack=limit if slack else 0.0))
+            )
             changes["inertia"] = clean
         if bodies.armature is not None:
             meant = float(bodies.armature[i])
@@ -220,7 +228,9 @@ def _com_cause(one: _Link) -> Cause:
             if factor == 1000.0:
                 return cause("millimetres", "is in millimetres", 1.0)
             return cause("decimal", "has the decimal point displaced", 1.0)
-    wrong = np.flatnonzero(np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12 + one.slack)
+    wrong = np.flatnonzero(
+        np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12 + one.slack
+    )
     if len(wrong) == 1:
         k = int(wrong[0])
         if meant[k] and written[k] and one.power(float(meant[k]), float(written[k])):
@@ -231,7 +241,6 @@ def _com_cause(one: _Link) -> Cause:
     for name, pose in _frames_of(one):
         if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
             return cause("frame", f"is given in {name}", 1.0)
-    for name, pose in _frames_of(one):
         if one.alike(written, meant - pose[:3, 3]):
             return cause("other end", f"is counted from the origin of {name}", 1.0)
         if one.alike(written, pose[:3, :3].T @ meant):
@@ -399,7 +408,6 @@ def _tidy(values: Array) -> Array:
 def _alike(one: Array, two: Array, scale: float = 0.0, slack: float = 0.0) -> bool:
     scale = scale or float(np.max(np.abs(two), initial=0.0))
     return bool(np.max(np.abs(np.asarray(one) - two), initial=0.0) <= 1e-7 * scale + 1e-13 + slack)
-
 
 
 def _power(ratio: float, slack: float = 0.0) -> int:

@@ -138,9 +138,7 @@ def _turn(axis: int, angle: float) -> Array:
     return out
 
 
-def changed(
-    first: Reading, values: dict[tuple[int, int], float], slack: float = 0.0
-) -> Reading:
+def changed(first: Reading, values: dict[tuple[int, int], float], slack: float = 0.0) -> Reading:
     """A reading with cells replaced, each a cause of its own.
 
     Args:
@@ -186,7 +184,9 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
     """The row that a constant motion makes of a row: two cells of it, or a row written twice."""
     chain = first.chain
     step = row_transform(chain.modified, chain.cells[row])
-    solved = row_of(chain.modified, motion @ step if chain.modified else step @ motion, target.steady)
+    solved = row_of(
+        chain.modified, motion @ step if chain.modified else step @ motion, target.steady
+    )
     if solved is None:
         return []
     written = chain.cells[row]

@@ -108,9 +108,7 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     chain = Chain.of(table)
     before = reference.target.error(chain)
     agreed = before <= reference.target.tolerance
-    found = [Reading(chain)] if agreed else explain(
-        chain, reference.target, reference.base, reference.tool
-    )  # fmt: skip
+    found = [Reading(chain)] if agreed else _explained(chain, reference)
     same = None
     if not found:
         same = table_zeros.same_arm(chain, reference)
@@ -124,6 +122,11 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     if not found and table.n != reference.n:
         raise StructureError(counts(table, reference))
     return _told(table, reference, found, same is not None, bodies, before, notes)
+
+
+def _explained(chain: Chain, reference: Reference) -> list[Reading]:
+    bases, tools = table_zeros.ends(chain, reference)
+    return explain(chain, reference.target, [*reference.base, *bases], [*reference.tool, *tools])
 
 
 def _told(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -24,10 +25,12 @@ class Reading:
     Attributes:
         chain: the table as it should be.
         causes: the slips, in the order in which they are taken back.
+        maker: which sort of reading it is.
     """
 
     chain: Chain
     causes: tuple[Cause, ...] = ()
+    maker: int = 0
 
     @property
     def cost(self) -> float:
@@ -39,29 +42,31 @@ class Reading:
         return Reading(self.chain, (*first.causes, *self.causes))
 
 
-def readings(chain: Chain, base: list[Array], tool: list[Array]) -> list[Reading]:
+def readings(chain: Chain, base: list[Array], tool: list[Array], first: int = 0) -> list[Reading]:
     """Every reading of a chain that is one slip away and differs from it.
 
     Args:
         chain: the user's table.
         base, tool: frames that the reference is known to have.
+        first: sorts of readings before this one are left out.
     """
+    makers = (_convention, _shifted, _units, _signs, _exchanged, _order, _joints)
     found = []
-    for maker in (_convention, _shifted, _units, _signs, _exchanged, _order, _joints):
-        found += list(maker(chain))
-    found += list(_frames(chain, base, tool))
+    for k, maker in enumerate(makers):
+        if k >= first:
+            found += [Reading(r.chain, r.causes, k) for r in maker(chain)]
+    found += [Reading(r.chain, r.causes, len(makers)) for r in _frames(chain, base, tool)]
     return [one for one in found if _differs(one.chain, chain)]
 
 
 def _differs(one: Chain, two: Chain) -> bool:
-    return not (
-        one.modified == two.modified
-        and np.array_equal(one.cells, two.cells)
-        and np.array_equal(one.prismatic, two.prismatic)
-        and np.array_equal(one.sign, two.sign)
-        and np.array_equal(one.base, two.base)
-        and np.array_equal(one.tool, two.tool)
-        and one.source == two.source
+    """Whether two chains differ; what a reading has not touched is the same object."""
+    if one.modified != two.modified or one.source != two.source:
+        return True
+    return any(
+        getattr(one, name) is not getattr(two, name)
+        and bool((getattr(one, name) != getattr(two, name)).any())
+        for name in ("cells", "prismatic", "sign", "base", "tool")
     )
 
 
@@ -70,7 +75,7 @@ def _convention(chain: Chain) -> Iterator[Reading]:
     written, meant = names[chain.modified], names[not chain.modified]
     cause = Cause(None, "convention", written, meant, "convention",
                   f"the rows are in the {meant} convention, not the {written}", 0.9)  # fmt: skip
-    yield Reading(replace(chain, modified=not chain.modified), (cause,))
+    yield Reading(chain.but(modified=not chain.modified), (cause,))
 
 
 def _shifted(chain: Chain) -> Iterator[Reading]:
@@ -127,7 +132,7 @@ def _units(chain: Chain) -> Iterator[Reading]:
                     changed = {which: ends[which] for which in some}
                     extra = f", {' and '.join(some)}"
                     yield Reading(
-                        replace(other, **changed),
+                        other.but(**changed),
                         (_unit_cause(chain, columns, kind, f"in {told}", extra),),
                     )
     cells = chain.cells.copy()
@@ -165,7 +170,7 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         yield Reading(chain.with_cells(cells), (cause,))
     cause = Cause(every, "flip", list(chain.sign < 0), list(chain.sign > 0), "sense",
                   "every joint turns the other way", 1.2)  # fmt: skip
-    yield Reading(replace(chain, sign=-chain.sign), (cause,))
+    yield Reading(chain.but(sign=-chain.sign), (cause,))
 
 
 def _exchanged(chain: Chain) -> Iterator[Reading]:
@@ -177,17 +182,20 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
         if one == D:
             likely = 1.5
         different = [int(k) for k in np.flatnonzero(chain.cells[:, one] != chain.cells[:, two])]
-        for rows in [*([k] for k in different), different]:
-            if rows is different and len(rows) < 2:
-                continue
+        sets = [[k] for k in different]
+        if likely == 1.0:
+            sets += [list(two) for two in combinations(different, 2)]
+        if len(different) > 2 or likely > 1.0 and len(different) == 2:
+            sets.append(different)
+        for rows in sets:
             cells = chain.cells.copy()
-            cells[np.ix_(rows, [one, two])] = cells[np.ix_(rows, [two, one])]
+            cells[rows, one], cells[rows, two] = chain.cells[rows, two], chain.cells[rows, one]
             named = tuple(k + 1 for k in rows)
             at = where(named[0]) if len(rows) == 1 else where(named)
             yield Reading(
                 chain.with_cells(cells),
                 (Cause(named[0] if len(rows) == 1 else named, f"{names[0]}, {names[1]}",
-                       chain.cells[np.ix_(rows, [one, two])], cells[np.ix_(rows, [one, two])],
+                       chain.cells[rows][:, [one, two]], cells[rows][:, [one, two]],
                        "exchanged", f"{at}: {names[0]} and {names[1]} are exchanged",
                        likely + (0.1 if len(rows) > 1 else 0.0)),),
             )  # fmt: skip
@@ -221,8 +229,7 @@ def _order(chain: Chain) -> Iterator[Reading]:
 
 
 def _permuted(chain: Chain, order: list[int]) -> Chain:
-    return replace(
-        chain, cells=chain.cells[order], prismatic=chain.prismatic[order],
+    return chain.but(cells=chain.cells[order], prismatic=chain.prismatic[order],
         sign=chain.sign[order], source=tuple(chain.source[k] for k in order),
     )  # fmt: skip
 
@@ -236,13 +243,13 @@ def _joints(chain: Chain) -> Iterator[Reading]:
         cause = Cause(k + 1, "joint", kinds[slides], kinds[not slides], "type",
                       f"row {k + 1}: the joint is {kinds[not slides]}, not {kinds[slides]}",
                       1.0)  # fmt: skip
-        yield Reading(replace(chain, prismatic=kind), (cause,))
+        yield Reading(chain.but(prismatic=kind), (cause,))
         sign = chain.sign.copy()
         sign[k] *= -1.0
         verb = "slides" if slides else "turns"
         cause = Cause(k + 1, "flip", bool(chain.sign[k] < 0), bool(sign[k] < 0), "sense",
                       f"row {k + 1}: the joint {verb} the other way", 1.0)  # fmt: skip
-        yield Reading(replace(chain, sign=sign), (cause,))
+        yield Reading(chain.but(sign=sign), (cause,))
 
 
 def _frames(chain: Chain, base: list[Array], tool: list[Array]) -> Iterator[Reading]:
@@ -250,12 +257,14 @@ def _frames(chain: Chain, base: list[Array], tool: list[Array]) -> Iterator[Read
         written = getattr(chain, which)
         turned = written.copy()
         turned[:3, :3] = written[:3, :3].T
+        tried = [written]
         for meant in [inverse(written), turned, *known, np.eye(4)]:
-            if np.max(np.abs(meant - written)) < 1e-12:
+            if any(np.max(np.abs(meant - other)) < 1e-9 for other in tried):
                 continue
+            tried.append(meant)
             cause = pose_cause(which, written, meant, known[0] if known else None)
-            yield Reading(replace(chain, **{which: meant}), (cause,))
+            yield Reading(chain.but(**{which: meant}), (cause,))
     if np.max(np.abs(chain.base - chain.tool)) > 1e-12:
         cause = Cause(None, "base, tool", "base, tool", "tool, base", "exchanged",
                       "base and tool are exchanged", 1.2)  # fmt: skip
-        yield Reading(replace(chain, base=chain.tool, tool=chain.base), (cause,))
+        yield Reading(chain.but(base=chain.tool, tool=chain.base), (cause,))

@@ -11,6 +11,7 @@ from kinlab.doctor.table_cells import inserted, one_change, removed, two_cells
 from kinlab.doctor.table_chain import Chain
 from kinlab.doctor.table_readings import Reading, readings
 from kinlab.doctor.table_target import Target
+from kinlab.doctor.table_words import SIX
 
 
 def explain(chain: Chain, target: Target, base: list[Array], tool: list[Array]) -> list[Reading]:
@@ -25,11 +26,12 @@ def explain(chain: Chain, target: Target, base: list[Array], tool: list[Array]) 
         All explanations of that many slips (one or two), the likeliest first; none where three
         or more would be needed.
     """
+    found: list[Reading] = []
     for stage in _stages(chain, target, base, tool):
-        found = _distinct(stage())
-        if found:
-            return found
-    return []
+        found = _distinct([*found, *stage()])
+        if found and found[0].cost < SIX:
+            break
+    return found
 
 
 def _stages(
@@ -57,10 +59,13 @@ def _stages(
 def _two_readings(
     first: list[Reading], target: Target, base: list[Array], tool: list[Array], found: bool
 ) -> list[Reading]:
-    """Two readings after one another; the second after the first only, for most commute."""
+    """Two readings after one another, in one order: sorts of readings commute, up to a row's
+    number."""
     if found:
         return []
-    both = [second.after(one) for one in first for second in readings(one.chain, base, tool)]
+    both = [
+        second.after(one) for one in first for second in readings(one.chain, base, tool, one.maker)
+    ]
     kept = []
     for start in range(0, len(both), 2048):
         part = both[start : start + 2048]

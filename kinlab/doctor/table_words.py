@@ -21,6 +21,10 @@ _SAME = 1e-7
 EXACT = 1e-7
 """rad. Slack of an angle that is solved for from exact poses."""
 
+SIX = 2.7
+"""Cost of a base or tool all of whose six numbers are solved for: more than two slips of a known
+kind, which have no number to solve for."""
+
 _TURN = 2.0 * math.pi
 _ROUND = math.pi / 12
 """Angles of tables are mostly multiples of 15°."""
@@ -119,7 +123,9 @@ def tidy(length: float, written: float) -> float:
     return short if abs(short - length) < 1e-9 * scale else length
 
 
-def angle_cause(row: int, column: str, written: float, solved: float, slack: float = EXACT) -> Cause:
+def angle_cause(
+    row: int, column: str, written: float, solved: float, slack: float = EXACT
+) -> Cause:
     """Names a slip in alpha or theta.
 
     Args:
@@ -274,7 +280,7 @@ def pose_cause(
     if _same_pose(meant, np.eye(4), slack):
         meant = np.eye(4)
         return cause("superfluous", "must be the identity", 1.8)
-    return cause("value", f"is wrong: meant is {pose_text(meant)}", 2.2)
+    return cause("value", f"is wrong: meant is {pose_text(meant)}", SIX)
 
 
 def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:

@@ -14,7 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.table_against import Axes, Reference
 from kinlab.doctor.table_cells import changed, one_change
-from kinlab.doctor.table_chain import THETA, Chain, D, inverse, tool_poses
+from kinlab.doctor.table_chain import THETA, Chain, D, frames, inverse, tool_poses
 from kinlab.doctor.table_readings import Reading
 from kinlab.doctor.table_words import pose_cause, tidy, wrapped
 
@@ -141,19 +141,19 @@ def _base_moved(chain: Chain, axes: Axes) -> Chain | None:
     """The chain with its base moved so that its first two axes are the reference's."""
     if chain.n < 2:
         return None
-    mine = _first_frame(Axes.of(chain))
-    theirs = _first_frame(axes)
+    mine = _pair_frame(Axes.of(chain), 0)
+    theirs = _pair_frame(axes, 0)
     if mine is None or theirs is None:
         return None
     return replace(chain, base=theirs @ inverse(mine) @ chain.base)
 
 
-def _first_frame(axes: Axes) -> Array | None:
-    """A frame that the first two axes determine: z along the first, x along the normal."""
-    z, z2 = axes.direction[0], axes.direction[1]
-    if axes.slides[0] or axes.slides[1]:
+def _pair_frame(axes: Axes, i: int) -> Array | None:
+    """A frame that axes i and i + 1 determine: z along the first, x along the normal."""
+    z, z2 = axes.direction[i], axes.direction[i + 1]
+    if axes.slides[i] or axes.slides[i + 1]:
         return None
-    foot = _foot(axes.point[1], z2, axes.point[0], z)
+    foot = _foot(axes.point[i + 1], z2, axes.point[i], z)
     normal = foot - (foot @ z) * z
     length = float(np.linalg.norm(normal))
     if length < 1e-9:
@@ -164,8 +164,34 @@ def _first_frame(axes: Axes) -> Array | None:
     x = normal / length
     out = np.eye(4)
     out[:3, 0], out[:3, 1], out[:3, 2] = x, np.cross(z, x), z
-    out[:3, 3] = axes.point[0] + (foot @ z) * z
+    out[:3, 3] = axes.point[i] + (foot @ z) * z
     return out
+
+
+def ends(chain: Chain, reference: Reference) -> tuple[list[Array], list[Array]]:
+    """Bases and tools that bring one pair of neighbouring axes onto the reference's.
+
+    The base is the right one where the rows in front of the pair are, the tool where those
+    behind it are.
+    """
+    axes, last = reference.axes, reference.zero_pose
+    if axes is None or last is None or chain.n != reference.n:
+        return [], []
+    mine = Axes.of(chain)
+    end = frames(chain, np.zeros((1, chain.n)))[0, -2]
+    bases: list[Array] = []
+    tools: list[Array] = []
+    for i in range(chain.n - 1):
+        one, two = _pair_frame(mine, i), _pair_frame(axes, i)
+        if one is None or two is None:
+            continue
+        for found, pose in (
+            (bases, two @ inverse(one) @ chain.base),
+            (tools, inverse(end) @ one @ inverse(two) @ last),
+        ):
+            if not any(np.max(np.abs(pose - other)) < 1e-9 for other in found):
+                found.append(pose)
+    return bases, tools
 
 
 def sure_rows(chain: Chain, reference: Reference) -> tuple[int, ...]:
