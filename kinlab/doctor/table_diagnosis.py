@@ -108,25 +108,29 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     chain = Chain.of(table)
     before = reference.target.error(chain)
     agreed = before <= reference.target.tolerance
-    found = [Reading(chain)] if agreed else _explained(chain, reference)
+    found = [Reading(chain)] if agreed else _explained(chain, reference, 1)
+    if not found and reference.axes is None and table.n == reference.n:
+        noisy = table_noise.judge(table, reference, notes)
+        if noisy is not None:
+            return noisy
+    if not found:
+        found = _explained(chain, reference, 2)
     same = None
     if not found:
         same = table_zeros.same_arm(chain, reference)
         found = [] if same is None else [same]
     if not found and reference.sharper is not None:
         return _judge(table, reference.sharper, bodies, [*notes, *reference.sharper.notes[-1:]])
-    if not found and reference.axes is None and table.n == reference.n:
-        noisy = table_noise.judge(table, reference, notes)
-        if noisy is not None:
-            return noisy
     if not found and table.n != reference.n:
         raise StructureError(counts(table, reference))
     return _told(table, reference, found, same is not None, bodies, before, notes)
 
 
-def _explained(chain: Chain, reference: Reference) -> list[Reading]:
+def _explained(chain: Chain, reference: Reference, most: int) -> list[Reading]:
     bases, tools = table_zeros.ends(chain, reference)
-    return explain(chain, reference.target, [*reference.base, *bases], [*reference.tool, *tools])
+    return explain(
+        chain, reference.target, [*reference.base, *bases], [*reference.tool, *tools], most
+    )
 
 
 def _told(

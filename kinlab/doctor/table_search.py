@@ -14,20 +14,23 @@ from kinlab.doctor.table_target import Target
 from kinlab.doctor.table_words import SIX
 
 
-def explain(chain: Chain, target: Target, base: list[Array], tool: list[Array]) -> list[Reading]:
+def explain(
+    chain: Chain, target: Target, base: list[Array], tool: list[Array], most: int = 2
+) -> list[Reading]:
     """The fewest slips that, taken back, give the target's poses at every state.
 
     Args:
         chain: the user's table.
         target: the reference's poses.
         base, tool: frames that the reference is known to have.
+        most: slips that are looked for, 1 or 2.
 
     Returns:
         All explanations of that many slips (one or two), the likeliest first; none where three
         or more would be needed.
     """
     found: list[Reading] = []
-    for stage in _stages(chain, target, base, tool):
+    for stage in _stages(chain, target, base, tool)[:most]:
         found = _distinct([*found, *stage()])
         if found and found[0].cost < SIX:
             break
