@@ -112,10 +112,10 @@ class TableDiagnosis:
         return (
             f"<div><p><b>{escape(name)}: {escape(self.verdict)}</b> (against "
             f"{escape(self.reference)})</p><p>{escape(self.sentence)}</p><ul>{items}</ul>"
-            f"{self._rows_html()}</div>"
+            f"{self.rows_html()}</div>"
         )
 
-    def _rows_html(self) -> str:
+    def rows_html(self) -> str:
         """The table with the wrong cells struck out beside what is meant."""
         from kinlab.doctor.table_words import degrees, number
 
