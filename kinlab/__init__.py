@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.redundancy import redundancy
     from kinlab.analysis.singularity import describe_singularity, find_singularities
+    from kinlab.doctor.table_diagnosis import diagnose_table
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
@@ -87,6 +88,7 @@ _LATER = {
     "design_isotropic": "kinlab.analysis.design",
     "dexterity": "kinlab.analysis.metrics",
     "diagnose": "kinlab.doctor.examine",
+    "diagnose_table": "kinlab.doctor.table_diagnosis",
     "ellipsoid": "kinlab.analysis.ellipsoids",
     "factored_determinant": "kinlab.analysis.determinant",
     "find_isotropic": "kinlab.analysis.isotropy",
@@ -140,6 +142,7 @@ __all__ = [
     "design_isotropic",
     "dexterity",
     "diagnose",
+    "diagnose_table",
     "ellipsoid",
     "factored_determinant",
     "find_isotropic",

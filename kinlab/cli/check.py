@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from kinlab.cli.robots import TIP
+from kinlab.errors import OptionError
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -36,6 +39,15 @@ QUANTITIES = Annotated[
 ]
 SAMPLES = Annotated[int, typer.Option("--samples", help="Random states for each row.", min=1)]
 SEED = Annotated[int, typer.Option("--seed", help="Same seed, same states.", min=0)]
+AGAINST = Annotated[
+    str | None,
+    typer.Option(
+        "--against",
+        help="Another description of the same arm: a robot, a .toml, .csv or .urdf file, or a "
+        ".csv of poses (q1 ... qn, then x, y, z, roll, pitch, yaw or T11 ... T34). Says which "
+        "cell of the tables is wrong.",
+    ),
+]
 
 
 def register(app: typer.Typer) -> None:
@@ -51,13 +63,22 @@ def check(
     quantities: QUANTITIES = False,
     samples: SAMPLES = 200,
     seed: SEED = 0,
+    against: AGAINST = None,
+    tip: TIP = None,
 ) -> None:
-    """Put hand formulas beside the engine over seeded random states.
+    """Put hand formulas beside the engine, or a DH table beside another description of the arm.
 
     A formula of yours that differs is taken apart: what is wrong, and how far off it is before
-    and after the repair. Exit code 0 if every correct form agrees (and every misprint shows), 1 if
-    not, 2 for bad input.
+    and after the repair. With --against the same is done to a table, cell by cell. Exit code 0 if
+    every correct form agrees (and every misprint shows), 1 if not, 2 for bad input.
     """
+    if against is not None:
+        from kinlab.cli.against import check_against
+
+        check_against(what or [], against, tip, report or [], json, seed)
+        return
+    if tip is not None:
+        raise OptionError(f"check: --tip {tip!r} names the tool of a URDF given by --against")
     from kinlab.check.catalogue import Row
     from kinlab.check.report import check_report_path, write_report
     from kinlab.check.targets import tasks
