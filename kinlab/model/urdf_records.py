@@ -356,7 +356,7 @@ def _joint(element: Any, links: dict[str, LinkRecord], where: str) -> JointRecor
         raise UrdfError(f"{where}: type {kind!r} is unknown; {near(str(kind), _KNOWN)}")
     xyz, rpy = read_origin(element, where)
     fixed = JointRecord(
-        element.get("name"), kind, *ends, xyz, rpy, np.array([1.0, 0.0, 0.0]),
+        element.get("name"), kind, ends[0], ends[1], xyz, rpy, np.array([1.0, 0.0, 0.0]),
         mimics=_only(element, "mimic", where) is not None,
     )  # fmt: skip
     return _moving(fixed, element, where) if kind in MOVING else fixed
@@ -364,8 +364,12 @@ def _joint(element: Any, links: dict[str, LinkRecord], where: str) -> JointRecor
 
 def _moving(joint: JointRecord, element: Any, where: str) -> JointRecord:
     dynamics = _only(element, "dynamics", where)
-    losses = {key: _amount(dynamics, key, f"{where}: {key}") for key in ("damping", "friction")}
-    joint = replace(joint, axis=_axis(_only(element, "axis", where), where), **losses)
+    joint = replace(
+        joint,
+        axis=_axis(_only(element, "axis", where), where),
+        damping=_amount(dynamics, "damping", f"{where}: damping"),
+        friction=_amount(dynamics, "friction", f"{where}: friction"),
+    )
     limit = _only(element, "limit", where)
     if limit is None:
         if joint.kind != "continuous":
@@ -379,11 +383,11 @@ def _moving(joint: JointRecord, element: Any, where: str) -> JointRecord:
         lower, upper = -WIDE_TURN, WIDE_TURN
     if lower > upper:
         raise UrdfError(f"{where}: lower {lower:g} is above upper {upper:g}")
-    rates = {key: _amount(limit, key, f"{where}: limit {key}") for key in ("velocity", "effort")}
-    for key in rates:
+    rates = [_amount(limit, key, f"{where}: limit {key}") for key in ("velocity", "effort")]
+    for key in ("velocity", "effort"):
         if limit.get(key) is None:
             raise UrdfError(f"{where}: <limit> has no {key}; a {joint.kind} joint must have one")
-    return replace(joint, lower=lower, upper=upper, **rates)
+    return replace(joint, lower=lower, upper=upper, velocity=rates[0], effort=rates[1])
 
 
 def _amount(element: Any, key: str, where: str) -> float:
