@@ -18,6 +18,7 @@ from kinlab.doctor.entries import split_name
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.input import FormulaFile, canonical, read_file
 from kinlab.doctor.labels import quantity_of
+from kinlab.doctor.plain import plain_values
 from kinlab.doctor.tree import Node
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
 from kinlab.files import read_text
@@ -102,7 +103,7 @@ def _of_quantity(
                     for i, j in np.ndindex(shape) if f"{plain}[{i},{j}]" in formulas}  # fmt: skip
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
-    values = {label: _values(node, case, file, titles.get(label, label))
+    values = {label: _values(node, case, file, _entry_of(label, titles))
               for label, node in formulas.items()}  # fmt: skip
     if len(formulas) == len(labels):
         hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
@@ -192,7 +193,16 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     return given
 
 
+def _entry_of(label: str, titles: dict[str, str]) -> str:
+    """The file's entry that gives a place, its mirror image where only that is given."""
+    if label in titles:
+        return titles[label]
+    plain, index = split_name(label)
+    return titles[f"{plain}[{index[1]},{index[0]}]"]
+
+
 def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
+    """The values of an entry, by its text as it is written."""
     count = len(next(iter(case.arguments.values())))
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
     at = {name: np.full(count, value) for name, value in words.items()}
@@ -206,5 +216,18 @@ def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
             f"{file.path}: {entry}: {sorted(missing)[0]} does not belong into "
             f"{case.quantity.name}, which depends on {', '.join(case.quantity.arguments)}"
         )
-    with np.errstate(all="ignore"):
-        return np.array(np.broadcast_to(tree.evaluate(node, at), (count,)), dtype=float)
+
+    def meaning(name: str) -> Array:
+        if name in file.symbol_texts:
+            return plain_values(file.symbol_texts[name], meaning, count)
+        if name in at:
+            return at[name]
+        known = canonical(name)
+        if not tree.names(known) <= set(at):  # it cancels out of the tree, not out of the text
+            raise ExpressionError(
+                f"{file.path}: {entry}: {name} does not belong into {case.quantity.name}, which "
+                f"depends on {', '.join(case.quantity.arguments)}"
+            )
+        return np.array(np.broadcast_to(tree.evaluate(known, at), (count,)), dtype=float)
+
+    return plain_values(file.texts[entry], meaning, count)

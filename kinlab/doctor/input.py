@@ -68,12 +68,16 @@ class FormulaFile:
         robot: a name or path for ``kl.load``.
         symbols: the user's own names: a number, or text over other names.
         formulas: entry name to expression, in the order of the file.
+        texts: the formulas as they are written, for plain evaluation.
+        symbol_texts: the same for symbols; a number as its digits.
     """
 
     path: str
     robot: str
     symbols: dict[str, Node]
     formulas: dict[str, Node]
+    texts: dict[str, str]
+    symbol_texts: dict[str, str]
 
 
 def read_file(path: str | Path) -> FormulaFile:
@@ -122,7 +126,10 @@ def read_file(path: str | Path) -> FormulaFile:
         robot,
         {name: _symbol(value, f"{place}: symbol {name!r}") for name, value in symbols.items()},
         {name: _formula(value, f"{place}: {name}") for name, value in entries.items()},
-    )
+        {name: tidied(value) for name, value in entries.items()},
+        {name: tidied(value if isinstance(value, str) else repr(float(value)))
+         for name, value in symbols.items()},
+    )  # fmt: skip
 
 
 def parse(text: str, place: str = "expression") -> Node:
@@ -138,7 +145,7 @@ def parse(text: str, place: str = "expression") -> Node:
     """
     if len(text) > _LENGTH:
         raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
-    text = " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
+    text = tidied(text)
     _refuse_deep(text, place)
     try:
         parsed = ast.parse(text, mode="eval")
@@ -150,6 +157,11 @@ def parse(text: str, place: str = "expression") -> Node:
     if sum(1 for _ in ast.walk(parsed)) > 3 * _NODES:
         raise ExpressionError(f"{place}: more than {_NODES} terms and factors")
     return _Reader(place).read(parsed.body, 0)
+
+
+def tidied(text: str) -> str:
+    """The text with ``**`` for ``^``, plain signs and single blanks, as Python reads it."""
+    return " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
 
 
 def canonical(name: str) -> Node:
