@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import tempfile
+import tomllib
 from pathlib import Path
+from typing import Any
 
-from kinlab.errors import FileError
+from kinlab.errors import FileError, KinlabError
 
 
 def read_text(path: str | Path, *, limit: int = 64 << 20) -> str:
@@ -28,6 +30,28 @@ def read_text(path: str | Path, *, limit: int = 64 << 20) -> str:
         raise FileError(f"{file}: not UTF-8 text ({problem.reason})") from None
     except OSError as problem:
         raise FileError(f"{file}: cannot be read ({problem.strerror})") from None
+
+
+def read_toml(text: str, place: str, error: type[KinlabError]) -> dict[str, Any]:
+    """Reads TOML text; every way in which that can fail is one error.
+
+    Args:
+        text: the TOML.
+        place: what to put in front of a message.
+        error: the class to raise.
+
+    Raises:
+        KinlabError: (the class given) not TOML, nested too deep, or a number of thousands of
+            digits.
+    """
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as problem:
+        raise error(f"{place}: not TOML: {str(problem)[:200]}") from None
+    except RecursionError:
+        raise error(f"{place}: not TOML: nested too deep") from None
+    except ValueError:  # Python's bound on the digits of a whole number
+        raise error(f"{place}: not TOML: a number or date that cannot be held") from None
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:

@@ -20,8 +20,8 @@ WHAT = Annotated[
     list[str] | None,
     typer.Argument(
         help="Robots, .toml/.csv/.urdf files of robots, your formulas (.py files with marked "
-        "functions, .toml files of text), notes (001) or formula ids (002.C). Nothing: the whole "
-        "catalogue on the shipped robots.",
+        "functions, which are run; .toml files of text), notes (001) or formula ids (002.C). "
+        "Nothing: the whole catalogue on the shipped robots.",
         show_default=False,
     ),
 ]
@@ -54,6 +54,7 @@ def check(
 ) -> None:
     """Put hand formulas beside the engine over seeded random states.
 
+    A .py file is run, like any program, in a process of its own: only check files you trust.
     A formula of yours that differs is taken apart: what is wrong, and how far off it is before
     and after the repair. Exit code 0 if every correct form agrees (and every misprint shows), 1 if
     not, 2 for bad input.
@@ -180,7 +181,8 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
 def _print_failures(console: Console, done: Sequence[Row]) -> None:
     for row in done:
         if not row.corrected.agrees:
-            console.print(f"\n{row.formula.key}: {row.corrected}", style="red", markup=False)
+            told = row.verdict if row.failure else row.corrected
+            console.print(f"\n{row.formula.key}: {told}", style="red", markup=False)
             if row.finding is not None:
                 _print_finding(console, row.finding)
 

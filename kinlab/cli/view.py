@@ -101,15 +101,15 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 
 def _holds_five_bar(name: str) -> bool:
     """Whether a TOML file is a five-bar: those have crank lengths, arms have links."""
-    import tomllib
-
-    from kinlab.files import read_text
+    from kinlab.errors import FileError
+    from kinlab.files import read_text, read_toml
 
     if not name.lower().endswith(".toml"):
         return False
+    text = read_text(name)
     try:
-        return "l1" in tomllib.loads(read_text(name))
-    except tomllib.TOMLDecodeError:
+        return "l1" in read_toml(text, name, FileError)
+    except FileError:
         return False  # the arm's reader says what is wrong with it
 
 

@@ -19,8 +19,6 @@ BLANKS = " \t\r\n"
 
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?", re.ASCII)
 _LONGEST = 400
-_SMALLEST = 2.2250738585072014e-308
-"""Least normal number: below it digits are lost, and C++ streams refuse."""
 
 
 def strict_number(
@@ -35,8 +33,7 @@ def strict_number(
         shown: what to show in a message; left out, the word.
 
     Raises:
-        KinlabError: (the class given) not a number in ASCII digits, too long, not finite, or so
-            small that digits are lost.
+        KinlabError: (the class given) not a number in ASCII digits, too long, or not finite.
     """
     if len(word) > _LONGEST:
         raise error(f"{where}: a number of {len(word)} characters; at most {_LONGEST}")
@@ -49,8 +46,6 @@ def strict_number(
     value = float(word)
     if not math.isfinite(value):
         raise error(f"{where}: {shown!r}; every number must be finite")
-    if abs(value) < _SMALLEST and re.search("[1-9]", word.lower().split("e")[0]):
-        raise error(f"{where}: {word!r} is too small to be held; write 0")
     return value
 
 

@@ -20,6 +20,8 @@ from kinlab.model.urdf_records import Inertial, JointRecord, UrdfTree
 MOST_JOINTS = 100
 """Most moving joints of a chain: the engine's memory grows with the cube, 70 MB at 100."""
 
+_LEAST = 1e-300
+
 _MISS = 1e-9
 """Relative difference between two readings that is still rounding."""
 
@@ -70,6 +72,8 @@ def build(tree: UrdfTree, chain: list[str], place: str) -> Any:
     armature = np.array([tree.armature.get(name, 0.0) for name in chain])
     _compare(model, tree, chain, place)
     model.armature = armature
+    for key, name in (("lower", "lowerPositionLimit"), ("upper", "upperPositionLimit")):
+        setattr(model, name, np.array([getattr(tree.joints[joint], key) for joint in chain]))
     return model
 
 
@@ -89,13 +93,13 @@ def spatial_inertia(inertial: Inertial) -> Array:
 def _write_inertial(link: Any, inertial: Inertial) -> None:
     element = etree.SubElement(link, "inertial")
     etree.SubElement(element, "origin", xyz=_text(inertial.com), rpy=_text(inertial.rpy))
-    etree.SubElement(element, "mass", value=repr(inertial.mass))
+    etree.SubElement(element, "mass", value=_digits(inertial.mass))
     i = inertial.inertia
     entries = {
         "ixx": i[0, 0], "ixy": i[0, 1], "ixz": i[0, 2],
         "iyy": i[1, 1], "iyz": i[1, 2], "izz": i[2, 2],
     }  # fmt: skip
-    etree.SubElement(element, "inertia", {key: repr(float(x)) for key, x in entries.items()})
+    etree.SubElement(element, "inertia", {key: _digits(x) for key, x in entries.items()})
 
 
 def _write_joint(root: Any, joint: JointRecord, moves: bool) -> None:
@@ -107,13 +111,18 @@ def _write_joint(root: Any, joint: JointRecord, moves: bool) -> None:
     if moves:
         etree.SubElement(element, "axis", xyz=_text(joint.axis))
         limits = ("lower", "upper", "effort", "velocity")
-        etree.SubElement(element, "limit", {key: repr(getattr(joint, key)) for key in limits})
+        etree.SubElement(element, "limit", {key: _digits(getattr(joint, key)) for key in limits})
         losses = ("damping", "friction")
-        etree.SubElement(element, "dynamics", {key: repr(getattr(joint, key)) for key in losses})
+        etree.SubElement(element, "dynamics", {key: _digits(getattr(joint, key)) for key in losses})
 
 
 def _text(values: Array) -> str:
-    return " ".join(repr(float(value)) for value in values)
+    return " ".join(_digits(value) for value in values)
+
+
+def _digits(value: float) -> str:
+    """All digits; what is too small for a C++ stream to read is 0."""
+    return repr(float(value)) if abs(value) > _LEAST else "0.0"
 
 
 def _compare(model: Any, tree: UrdfTree, chain: list[str], place: str) -> None:
@@ -157,7 +166,7 @@ def _compare(model: Any, tree: UrdfTree, chain: list[str], place: str) -> None:
             ("damping", model.damping),
             ("friction", model.friction),
         ):
-            if float(vector[index - 1]) != getattr(joint_record, key):
+            if float(vector[index - 1]) != float(_digits(getattr(joint_record, key))):
                 raise UrdfError(f"{where}: Pinocchio read another {key}")
 
 
