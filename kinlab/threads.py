@@ -89,7 +89,9 @@ def available() -> int:
         return int(limit)
     text = os.environ.get(VARIABLE)
     if text is not None and not (_NUMBER.fullmatch(text) and int(text) > 0):
-        raise OptionError(f"{VARIABLE} is {text!r}; it must be a whole number from 1 to 9999")
+        raise OptionError(
+            f"{VARIABLE} is {text!r}; it must be a whole number above zero, up to 9999"
+        )
     if _PROCESS.forked:
         return 1
     return cores() if text is None else int(text)
