@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from kinlab.cli.screen import Screen, echo, screen, styled
+from kinlab.cli.screen import Screen, echo, screen, styled, visible
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -110,12 +110,12 @@ def _examine(files: list[str], samples: int, seed: int) -> list[Finding]:
 def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Finding]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
     done: list[Row | Finding] = []
     with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=len(todo))
         for task in todo:
-            progress.update(bar, description=task.label)
+            progress.update(bar, description=visible(task.label))
             done.append(_one(task, samples, seed))
             progress.advance(bar)
     return done
