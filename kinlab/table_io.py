@@ -28,6 +28,9 @@ from kinlab.expressions import parse_angle, parse_number
 from kinlab.files import read_text, read_toml
 from kinlab.rotations import rpy_matrix
 
+MOST_LINKS = 100
+"""Most links of a table: the engine's memory grows with the cube, 70 MB at 100."""
+
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
 _LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature")
 _ANGLES = ("alpha", "theta")
@@ -77,6 +80,8 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
     rows = data.get("links", [])
     if not isinstance(rows, list) or not all(isinstance(r, dict) for r in rows):
         raise TableError(f"{place}: links must be [[links]] tables, one per row")
+    if len(rows) > MOST_LINKS:
+        raise TableError(f"{place}: {len(rows)} links; at most {MOST_LINKS}")
     read_convention(data.get("convention"), place)
     optional: dict[str, Any] = {}
     for key in ("base", "tool"):
@@ -215,6 +220,8 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
             raise TableError(f"{place}: column {column!r} is missing")
     links = []
     for i, row in enumerate(_rows(reader, place), 1):
+        if i > MOST_LINKS:
+            raise TableError(f"{place}: more than {MOST_LINKS} links")
         where = f"{place}, link {i}"
         if None in row or None in row.values():
             raise TableError(f"{where}: the row does not have {len(header)} cells")

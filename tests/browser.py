@@ -72,9 +72,18 @@ def wait_until(tab, expression, seconds=30.0):
     Playwright's own way evaluates text within the page, which the page's policy forbids.
     """
     end = time.monotonic() + seconds
-    while not tab.evaluate(f"() => Boolean({expression})"):
+    while not _true(tab, expression):
         assert time.monotonic() < end, f"{expression} stayed false"
         tab.wait_for_timeout(20)
+
+
+def _true(tab, expression):
+    try:
+        return tab.evaluate(f"() => Boolean({expression})")
+    except Exception as problem:
+        if "context was destroyed" in str(problem):  # the page is loading itself anew
+            return False
+        raise
 
 
 def world(tab, path):

@@ -26,7 +26,7 @@ from kinlab.parent import end_with_parent
 VARIABLE = "KINLAB_CHECK_SECONDS"
 """Environment variable: seconds that a file may take to load, and a function for all states."""
 
-_SECONDS = 60.0
+_SECONDS = 20.0
 
 
 class FunctionLostError(FormulaError):
