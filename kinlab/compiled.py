@@ -14,8 +14,11 @@ for several seconds more.
 from __future__ import annotations
 
 import logging
+import os
+import pickle
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from functools import cache, partial
 from typing import Any
 
@@ -43,9 +46,38 @@ def kernel(function: Callable[..., Any]) -> Any:
     calls: touch a file after changing a kernel that its own kernels use.
     """
     try:
-        return numba.njit(cache=True, **_OPTIONS)(function)
+        made = numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # "no locator available": neither the source's folder nor a home
         return numba.njit(**_OPTIONS)(function)
+    made._cache = _Forgiving(made._cache)
+    return made
+
+
+class _Forgiving:
+    """numba's cache of one kernel, where a damaged or full one costs time and not the run."""
+
+    def __init__(self, cache: Any) -> None:
+        self._cache = cache
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._cache, name)
+
+    def load_overload(self, *arguments: Any) -> Any:
+        """Machine code from the disk; None, and a clean cache, where it cannot be read."""
+        try:
+            return self._cache.load_overload(*arguments)
+        except Exception:  # noqa: BLE001  whatever a damaged pickle raises
+            LOGGER.info("a cached kernel is damaged and is compiled again")
+            with suppress(OSError):
+                self._cache.flush()
+            return None
+
+    def save_overload(self, *arguments: Any) -> None:
+        """Machine code to the disk, if it can be written there."""
+        try:
+            self._cache.save_overload(*arguments)
+        except (OSError, EOFError, ValueError, pickle.UnpicklingError) as problem:
+            LOGGER.info("a compiled kernel could not be kept (%s)", problem)
 
 
 class _Announcer(event.Listener):  # type: ignore[misc]
@@ -120,3 +152,7 @@ def over_rows(
 @cache
 def _pool(threads: int) -> ThreadPoolExecutor:
     return ThreadPoolExecutor(threads, thread_name_prefix="kinlab")
+
+
+if hasattr(os, "register_at_fork"):  # a child has none of its parent's threads
+    os.register_at_fork(after_in_child=_pool.cache_clear)

@@ -28,6 +28,7 @@ from kinlab.files import write_text
 __all__ = ["DHLink", "DHTable", "link_transform"]
 
 GRAVITY = (0.0, 0.0, -9.81)
+
 _LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
 
 
@@ -68,6 +69,8 @@ class DHTable:
         links = tuple(self.links)
         if not links:
             raise TableError(f"{place}: it has no links")
+        if len(links) > table_io.MOST_LINKS:
+            raise TableError(f"{place}: {len(links)} links; at most {table_io.MOST_LINKS}")
         for i, link in enumerate(links, 1):
             if not isinstance(link, DHLink):
                 raise TableError(f"{place}, link {i}: {type(link).__name__} is not a DHLink")

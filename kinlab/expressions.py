@@ -8,17 +8,28 @@ from __future__ import annotations
 import ast
 import math
 import operator
+import re
 from collections.abc import Callable
+
+import numpy as np
 
 from kinlab.errors import ExpressionError
 
 _MAX_LENGTH = 200
 _CONSTANTS = {"pi": math.pi, "π": math.pi}
+
+
+def _tan(angle: float) -> float:
+    if abs(math.cos(angle)) < _POLE:
+        raise ValueError("the tangent of 90 deg has no value")
+    return math.tan(angle)
+
+
 _FUNCTIONS: dict[str, Callable[[float], float]] = {
     "sqrt": math.sqrt,
     "sin": math.sin,
     "cos": math.cos,
-    "tan": math.tan,
+    "tan": _tan,
     "atan": math.atan,
     "acos": math.acos,
     "asin": math.asin,
@@ -29,6 +40,16 @@ _BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
+_POLE = 1e-12
+"""|cos x| below which x is meant as an odd multiple of 90°, where tan x has no value."""
+
+_TEXT = re.compile(
+    r"(?:\s|[-+*/()]|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![0-9A-Za-z_.])|[A-Za-z]+|π)*",
+    re.ASCII,
+)
+"""Decimal numbers, signs, brackets and words. Python's own comments, digits of other scripts,
+``5_0``, ``0x10`` and ``2pi`` are none."""
+
 _UNITS = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0}
 
 
@@ -44,14 +65,16 @@ def parse_number(value: object) -> float:
     Raises:
         ExpressionError: not a number, not arithmetic, or not finite.
     """
-    if isinstance(value, bool) or value is None:
+    if isinstance(value, (bool, np.bool_)) or value is None:
         raise ExpressionError(f"{value!r} is not a number")
     if isinstance(value, str):
         return _finite(_evaluate(value), value)
     try:
         number = float(value)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        raise ExpressionError(f"{value!r} is not a number") from None
+    except OverflowError:
+        raise ExpressionError("a whole number too large to be held") from None
+    except Exception:  # noqa: BLE001  whatever an object's own __float__ raises
+        raise ExpressionError(f"{_shown(value)} is not a number") from None
     return _finite(number, value)
 
 
@@ -81,9 +104,20 @@ def _finite(number: float, value: object) -> float:
     return number
 
 
+def _shown(value: object) -> str:
+    try:
+        return repr(value)[:80]
+    except Exception:  # noqa: BLE001  whatever an object's own __repr__ raises
+        return type(value).__name__
+
+
 def _evaluate(text: str) -> float:
     if len(text) > _MAX_LENGTH:
         raise ExpressionError(f"expression of {len(text)} characters; at most {_MAX_LENGTH}")
+    if not _TEXT.fullmatch(text):
+        raise ExpressionError(
+            f"cannot read {text!r}; write a number or arithmetic such as 'pi/2' or '-90 deg'"
+        )
     try:
         tree = ast.parse(text.strip(), mode="eval")
         return _walk(tree.body, text)

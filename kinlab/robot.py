@@ -147,7 +147,7 @@ class Robot:
         names = [str(frame.name) for frame in model.frames]
         if tool is not None and tool not in names:
             raise NameUnknownError(f"{where}: frame {tool!r} does not exist; {near(tool, names)}")
-        frame = model.getFrameId(tool) if tool is not None else len(names) - 1
+        frame = _frame_index(model, tool) if tool is not None else len(names) - 1
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
@@ -188,7 +188,14 @@ def frame_id(robot: Robot, name: str) -> int:
     if name not in names:
         message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
         raise NameUnknownError(message)
-    return int(robot.model.getFrameId(name))
+    return _frame_index(robot.model, name)
+
+
+def _frame_index(model: Any, name: str) -> int:
+    """Index of a frame of that name; a body's frame where a joint has the same name."""
+    same = [i for i, frame in enumerate(model.frames) if str(frame.name) == name]
+    bodies = [i for i in same if model.frames[i].type == pin.FrameType.BODY]
+    return (bodies or same)[0]
 
 
 def _why_singular(model: Any, name: str) -> str:

@@ -14,8 +14,7 @@ from __future__ import annotations
 
 import csv
 import io
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +25,11 @@ from kinlab.arrays import Array
 from kinlab.convention import read_convention
 from kinlab.errors import ExpressionError, FileError, TableError, near
 from kinlab.expressions import parse_angle, parse_number
-from kinlab.files import read_text
+from kinlab.files import read_text, read_toml
 from kinlab.rotations import rpy_matrix
+
+MOST_LINKS = 100
+"""Most links of a table: the engine's memory grows with the cube, 70 MB at 100."""
 
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
 _LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature")
@@ -68,10 +70,7 @@ def read(path: str | Path, convention: str | None = None) -> dict[str, Any]:
 
 def loads(text: str, where: str = "text") -> dict[str, Any]:
     """As :func:`read`, from TOML text; ``where`` names it in messages."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise TableError(f"{where}: not TOML: {problem}") from None
+    data = read_toml(text, where, TableError)
     place = f"table {data['name']!r}" if isinstance(data.get("name"), str) else where
     for key in data:
         if key not in _TABLE_KEYS:
@@ -81,6 +80,8 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
     rows = data.get("links", [])
     if not isinstance(rows, list) or not all(isinstance(r, dict) for r in rows):
         raise TableError(f"{place}: links must be [[links]] tables, one per row")
+    if len(rows) > MOST_LINKS:
+        raise TableError(f"{place}: {len(rows)} links; at most {MOST_LINKS}")
     read_convention(data.get("convention"), place)
     optional: dict[str, Any] = {}
     for key in ("base", "tool"):
@@ -204,7 +205,10 @@ def _assemble(entries: Mapping[str, float]) -> Array:
 def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
     place = f"table {name!r}"
     reader = csv.DictReader(io.StringIO(text.lstrip("\ufeff")), skipinitialspace=True)
-    header = [h.strip() for h in reader.fieldnames or []]
+    try:
+        header = [h.strip() for h in reader.fieldnames or []]
+    except csv.Error as problem:
+        raise TableError(f"{place}: not CSV: {problem}") from None
     reader.fieldnames = header
     for column in header:
         if column not in _CSV_COLUMNS:
@@ -215,7 +219,9 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
         if column not in header:
             raise TableError(f"{place}: column {column!r} is missing")
     links = []
-    for i, row in enumerate(reader, 1):
+    for i, row in enumerate(_rows(reader, place), 1):
+        if i > MOST_LINKS:
+            raise TableError(f"{place}: more than {MOST_LINKS} links")
         where = f"{place}, link {i}"
         if None in row or None in row.values():
             raise TableError(f"{where}: the row does not have {len(header)} cells")
@@ -227,6 +233,13 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
             convention = stated
         links.append(_link(_csv_link(cells, where), where))
     return {"name": name, "convention": convention, "links": links, "source": "CSV import"}
+
+
+def _rows(reader: csv.DictReader[str], place: str) -> Iterator[dict[str, str]]:
+    try:
+        yield from reader
+    except csv.Error as problem:
+        raise TableError(f"{place}: not CSV: line {reader.line_num}: {problem}") from None
 
 
 def _csv_link(cells: Mapping[str, str], place: str) -> dict[str, Any]:

@@ -1,26 +1,54 @@
 """How many threads a batch may use.
 
 A batch splits its states over the processor's cores. Inside the worker of a sweep it must not:
-the workers fill the cores already, so a block of a sweep runs under :func:`one_thread`.
+the workers fill the cores already, so a block of a sweep runs under :func:`one_thread`. Nor may
+it in a process made by ``fork``: the threads of the parent's pools are not there, and those who
+wait for them (OpenMP's too) wait for ever.
 """
 
 from __future__ import annotations
 
 import os
+import re
 import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from kinlab.errors import OptionError
 
 VARIABLE = "KINLAB_THREADS"
 """Environment variable that limits the threads of a batch."""
 
+_NUMBER = re.compile("[0-9]{1,4}")
+
 _STATES_PER_THREAD = 2048
 """A thread that gets fewer states than this, about a millisecond of work, costs more than it
 saves: on a busy machine a batch waits for its last thread to get a core."""
 
 _local = threading.local()
+
+
+@dataclass
+class _Process:
+    """What is known of this process.
+
+    Attributes:
+        forked: whether ``fork`` made it out of one that had kinlab.
+    """
+
+    forked: bool = False
+
+
+_PROCESS = _Process()
+
+
+def _after_fork() -> None:
+    _PROCESS.forked = True
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_fork)
 
 
 def thread_count(states: int) -> int:
@@ -51,7 +79,7 @@ def one_thread() -> Iterator[None]:
 
 
 def available() -> int:
-    """Number of threads a batch of this thread may use, however long it is.
+    """Number of threads a batch of this thread may use, however long it is; 1 after a fork.
 
     Raises:
         OptionError: as :func:`thread_count`.
@@ -60,11 +88,13 @@ def available() -> int:
     if limit is not None:
         return int(limit)
     text = os.environ.get(VARIABLE)
-    if text is None:
-        return cores()
-    if not text.isdecimal() or int(text) < 1:
-        raise OptionError(f"{VARIABLE} is {text!r}; it must be a whole number above zero")
-    return int(text)
+    if text is not None and not (_NUMBER.fullmatch(text) and int(text) > 0):
+        raise OptionError(
+            f"{VARIABLE} is {text!r}; it must be a whole number above zero, up to 9999"
+        )
+    if _PROCESS.forked:
+        return 1
+    return cores() if text is None else int(text)
 
 
 def cores() -> int:

@@ -13,12 +13,11 @@ from kinlab import urdf_shapes
 from kinlab.arrays import Array
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
+from kinlab.model.urdf_records import EXTENSION
 from kinlab.placements import LinkPlacement, placements
 from kinlab.rotations import matrix_rpy
 
 BASE_LINK = "base_link"
-EXTENSION = "kinlab"
-"""Element that carries what URDF has no place for: gravity and armature."""
 
 _MATERIALS = {
     "even_link": (0.33, 0.47, 0.60, 1.0),

@@ -5,12 +5,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pinocchio as pin
 
 from kinlab import urdf_read
-from kinlab.errors import NameUnknownError, StructureError, UrdfError, near
-from kinlab.urdf import EXTENSION
+from kinlab.errors import NameUnknownError, StructureError, near
+from kinlab.model.urdf_engine import build
+from kinlab.model.urdf_records import (
+    MOVING,
+    JointRecord,
+    UrdfTree,
+    check_moved_inertias,
+    read_tree,
+)
 
 _TOOL_NAMES = ("tool", "tool0", "tcp", "end_effector", "ee_link", "eef", "ee", "flange", "hand")
 """Ends of link names that mean a tool, the best first."""
@@ -47,70 +53,67 @@ def read(text: str, file: str | None, tool: str | None) -> Chain:
     """
     root = urdf_read.parse(text, file or "urdf")
     place = file or f"urdf {root.get('name')!r}"
-    base = urdf_read.check(root, place)
-    joints, tip = _chain(root, base, tool, place)
-    first = next(j for j in root.findall("joint") if j.get("name") == joints[0])
-    moved = set(urdf_read.links_behind(root, first.find("child").get("link")))
-    urdf_read.check_moved_inertias(root, moved, place)
-    model = _build(root, joints, place)
-    if not model.existFrame(tip, pin.FrameType.BODY):
-        raise UrdfError(f"{place}: Pinocchio made no frame for link {tip!r}")
-    return Chain(root.get("name") or "", model, int(model.getFrameId(tip, pin.FrameType.BODY)))
+    tree = read_tree(root, place)
+    chain, tip = _chain(tree, tool, place)
+    check_moved_inertias(tree, set(tree.links_behind(tree.joints[chain[0]].child)), place)
+    model = build(tree, chain, place)
+    return Chain(tree.name, model, int(model.getFrameId(tip, pin.FrameType.BODY)))
 
 
-def _chain(root: Any, base: str, tool: str | None, place: str) -> tuple[list[str], str]:
+def _chain(tree: UrdfTree, tool: str | None, place: str) -> tuple[list[str], str]:
     """Names of the moving joints from root to tool, and the tool link."""
-    above = {joint.find("child").get("link"): joint for joint in root.findall("joint")}
-    links = [link.get("name") for link in root.findall("link")]
+    above = tree.above()
     if tool is None:
-        tool = _default_tool(root, base, place)
-    elif tool not in links:
-        raise NameUnknownError(f"{place}: link {tool!r} does not exist; {near(tool, links)}")
+        tool = _default_tool(tree, place)
+    elif tool not in tree.links:
+        raise NameUnknownError(f"{place}: link {tool!r} does not exist; {near(tool, tree.links)}")
     chain = []
     link = tool
     while link in above:
         joint = above[link]
-        kind = joint.get("type")
-        if kind != "fixed":
-            if kind not in urdf_read.MOVING:
+        if joint.kind != "fixed":
+            if joint.kind not in MOVING:
                 raise StructureError(
-                    f"{place}: joint {joint.get('name')!r} is {kind}; joints with several degrees "
+                    f"{place}: joint {joint.name!r} is {joint.kind}; joints with several degrees "
                     "of freedom are not accepted between root and tool"
                 )
-            if joint.find("mimic") is not None:
+            if joint.mimics:
                 raise StructureError(
-                    f"{place}: joint {joint.get('name')!r} mimics another joint and lies between "
+                    f"{place}: joint {joint.name!r} mimics another joint and lies between "
                     f"root and tool {tool!r}; name a tool in front of it"
                 )
-            chain.append(joint.get("name"))
-        link = joint.find("parent").get("link")
+            chain.append(joint.name)
+        link = joint.parent
     if not chain:
-        raise StructureError(f"{place}: no moving joint between {base!r} and tool {tool!r}")
+        raise StructureError(f"{place}: no moving joint between {tree.root!r} and tool {tool!r}")
     return chain[::-1], tool
 
 
-def _default_tool(root: Any, base: str, place: str) -> str:
-    below = urdf_read.children(root)
+def _default_tool(tree: UrdfTree, place: str) -> str:
+    below = tree.below()
 
-    def moving_below(link: str) -> list[Any]:
-        found = []
-        for joint in below[link]:
-            if joint.get("type") == "fixed":
-                found += moving_below(joint.find("child").get("link"))
-            else:
-                found.append(joint)
+    def moving_below(link: str) -> list[JointRecord]:
+        found, waiting = [], [link]
+        while waiting:
+            after = []
+            for joint in below[waiting.pop()]:
+                if joint.kind == "fixed":
+                    after.append(joint.child)
+                else:
+                    found.append(joint)
+            waiting += after[::-1]
         return found
 
-    link = base
+    link = tree.root
     while moving := moving_below(link):
         if len(moving) > 1:
             raise StructureError(
                 f"{place}: a tree: after link {link!r} branch the joints "
-                f"{', '.join(repr(j.get('name')) for j in moving[:6])}; name the tool, one of "
-                + ", ".join(repr(tip) for tip in _tips(below, base)[:12])
+                f"{', '.join(repr(joint.name) for joint in moving[:6])}; name the tool, one of "
+                + ", ".join(repr(tip) for tip in _tips(below, tree.root)[:12])
             )
-        link = moving[0].find("child").get("link")
-    rigid = urdf_read.links_behind(root, link)
+        link = moving[0].child
+    rigid = tree.links_behind(link)
     for end in _TOOL_NAMES:
         for name in rigid:
             if name == end or name.endswith(f"_{end}"):
@@ -118,50 +121,12 @@ def _default_tool(root: Any, base: str, place: str) -> str:
     return rigid[-1]
 
 
-def _tips(below: dict[str, list[Any]], link: str) -> list[str]:
+def _tips(below: dict[str, list[JointRecord]], link: str) -> list[str]:
     """Links with nothing behind them, depth first."""
-    if not below[link]:
-        return [link]
-    return [t for j in below[link] for t in _tips(below, j.find("child").get("link"))]
-
-
-def _build(root: Any, chain: list[str], place: str) -> Any:
-    from lxml import etree
-
-    extension = root.find(EXTENSION)
-    for joint in root.findall("joint"):
-        if joint.get("type") == "continuous":
-            joint.set("type", "revolute")
-            limit = joint.find("limit")
-            if limit is None:
-                limit = etree.SubElement(joint, "limit", effort="1000.0", velocity="10.0")
-            limit.set("lower", repr(-urdf_read.WIDE_TURN))
-            limit.set("upper", repr(urdf_read.WIDE_TURN))
-        mimic = joint.find("mimic")
-        if mimic is not None:
-            joint.remove(mimic)
-    if extension is not None:
-        root.remove(extension)
-    try:
-        model = pin.buildModelFromXML(etree.tostring(root, encoding="unicode"))
-    except (ValueError, RuntimeError) as problem:
-        raise UrdfError(f"{place}: Pinocchio cannot read it: {problem}") from None
-    locked = [j for j in range(1, model.njoints) if str(model.names[j]) not in chain]
-    if locked:
-        model = pin.buildReducedModel(model, locked, pin.neutral(model))
-    if extension is not None:
-        _apply_extension(model, extension, place)
-    return model
-
-
-def _apply_extension(model: Any, extension: Any, place: str) -> None:
-    where = f"{place}: <{EXTENSION}>"
-    gravity = urdf_read.numbers(extension.get("gravity"), 3, (0, 0, -9.81), f"{where} gravity")
-    model.gravity.linear = gravity
-    armature = np.zeros(model.nv)
-    for element in extension.findall("joint"):
-        if model.existJointName(element.get("name") or ""):
-            joint = model.joints[model.getJointId(element.get("name"))]
-            value = urdf_read.numbers(element.get("armature"), 1, (0.0,), f"{where} armature")
-            armature[joint.idx_v] = value[0]
-    model.armature = armature
+    tips, waiting = [], [link]
+    while waiting:
+        here = waiting.pop()
+        if not below[here]:
+            tips.append(here)
+        waiting += [joint.child for joint in reversed(below[here])]
+    return tips

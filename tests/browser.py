@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import shutil
+import time
 
 import numpy as np
 import pytest
@@ -61,8 +62,28 @@ def open_file(tab, scene, folder):
 
 def ready(tab):
     """Waits until our script has started and the first frame is on the screen."""
-    tab.wait_for_function("window.page && !viewer.needs_render")
+    wait_until(tab, "window.page && !viewer.needs_render")
     return tab
+
+
+def wait_until(tab, expression, seconds=30.0):
+    """Waits until an expression is true in the page.
+
+    Playwright's own way evaluates text within the page, which the page's policy forbids.
+    """
+    end = time.monotonic() + seconds
+    while not _true(tab, expression):
+        assert time.monotonic() < end, f"{expression} stayed false"
+        tab.wait_for_timeout(20)
+
+
+def _true(tab, expression):
+    try:
+        return tab.evaluate(f"() => Boolean({expression})")
+    except Exception as problem:
+        if "context was destroyed" in str(problem):  # the page is loading itself anew
+            return False
+        raise
 
 
 def world(tab, path):

@@ -28,6 +28,11 @@ def test_page_is_whole_and_needs_no_network(rows, tmp_path):
     write_report(tmp_path / "check.html", rows)
     page = (tmp_path / "check.html").read_text(encoding="utf-8")
     assert page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>")
+    policy = re.findall(r'<meta http-equiv="Content-Security-Policy" content="([^"]*)">', page)
+    assert len(policy) == 1
+    assert "default-src 'none'" in policy[0]
+    assert "script-src 'none'" in policy[0]
+    page = page.replace(policy[0], "")
     links = re.findall(r"""(?:src|href|url\()\s*=?\s*["']?([^"')\s>]+)""", page)
     assert all(link.startswith("#") for link in links), links
     outside = set(re.findall(r"https?://[^\s\"<]+", page))

@@ -11,6 +11,7 @@ import pytest
 import kinlab as kl
 from kinlab import urdf_read
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, UrdfError
+from kinlab.model.urdf_records import WIDE_TURN
 
 LIMIT = '<limit lower="-1" upper="1" velocity="1" effort="1"/>'
 
@@ -135,7 +136,7 @@ def test_continuous_joint_becomes_revolute_with_wide_limits():
         robot(link("a"), joint("j1", "base", "a", kind="continuous", inner=""))
     )
     assert arm.model.nq == arm.model.nv == 1
-    assert (arm.lower[0], arm.upper[0]) == (-urdf_read.WIDE_TURN, urdf_read.WIDE_TURN)
+    assert (arm.lower[0], arm.upper[0]) == (-WIDE_TURN, WIDE_TURN)
 
 
 def test_missing_mesh_is_named_and_harmless(tmp_path):

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import chromium, ready, slide, tab, world  # noqa: F401
+from browser import chromium, ready, slide, tab, wait_until, world  # noqa: F401
 
 import kinlab as kl
 from kinlab.errors import OptionError
@@ -105,14 +105,14 @@ def test_sliders_and_script_share_one_scene(tab, scene, server):  # noqa: F811
     ready(page)
     assert page.evaluate("page.q") == q.tolist()
     scene.show([-0.5, 0.6, 0.7])  # the script moves it
-    page.wait_for_function("page.q[0] === -0.5")
+    wait_until(page, "page.q[0] === -0.5")
     assert np.abs(world(page, tool) - kl.fk(robot, [-0.5, 0.6, 0.7])).max() < 1e-9
     scene.path("line", [[0, 0, 0], [1, 0, 0], [1, 1, 0]])  # and adds to it
-    page.wait_for_function("kinlab.node('/meshcat/added/line').children.length > 0")
+    wait_until(page, "kinlab.node('/meshcat/added/line').children.length > 0")
     scene.frame("goal", np.eye(4))
     # the page loads itself anew for a label; it comes back where it was
-    page.wait_for_function(
-        "document.body.innerText.includes('goal') && window.page && page.q[0] === -0.5"
+    wait_until(
+        page, "document.body.innerText.includes('goal') && window.page && page.q[0] === -0.5"
     )
 
 

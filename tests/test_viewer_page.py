@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from browser import chromium, open_file, ready, slide, tab, world  # noqa: F401
+from browser import chromium, open_file, ready, slide, tab, wait_until, world  # noqa: F401
 from random_tables import random_table
 
 import kinlab as kl
@@ -214,14 +214,14 @@ def test_animation_plays_pauses_and_scrubs(tab, tmp_path):  # noqa: F811
     page.locator("#scrub").evaluate("r => { r.value = 0.5; r.dispatchEvent(new Event('input')); }")
     assert page.evaluate("page.q") == pytest.approx([0.5, -0.25])
     page.locator("#play").click()
-    page.wait_for_function("page.state.time > 0.7")
+    wait_until(page, "page.state.time > 0.7")
     page.locator("#play").click()
     held = page.evaluate("page.q")
     page.wait_for_timeout(150)
     assert page.evaluate("page.q") == held
     page.locator("#play").click()  # runs on over the end and starts again
     page.evaluate("page.seek(2.95)")
-    page.wait_for_function("page.state.time < 2")
+    wait_until(page, "page.state.time < 2")
 
 
 def five_bars():

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from kinlab.check.compare import Comparison, compare_stacked
 from kinlab.check.finding import Finding
 from kinlab.check.quantities import quantity as find_quantity
@@ -47,6 +49,7 @@ class Row:
         printed: the printed form beside the engine, where the note has a misprint that shows on
             this robot.
         finding: what is wrong in a user's formula that differs, where it was looked for.
+        failure: why the function gave no answer at all, or an empty string.
     """
 
     formula: Formula
@@ -54,6 +57,7 @@ class Row:
     corrected: Comparison
     printed: Comparison | None = None
     finding: Finding | None = None
+    failure: str = ""
 
     @property
     def misprint_shown(self) -> bool:
@@ -68,6 +72,8 @@ class Row:
     @property
     def verdict(self) -> str:
         """One line: agrees, or what is wrong."""
+        if self.failure:
+            return f"FAILED: {self.failure}"
         if not self.corrected.agrees:
             return "DIFFERS from the engine"
         if self.printed is None:
@@ -133,6 +139,19 @@ def run_one(record: Formula, robot: Any, samples: int = 200, seed: int = 0) -> R
         if label in shown or robot in shown:
             printed = beside(record.printed.function)
     return Row(record, quantity.domain.label(mechanism), corrected, printed)
+
+
+def failed_row(record: Formula, robot: Any, samples: int, seed: int, failure: str) -> Row:
+    """The row of a function that gave no answer."""
+    quantity = find_quantity(record.quantity)
+    mechanism = quantity.domain.load(robot)
+
+    def silent(numbers: Any, *states: Any) -> Any:
+        return np.full(quantity.answers(mechanism, samples, seed).shape, np.nan)
+
+    name = function_name(record.function)
+    compared = compare_stacked(mechanism, quantity, silent, name, None, samples, seed)
+    return Row(record, quantity.domain.label(mechanism), compared, failure=failure)
 
 
 def _members(domain: Any, names: Iterable[str]) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from kinlab.check.finding import Finding
 from kinlab.check.headings import HOW, NOTES, TAKEN_APART, lead, origin, sentence, several
 from kinlab.check.summary import Group, size
 from kinlab.check.typeset import mathml
+from kinlab.web import page_text, policy
 
 LONG = 110
 """Characters of LaTeX above which a form gets the whole width."""
@@ -43,10 +44,11 @@ def page(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
         f'<li><a href="#s{k}">{escape(name)}</a> {tally}</li>'
         for k, (name, tally, _) in enumerate(cards)
     )
-    return f"""<!DOCTYPE html>
+    return page_text(f"""<!DOCTYPE html>
 <html lang="en">
 <head>
 <meta charset="utf-8">
+{policy()}
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>Hand formulas beside the engine</title>
 <style>
@@ -66,7 +68,7 @@ def page(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
 <footer>{escape(origin(groups))}</footer>
 </body>
 </html>
-"""
+""")
 
 
 def _legend(groups: Sequence[Group], findings: Sequence[Finding]) -> str:

@@ -7,23 +7,26 @@ from typing import Any
 
 import numpy as np
 
-from kinlab import dynamics, mass_derivatives
+from kinlab import dynamics, mass_derivatives, urdf_read
 from kinlab.arrays import Array
 from kinlab.check.quantity import Quantity
 from kinlab.check.serial import SERIAL
 from kinlab.formula import Function, first_line
+from kinlab.model.urdf_engine import document
+from kinlab.model.urdf_records import read_tree
 from kinlab.robot import Robot
 
 
 def yourdfpy_pose(robot: Robot, q: Any) -> Array:
-    """Pose of the tool by yourdfpy's own forward kinematics of the URDF."""
+    """Pose of the tool by yourdfpy's own forward kinematics of the URDF without its pictures."""
     import io
 
     import yourdfpy
 
-    urdf = yourdfpy.URDF.load(
-        io.BytesIO(robot.urdf.encode()), load_meshes=False, build_scene_graph=True
-    )
+    place = f"robot {robot.name!r}"
+    tree = read_tree(urdf_read.parse(robot.urdf, place), place)
+    text = document(tree, list(robot.joint_names))
+    urdf = yourdfpy.URDF.load(io.BytesIO(text.encode()), load_meshes=False, build_scene_graph=True)
     mine = list(urdf.actuated_joint_names)
     rest = np.zeros(len(mine))
     poses = []

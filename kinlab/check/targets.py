@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
 from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from kinlab.check.catalogue import Row, catalogue, plan, run_one
+from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
+from kinlab.check.guest import FunctionLostError, Guest
 from kinlab.check.serial import SERIAL
 from kinlab.check.table_check import checks_of
 from kinlab.errors import FileError, NameUnknownError, near
-from kinlab.formula import Formula, FormulaError, formulas_in
+from kinlab.formula import Formula
 from kinlab.library import shipped
 
 
@@ -40,8 +37,11 @@ class Task:
         return f"{self.record.key} {self.name}"
 
     def run(self, samples: int, seed: int) -> Row:
-        """Puts the formula beside the engine."""
-        return run_one(self.record, self.robot, samples, seed)
+        """Puts the formula beside the engine; one that ended its process has failed."""
+        try:
+            return run_one(self.record, self.robot, samples, seed)
+        except FunctionLostError as problem:
+            return failed_row(self.record, self.robot, samples, seed, str(problem))
 
 
 def tasks(arguments: Iterable[str]) -> list[Task]:
@@ -49,7 +49,8 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
 
     Args:
         arguments: each a robot's name, a .toml, .csv or .urdf file, a .py file of marked
-            functions, a note's number ("001") or a formula's id ("002.C"). None: everything.
+            functions (it is run, in a process of its own), a note's number ("001") or a
+            formula's id ("002.C"). None: everything.
 
     Returns:
         What is to run, in order.
@@ -57,7 +58,7 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
     Raises:
         NameUnknownError: no such robot, note or id; the near names are listed.
         FileError: a file that cannot be read, or a .py file without a marked function.
-        FormulaError: a .py file that raises.
+        FormulaError: a .py file that raises, ends its process or does not come back.
     """
     wanted = list(arguments)
     if not wanted:
@@ -100,29 +101,10 @@ def _table(name: str) -> list[Task]:
 
 
 def _user_formulas(path: str) -> list[Formula]:
-    module = _module(Path(path))
-    found = formulas_in(module)
+    found = Guest(path).formulas
     if not found:
         raise FileError(
             f"{path}: no function is marked; put "
             '@kl.hand_formula("gravity_torques", robot="planar2r") before it'
         )
     return found
-
-
-def _module(path: Path) -> ModuleType:
-    if not path.is_file():
-        raise FileError(f"{path}: no such file")
-    name = f"_kinlab_check_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise FileError(f"{path}: not a Python file")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    try:
-        spec.loader.exec_module(module)
-    except Exception as problem:  # whatever a user's file may raise
-        raise FormulaError(f"{path}: {type(problem).__name__}: {problem}") from problem
-    finally:
-        del sys.modules[name]
-    return module

@@ -9,6 +9,17 @@ from __future__ import annotations
 import html
 import re
 
+_ELEMENT = re.compile(
+    r"\{http://www\.w3\.org/1998/Math/MathML\}"
+    r"(?:math|mrow|mi|mn|mo|ms|mtext|mspace|msup|msub|msubsup|mfrac|msqrt|mroot|mover|munder"
+    r"|munderover|mtable|mtr|mtd|mfenced|mpadded|mphantom|mstyle|menclose)"
+)
+_ATTRIBUTE = re.compile(
+    "class|display|displaystyle|scriptlevel|mathvariant|mathcolor|stretchy|fence|form|separator"
+    "|accent|accentunder|width|height|depth|lspace|rspace|linethickness|minsize|maxsize|largeop"
+    "|movablelimits|symmetric|columnalign|rowspacing|columnspacing|columnlines|rowlines|open|close"
+)
+
 
 def mathml(latex: str) -> str:
     """MathML of one formula; the marked pieces are elements of class wrong and fixed.
@@ -27,9 +38,35 @@ def mathml(latex: str) -> str:
     )
     marked = latex.replace(r"\wrong{", r"\class{wrong}{").replace(r"\fixed{", r"\class{fixed}{")
     try:
-        return _fenced(convert(marked, display="block"))
+        return _sound(_fenced(convert(marked, display="block")))
     except failures:
         return f"<code>{html.escape(latex)}</code>"
+
+
+def _sound(text: str) -> str:
+    """The text, written anew from its elements, where these are of mathematics and no others.
+
+    The converter passes on what stands in ``\\text{...}``; a script there would run.
+
+    Raises:
+        ValueError: it holds anything else.
+    """
+    from lxml import etree
+
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True
+    )
+    try:
+        root = etree.fromstring(text.encode("utf-8"), parser)
+    except etree.XMLSyntaxError:
+        raise ValueError("not XML") from None
+    for element in root.iter():
+        if not isinstance(element.tag, str) or not _ELEMENT.fullmatch(element.tag):
+            raise ValueError("not mathematics")
+        if not all(_ATTRIBUTE.fullmatch(key) for key in element.attrib):
+            raise ValueError("an attribute that mathematics has not")
+    written: str = etree.tostring(root, encoding="unicode")
+    return written
 
 
 def _fenced(text: str) -> str:

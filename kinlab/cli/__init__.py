@@ -6,11 +6,16 @@ One file per group of commands; a new command is a new file and one line in ``_G
 
 from __future__ import annotations
 
+import io
+import signal
 import sys
+import threading
+from typing import Any
 
 import typer
 
 from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
+from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError
 
 _GROUPS = (
@@ -43,14 +48,29 @@ for _group in _GROUPS:
 
 def main() -> None:
     """Entry point of the ``kinlab`` command."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a terminal without the letters still gets them
+            stream.reconfigure(errors="backslashreplace")
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, _stop)
     try:
         app()
     except KinlabError as problem:
-        print(f"kinlab: {problem}", file=sys.stderr)
+        complain(problem)
         sys.exit(2)
     except KeyboardInterrupt:
         print("kinlab: stopped", file=sys.stderr)
         sys.exit(130)
+    except MemoryError:
+        print("kinlab: not enough memory for this", file=sys.stderr)
+        sys.exit(2)
     except BrokenPipeError:  # the reader of our output has gone, as in `kinlab list | head`
         sys.stderr.close()
         sys.exit(0)
+
+
+def _stop(number: int, frame: Any) -> None:
+    """SIGTERM is Ctrl-C to all who clean up behind themselves; a second one ends at once."""
+    del frame
+    signal.signal(number, signal.SIG_DFL)
+    raise KeyboardInterrupt

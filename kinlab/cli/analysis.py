@@ -10,6 +10,7 @@ import typer
 from kinlab.cli import analysis_pictures as pictures
 from kinlab.cli import analysis_tables as tables
 from kinlab.cli.robots import NAME, TIP
+from kinlab.cli.screen import screen
 
 TASK = Annotated[
     str,
@@ -46,13 +47,11 @@ def singular(
     output: PICTURE = None,
 ) -> None:
     """Singular configurations by family, det J in factors, and a picture of the singular curves."""
-    from rich.console import Console
-
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.singularity import find_singularities
     from kinlab.library import load
 
-    robot, console = load(name, tip), Console()
+    robot, console = load(name, tip), screen()
     chosen = _task(task)
     search = find_singularities(robot, chosen, seed=seed)
     console.print(tables.headline(robot, search.task, search.suggested), highlight=False)
@@ -60,8 +59,9 @@ def singular(
     console.print(tables.families(search))
     effort = search.effort
     console.print(
-        f"[dim]{effort.seeds} starts, {effort.converged} reached the singular set within the "
-        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})[/dim]",
+        f"{effort.seeds} starts, {effort.converged} reached the singular set within the "
+        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})",
+        style="dim",
         highlight=False,
     )
     if at is not None:
@@ -88,12 +88,10 @@ def isotropy(
     output: PICTURE = None,
 ) -> None:
     """Isotropic configurations, or the best condition number; with --free, isotropic designs."""
-    from rich.console import Console
-
     from kinlab.analysis.isotropy import find_isotropic
     from kinlab.library import load
 
-    robot, console = load(name, tip), Console()
+    robot, console = load(name, tip), screen()
     chosen, size = _task(task), _length(length)
     if free is not None:
         robot = tables.print_designs(console, robot, free, chosen, size, seeds, seed) or robot
@@ -129,14 +127,13 @@ def workspace(
     output: PICTURE = None,
 ) -> None:
     """Sample the workspace with a measure of dexterity; Ctrl-C keeps what was computed."""
-    from rich.console import Console
     from rich.progress import Progress
 
     from kinlab.library import load
     from kinlab.workspace_map import sample_workspace
 
-    robot, console = load(name, tip), Console()
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    robot, console = load(name, tip), screen()
+    with Progress(console=screen(stderr=True), transient=True) as bar:
         row = bar.add_task("sampling", total=samples)
         chart = sample_workspace(
             robot, _task(task), metric, samples=samples, sampling=sampling, length=length,
@@ -145,7 +142,7 @@ def workspace(
         )  # fmt: skip
     console.print(tables.headline(robot, chart.task, task == "auto"), highlight=False)
     if not chart.complete:
-        console.print(f"[yellow]stopped after {len(chart.values)} samples[/yellow]")
+        console.print(f"stopped after {len(chart.values)} samples", style="yellow")
     if not len(chart.values):
         return
     console.print(tables.workspace_table(chart))

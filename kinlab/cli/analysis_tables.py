@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from kinlab.cli.screen import styled
+
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
     from kinlab.analysis.nearest import NearestSingularity
@@ -12,9 +14,9 @@ if TYPE_CHECKING:
     from kinlab.workspace_map import WorkspaceMap
 
 
-def headline(robot: Robot, task: str, suggested: bool) -> str:
+def headline(robot: Robot, task: str, suggested: bool) -> Any:
     chosen = " (chosen to suit the arm)" if suggested else ""
-    return f"[bold]{robot.name}[/bold]: {robot.n} joints, task {task}{chosen}"
+    return styled((robot.name, "bold"), f": {robot.n} joints, task {task}{chosen}")
 
 
 def print_determinant(console: Any, robot: Robot, task: Any) -> None:
@@ -101,9 +103,13 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
         at = "" if search.best_length is None else f" at length {search.best_length:.6g} m"
         console.print(
             f"no isotropic configuration; best condition number {search.best_condition:.6g}{at}\n"
-            f"q = {_degrees(robot, search.best_q)} (deg or m)\n"
-            f"[dim]{search.seeds} starts; local minima: 5 % {low:.6g}, 50 % {middle:.6g}, "
-            f"95 % {high:.6g} (seed {search.seed})[/dim]",
+            f"q = {_degrees(robot, search.best_q)} (deg or m)",
+            highlight=False,
+        )
+        console.print(
+            f"{search.seeds} starts; local minima: 5 % {low:.6g}, 50 % {middle:.6g}, "
+            f"95 % {high:.6g} (seed {search.seed})",
+            style="dim",
             highlight=False,
         )
         return
@@ -120,8 +126,9 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
         )
     console.print(table)
     console.print(
-        f"[dim]characteristic length: {size}; {search.converged} of {search.seeds} starts "
-        f"(seed {search.seed})[/dim]",
+        f"characteristic length: {size}; {search.converged} of {search.seeds} starts "
+        f"(seed {search.seed})",
+        style="dim",
         highlight=False,
     )
 

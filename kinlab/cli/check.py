@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from kinlab.cli.robots import TIP
+from kinlab.cli.screen import Screen, echo, screen, styled, visible
 from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from rich.console import Console
 
     from kinlab.check.catalogue import Row
     from kinlab.check.finding import Finding
@@ -23,8 +22,8 @@ WHAT = Annotated[
     list[str] | None,
     typer.Argument(
         help="Robots, .toml/.csv/.urdf files of robots, your formulas (.py files with marked "
-        "functions, .toml files of text), notes (001) or formula ids (002.C). Nothing: the whole "
-        "catalogue on the shipped robots.",
+        "functions, which are run; .toml files of text), notes (001) or formula ids (002.C). "
+        "Nothing: the whole catalogue on the shipped robots.",
         show_default=False,
     ),
 ]
@@ -68,6 +67,7 @@ def check(
 ) -> None:
     """Put hand formulas beside the engine, or a DH table beside another description of the arm.
 
+    A .py file is run, like any program, in a process of its own: only check files you trust.
     A formula of yours that differs is taken apart: what is wrong, and how far off it is before
     and after the repair. With --against the same is done to a table, cell by cell. Exit code 0 if
     every correct form agrees (and every misprint shows), 1 if not, 2 for bad input.
@@ -103,7 +103,7 @@ def check(
         _print_all(done, findings, rows)
     for file in report or ():
         write_report(file, done, findings)
-        typer.echo(f"wrote {file}", err=json)
+        echo(f"wrote {file}", err=json)
     if not all(row.ok for row in done) or not all(one.agrees for one in findings):
         raise typer.Exit(1)
 
@@ -128,15 +128,14 @@ def _examine(files: list[str], samples: int, seed: int) -> list[Finding]:
 
 
 def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Finding]:
-    from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
     done: list[Row | Finding] = []
-    with Progress(*columns, console=Console(stderr=True), transient=True) as progress:
+    with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=len(todo))
         for task in todo:
-            progress.update(bar, description=task.label)
+            progress.update(bar, description=visible(task.label))
             done.append(_one(task, samples, seed))
             progress.advance(bar)
     return done
@@ -156,26 +155,24 @@ def _print_json(done: Sequence[Row], findings: Sequence[Finding]) -> None:
     from kinlab.check.summary import as_data
 
     data = as_data(done, findings)
-    typer.echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
+    echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
 
 
 def _print_all(done: Sequence[Row], findings: Sequence[Finding], each: bool) -> None:
     if done:
         _print_table(done, each)
     for k, finding in enumerate(findings):
-        typer.echo(("\n" if k or done else "") + finding.text)
+        echo(("\n" if k or done else "") + finding.text)
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:
-    from rich.console import Console
-    from rich.markup import escape
     from rich.table import Table
 
     from kinlab.check.summary import Group, grouped, size
 
-    console = Console()
+    console = screen()
     if not console.is_terminal:
-        console = Console(width=160)
+        console = screen(width=160)
     groups = [Group(row.formula, (row,)) for row in done] if each else grouped(done)
     table = Table(box=None, header_style="bold", pad_edge=False)
     for name in ("formula", "what", "robot", "error", "printed", "verdict"):
@@ -183,14 +180,11 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
         table.add_column(name, justify=justify, no_wrap=name not in ("what", "verdict"))
     for group in groups:
         style = "" if group.ok else "bold red"
-        verdict = group.verdict
-        if group.ok and group.printed_error is not None:
-            verdict = f"[yellow]{escape(verdict)}[/yellow]"
-        else:
-            verdict = escape(verdict)
+        shown = group.ok and group.printed_error is not None
         table.add_row(
-            escape(group.formula.key), escape(group.formula.title), escape(group.robots),
-            size(group.worst.corrected.max_error), size(group.printed_error), verdict,
+            group.formula.key, group.formula.title, group.robots,
+            size(group.worst.corrected.max_error), size(group.printed_error),
+            styled((group.verdict, "yellow" if shown else "")),
             style=style,
         )  # fmt: skip
     console.print(table)
@@ -198,19 +192,20 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
     _print_closing(console, done, len(groups))
 
 
-def _print_failures(console: Console, done: Sequence[Row]) -> None:
+def _print_failures(console: Screen, done: Sequence[Row]) -> None:
     for row in done:
         if not row.corrected.agrees:
-            console.print(f"\n{row.formula.key}: {row.corrected}", style="red", markup=False)
+            told = row.verdict if row.failure else row.corrected
+            console.print(f"\n{row.formula.key}: {told}", style="red")
             if row.finding is not None:
                 _print_finding(console, row.finding)
 
 
-def _print_finding(console: Console, finding: Finding) -> None:
+def _print_finding(console: Screen, finding: Finding) -> None:
     from kinlab.check.summary import size
 
     def line(text: str) -> None:
-        console.print(text, style="bold" if finding.known else "", markup=False, highlight=False,
+        console.print(text, style="bold" if finding.known else "", highlight=False,
                       soft_wrap=True)  # fmt: skip
 
     line(f"diagnosis: {finding.sentence}")
@@ -223,7 +218,7 @@ def _print_finding(console: Console, finding: Finding) -> None:
         line(f"  or: {text}")
 
 
-def _print_closing(console: Console, done: Sequence[Row], formulas: int) -> None:
+def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
     from kinlab.check.headings import several
 
     wrong = sum(not row.ok for row in done)
@@ -236,8 +231,6 @@ def _print_closing(console: Console, done: Sequence[Row], formulas: int) -> None
 
 
 def _list_quantities() -> None:
-    from rich.console import Console
-    from rich.markup import escape
     from rich.table import Table
 
     from kinlab.check.quantities import quantities
@@ -246,5 +239,5 @@ def _list_quantities() -> None:
     for name in ("quantity", "arguments", "about"):
         table.add_column(name)
     for one in quantities().values():
-        table.add_row(one.name, ", ".join(one.arguments), escape(one.about))
-    Console().print(table)
+        table.add_row(one.name, ", ".join(one.arguments), one.about)
+    screen().print(table)

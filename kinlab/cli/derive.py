@@ -7,6 +7,8 @@ from typing import Annotated
 
 import typer
 
+from kinlab.cli.screen import echo
+
 ROBOT = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv file.")]
 WHAT = Annotated[str, typer.Option("--what", help="fk, J, det, M, C, g, tau, D, T or V.")]
 FORMAT = Annotated[str, typer.Option("--format", help="text, latex or python.")]
@@ -32,7 +34,7 @@ def derive(
 
     text = derived_text(robot, what, format, numbers)
     if output is None:
-        typer.echo(text)
+        echo(text)
     else:
         write_text(output, text + "\n")
-        typer.echo(f"wrote {output}")
+        echo(f"wrote {output}")

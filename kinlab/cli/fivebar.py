@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinlab.cli.screen import Screen, echo, screen, styled
 from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
@@ -51,13 +52,11 @@ def register(app: typer.Typer) -> None:
 
 def list_fivebars() -> None:
     """List the shipped five-bars and servomotors."""
-    from rich.console import Console
-
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.files import presets
     from kinlab.fivebar.motors import catalogue
 
-    console = Console(highlight=False)
+    console = screen(highlight=False)
     table = _table("five-bar", "l1, m", "l2, m", "e, m", "payload, kg", left=(0,))
     for name in presets():
         one = FiveBar.load(name)
@@ -84,8 +83,6 @@ def analyse(
     picture: PICTURE = None,
 ) -> None:
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
-    from rich.console import Console
-
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.isotropy import isotropic_poses
     from kinlab.fivebar.pose import MODES
@@ -99,8 +96,9 @@ def analyse(
     from kinlab.plots.fivebar import workspace_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
-    console = Console(highlight=False)
-    console.print(f"[bold]{fivebar.name}[/bold]: {fivebar.source}".strip().rstrip(":"))
+    console = screen(highlight=False)
+    about = f": {fivebar.source}" if fivebar.source.strip() else ""
+    console.print(styled((fivebar.name, "bold"), about))
     console.print(
         f"l1 {_pair(fivebar.l1)} m, l2 {_pair(fivebar.l2)} m, e {fivebar.e:.6g} m; "
         f"reachable area {reachable_area(fivebar):.6g} m²"
@@ -135,12 +133,11 @@ def analyse(
 
 def _print_place(fivebar: FiveBar, at: tuple[float, float], mode: tuple[int, int]) -> None:
     import numpy as np
-    from rich.console import Console
 
     from kinlab.fivebar.metrics import passive_angles, pressure_angles, transmission_angle
     from kinlab.fivebar.singularity import classify, distances
 
-    console = Console(highlight=False)
+    console = screen(highlight=False)
     away = distances(fivebar, at, mode)
     (kind,) = classify(fivebar, at, mode)
     console.print(f"at ({at[0]:g}, {at[1]:g}) m, mode {_signs(mode)}: {kind}")
@@ -172,15 +169,13 @@ def size(
     picture: PICTURE = None,
 ) -> None:
     """Size the servos for a workspace, a speed and an acceleration in any direction."""
-    from rich.console import Console
-
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.workspace import largest_rectangle
     from kinlab.plots.canvas import save
     from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
-    console = Console(highlight=False)
+    console = screen(highlight=False)
     box = workspace or largest_rectangle(fivebar, signs, max_condition=_CONDITION)
     if workspace is None:
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
@@ -194,9 +189,8 @@ def size(
 
 
 def _print_sizing(sizing: ServoSizing, console: object) -> None:
-    from rich.console import Console
 
-    assert isinstance(console, Console)
+    assert isinstance(console, Screen)
     box, cycle = sizing.workspace, sizing.cycle
     console.print(
         f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
@@ -238,7 +232,7 @@ def _fits(sizing: ServoSizing) -> Table:
         table.add_row(
             fit.motor.name, f"{fit.gear_ratio:.3g}", f"{fit.peak:.3g}", f"{fit.rms:.3g}",
             f"{fit.speed:.0f}", f"{fit.inertia_ratio:.3g}",
-            margin if fit.fits else f"[red]{margin}[/red]", fit.limit,
+            styled((margin, "" if fit.fits else "red")), fit.limit,
         )  # fmt: skip
     return table
 
@@ -258,7 +252,7 @@ def export(
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     place = at or largest_circle(fivebar, signs, assembly).centre
     for file in exporting.export(fivebar, output, place, signs):
-        typer.echo(f"wrote {file}")
+        echo(f"wrote {file}")
 
 
 def read_signs(mode: str) -> tuple[int, int]:

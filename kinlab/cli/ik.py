@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from kinlab.cli.robots import NAME, TIP
+from kinlab.cli.screen import echo
 
 
 def register(app: typer.Typer) -> None:
@@ -71,20 +72,20 @@ def ik(
     width = max(len(joint) for joint in robot.joint_names)
     for joint, value, slide in zip(robot.joint_names, answer.q, slides, strict=True):
         shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
-        typer.echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
-    typer.echo(
+        echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
+    echo(
         f"{answer.status}: position error {1e3 * answer.position_error:.3g} mm, rotation error "
         f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
         f"{answer.restarts} restarts"
     )
     for remark in answer.remarks:
-        typer.echo(f"note: {remark}")
+        echo(f"note: {remark}")
     if history is not None and answer.history is not None:
         from kinlab.plots.canvas import save
         from kinlab.plots.searches import plot_searches
 
         save(plot_searches({method: answer.history}, f"{robot.name}: {answer.status}"), history)
-        typer.echo(f"wrote {history}")
+        echo(f"wrote {history}")
     broken = [
         f"{joint} ({low:g} to {high:g})"
         for joint, value, low, high in zip(
@@ -93,7 +94,7 @@ def ik(
         if not low <= value <= high
     ]
     if broken:
-        typer.echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
+        echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
     if not answer.success:
         raise typer.Exit(1)
 
@@ -106,9 +107,9 @@ def _print_branches(robot: object, pose: object) -> None:
     found = ik_branches(robot, pose)  # type: ignore[arg-type]
     for q, name, inside in zip(found.q, found.names, found.within_limits, strict=True):
         values = " ".join(f"{value:+.6f}" for value in q)
-        typer.echo(f"{values}  {name}{'' if inside else '  (outside the limits)'}")
+        echo(f"{values}  {name}{'' if inside else '  (outside the limits)'}")
     worst = max(found.position_error, default=0.0), max(found.rotation_error, default=0.0)
-    typer.echo(
+    echo(
         f"{len(found)} solutions by {found.method}, {int(np.sum(found.within_limits))} within the "
         f"limits, {'all there are' if found.complete else 'not all there are'}; worst error "
         f"{1e3 * worst[0]:.2g} mm, {np.degrees(worst[1]):.2g} deg"

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinlab.cli.screen import echo, screen, styled
+
 if TYPE_CHECKING:
     from rich.table import Table
 
@@ -29,7 +31,6 @@ def register(app: typer.Typer) -> None:
 
 def list_robots() -> None:
     """List the robots that can be loaded by name."""
-    from rich.console import Console
     from rich.table import Table
 
     from kinlab.errors import KinlabError
@@ -51,33 +52,32 @@ def list_robots() -> None:
             table.add_row(shown, str(robot.n), about)
         except KinlabError as problem:
             reason = "a tree: name a tool" if "a tree" in str(problem) else str(problem)
-            table.add_row(shown, "-", f"[dim]example-robot-data, {reason}[/dim]")
-    Console().print(table)
+            table.add_row(shown, "-", styled((f"example-robot-data, {reason}", "dim")))
+    screen().print(table)
 
 
 def info(name: NAME, tip: TIP = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
-    from rich.console import Console
-
     from kinlab.extract import to_dh
     from kinlab.library import load
 
     robot = load(name, tip)
-    console = Console()
+    console = screen()
     gravity = " ".join(f"{g:g}" for g in robot.model.gravity.linear)
     mass = sum(inertia.mass for inertia in list(robot.model.inertias)[1:])
-    console.print(f"[bold]{robot.name}[/bold]: {robot.n} joints, tool frame {robot.tool_name!r}")
+    about = f": {robot.n} joints, tool frame {robot.tool_name!r}"
+    console.print(styled((robot.name, "bold"), about))
     console.print(f"source: {robot.source}", highlight=False)
     console.print(f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", highlight=False)
     if robot.singular_mass:
-        console.print(f"[yellow]{robot.singular_mass}[/yellow]")
+        console.print(robot.singular_mass, style="yellow")
     for line in _missing_meshes(robot):
-        console.print(f"[yellow]{line}; a plain shape is drawn instead[/yellow]", highlight=False)
+        console.print(f"{line}; a plain shape is drawn instead", style="yellow", highlight=False)
     console.print(_joints(robot))
     table = robot.table or to_dh(robot)
     console.print(_rows(table, "" if robot.table else ", extracted"))
     if robot.table is None:
-        console.print(f"[dim]{table.source}[/dim]", highlight=False)
+        console.print(table.source, style="dim", highlight=False)
     frames = [str(frame.name) for frame in robot.model.frames][1:]
     console.print("frames: " + ", ".join(dict.fromkeys(frames)), highlight=False, soft_wrap=False)
 
@@ -91,8 +91,6 @@ def urdf(name: NAME, output: OUTPUT = None, tip: TIP = None) -> None:
 
 def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
     """Print the modified DH table of a robot, or write it as TOML with -o."""
-    from rich.console import Console
-
     from kinlab.extract import to_dh
     from kinlab.library import load
 
@@ -100,7 +98,7 @@ def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
     if output is not None:
         _give(table.to_toml(), output)
         return
-    console = Console()
+    console = screen()
     console.print(_rows(table, ""))
     for which in ("base", "tool"):
         rows = "; ".join(" ".join(f"{x:.6g}" for x in row) for row in getattr(table, which)[:3])
@@ -112,10 +110,10 @@ def _give(text: str, output: Path | None) -> None:
     from kinlab.files import write_text
 
     if output is None:
-        typer.echo(text, nl=False)
+        echo(text, nl=False)
     else:
         write_text(output, text)
-        typer.echo(f"wrote {output}")
+        echo(f"wrote {output}")
 
 
 def _missing_meshes(robot: Robot) -> list[str]:

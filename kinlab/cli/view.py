@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinlab.cli.robots import TIP
+from kinlab.cli.screen import echo
 
 if TYPE_CHECKING:
     from kinlab.arrays import Array
@@ -52,10 +53,10 @@ def view(
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
     page = _open(name, tip, q, animate, meshes)
     for note in page.notes:
-        typer.echo(f"note: {note}", err=True)
+        echo(f"note: {note}", err=True)
     if save is not None:
         page.save(save)
-        typer.echo(f"wrote {save}: open it in a browser; it needs no server and no network")
+        echo(f"wrote {save}: open it in a browser; it needs no server and no network")
         return
     _serve(page, name, host, port, browser)
 
@@ -101,15 +102,15 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 
 def _holds_five_bar(name: str) -> bool:
     """Whether a TOML file is a five-bar: those have crank lengths, arms have links."""
-    import tomllib
-
-    from kinlab.files import read_text
+    from kinlab.errors import FileError
+    from kinlab.files import read_text, read_toml
 
     if not name.lower().endswith(".toml"):
         return False
+    text = read_text(name)
     try:
-        return "l1" in tomllib.loads(read_text(name))
-    except tomllib.TOMLDecodeError:
+        return "l1" in read_toml(text, name, FileError)
+    except FileError:
         return False  # the arm's reader says what is wrong with it
 
 
@@ -127,13 +128,13 @@ def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
 
     server = LiveServer(page, host, port)
     if port not in (0, server.port):
-        typer.echo(f"port {port} is taken; using {server.port}")
-    typer.echo(f"{name}: {server.url}   (Ctrl-C ends)")
+        echo(f"port {port} is taken; using {server.port}")
+    echo(f"{name}: {server.url}   (Ctrl-C ends)")
     if host not in ("127.0.0.1", "::1", "localhost"):
-        typer.echo(f"note: {host} is not loopback; others on the network can open this page")
+        echo(f"note: {host} is not loopback; others on the network can open this page")
     if os.environ.get("SSH_CONNECTION"):
-        typer.echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
+        echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
     if browser and not open_browser(server.url):
-        typer.echo("no browser found here; open the address in yours")
+        echo("no browser found here; open the address in yours")
     server.run()
-    typer.echo("viewer closed")
+    echo("viewer closed")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -16,11 +15,12 @@ from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.diagnosis import Diagnosis
 from kinlab.doctor.entries import split_name
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.input import FormulaFile, canonical, read_file
+from kinlab.doctor.input import MOST_NODES, FormulaFile, canonical, read_file
 from kinlab.doctor.labels import quantity_of
+from kinlab.doctor.plain import plain_values
 from kinlab.doctor.tree import Node
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
-from kinlab.files import read_text
+from kinlab.files import read_text, read_toml
 from kinlab.library import load
 from kinlab.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
@@ -39,8 +39,8 @@ def is_formula_file(path: str | Path) -> bool:
     if Path(path).suffix.lower() != ".toml":
         return False
     try:
-        document = tomllib.loads(read_text(path, limit=1 << 20))
-    except (tomllib.TOMLDecodeError, RecursionError):
+        document = read_toml(read_text(path, limit=1 << 20), str(path), ExpressionError)
+    except ExpressionError:
         return False
     return "links" not in document and ("robot" in document or "formulas" in document)
 
@@ -102,7 +102,7 @@ def _of_quantity(
                     for i, j in np.ndindex(shape) if f"{plain}[{i},{j}]" in formulas}  # fmt: skip
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
-    values = {label: _values(node, case, file, titles.get(label, label))
+    values = {label: _values(node, case, file, _entry_of(label, titles))
               for label, node in formulas.items()}  # fmt: skip
     if len(formulas) == len(labels):
         hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
@@ -139,7 +139,38 @@ def meant(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
     """
     words = vocabulary(robot.table).values if robot.table is not None else {}
     known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
-    return _resolved(text, file, words, known, f"{file.path}: {entry}", ())
+    place = f"{file.path}: {entry}"
+    _refuse_large(text, file, place, {}, ())
+    return _resolved(text, file, words, known, place)
+
+
+def _refuse_large(
+    text: Node, file: FormulaFile, place: str, sizes: dict[str, int], open_names: tuple[str, ...]
+) -> int:
+    """Counts the terms and factors with all symbols written out, before they are.
+
+    Raises:
+        ExpressionError: more than a formula of an arm can have, or a symbol explained by itself.
+    """
+    total = 0
+    for _, node in tree.nodes(text):
+        total += 1
+        if node.op != "sym" or node.value not in file.symbols:
+            continue
+        name = node.value
+        if name in open_names:
+            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
+        if name not in sizes:
+            way = (*open_names, name)
+            sizes[name] = _refuse_large(file.symbols[name], file, place, sizes, way)
+        total += sizes[name]
+        if total > MOST_NODES:
+            break
+    if total > MOST_NODES:
+        raise ExpressionError(
+            f"{place}: with its symbols written out it has more than {MOST_NODES} terms and factors"
+        )
+    return total
 
 
 def _resolved(
@@ -148,18 +179,15 @@ def _resolved(
     words: dict[str, float],
     known: set[str],
     place: str,
-    open_names: tuple[str, ...],
 ) -> Node:
     mapping = {}
     for name in sorted(tree.names(text)):
-        if name in open_names:
-            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
         if name in file.symbols:
             given = file.symbols[name]
             if given.op == "num":
                 mapping[name] = _by_value(name, given, words, place)
             else:
-                mapping[name] = _resolved(given, file, words, known, place, (*open_names, name))
+                mapping[name] = _resolved(given, file, words, known, place)
             continue
         if name in words:
             continue
@@ -192,7 +220,16 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     return given
 
 
+def _entry_of(label: str, titles: dict[str, str]) -> str:
+    """The file's entry that gives a place, its mirror image where only that is given."""
+    if label in titles:
+        return titles[label]
+    plain, index = split_name(label)
+    return titles[f"{plain}[{index[1]},{index[0]}]"]
+
+
 def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
+    """The values of an entry, by its text as it is written."""
     count = len(next(iter(case.arguments.values())))
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
     at = {name: np.full(count, value) for name, value in words.items()}
@@ -206,5 +243,18 @@ def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
             f"{file.path}: {entry}: {sorted(missing)[0]} does not belong into "
             f"{case.quantity.name}, which depends on {', '.join(case.quantity.arguments)}"
         )
-    with np.errstate(all="ignore"):
-        return np.array(np.broadcast_to(tree.evaluate(node, at), (count,)), dtype=float)
+
+    def meaning(name: str) -> Array:
+        if name in file.symbol_texts:
+            return plain_values(file.symbol_texts[name], meaning, count)
+        if name in at:
+            return at[name]
+        known = canonical(name)
+        if not tree.names(known) <= set(at):  # it cancels out of the tree, not out of the text
+            raise ExpressionError(
+                f"{file.path}: {entry}: {name} does not belong into {case.quantity.name}, which "
+                f"depends on {', '.join(case.quantity.arguments)}"
+            )
+        return np.array(np.broadcast_to(tree.evaluate(known, at), (count,)), dtype=float)
+
+    return plain_values(file.texts[entry], meaning, count)

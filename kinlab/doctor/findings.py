@@ -78,7 +78,7 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
         if finding is None or not finding.known:
             raise
         return finding
-    if row.corrected.agrees or not task.file or not serial:
+    if row.corrected.agrees or row.failure or not task.file or not serial:
         return row
     return Row(
         row.formula, row.robot, row.corrected, row.printed, _of_function(task, samples, seed)

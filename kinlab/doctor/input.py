@@ -21,7 +21,6 @@ from __future__ import annotations
 import ast
 import math
 import re
-import tomllib
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -31,11 +30,11 @@ from kinlab.doctor import tree
 from kinlab.doctor.latex_input import expression
 from kinlab.doctor.tree import Node
 from kinlab.errors import ExpressionError, FileError, near
-from kinlab.files import read_text
+from kinlab.files import read_text, read_toml
 
 _FILE_LIMIT = 1 << 20
 _LENGTH = 20_000
-_NODES = 5_000
+MOST_NODES = 5_000
 _DEPTH = 60
 _NESTING = 50
 _CHAIN = 400
@@ -68,12 +67,16 @@ class FormulaFile:
         robot: a name or path for ``kl.load``.
         symbols: the user's own names: a number, or text over other names.
         formulas: entry name to expression, in the order of the file.
+        texts: the formulas as they are written, for plain evaluation.
+        symbol_texts: the same for symbols; a number as its digits.
     """
 
     path: str
     robot: str
     symbols: dict[str, Node]
     formulas: dict[str, Node]
+    texts: dict[str, str]
+    symbol_texts: dict[str, str]
 
 
 def read_file(path: str | Path) -> FormulaFile:
@@ -91,12 +94,7 @@ def read_file(path: str | Path) -> FormulaFile:
         ExpressionError: an expression that is no arithmetic, with the entry's name.
     """
     text = read_text(path, limit=_FILE_LIMIT)
-    try:
-        document = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise FileError(f"{path}: no TOML: {problem}") from None
-    except RecursionError:
-        raise FileError(f"{path}: nested too deep; formulas need one level of tables") from None
+    document = read_toml(text, str(path), FileError)
     place = str(path)
     robot = document.pop("robot", None)
     if not isinstance(robot, str) or not robot:
@@ -115,14 +113,18 @@ def read_file(path: str | Path) -> FormulaFile:
     entries |= {key: _from_latex(value, f"{place}: {key}") for key, value in typeset.items()}
     if not entries:
         raise FileError(f'{place}: no formulas; write [formulas] and lines such as tau1 = "..."')
-    if len(entries) > _FORMULAS:
-        raise FileError(f"{place}: {len(entries)} formulas; at most {_FORMULAS}")
+    for found, what in ((entries, "formulas"), (symbols, "symbols")):
+        if len(found) > _FORMULAS:
+            raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
     return FormulaFile(
         place,
         robot,
         {name: _symbol(value, f"{place}: symbol {name!r}") for name, value in symbols.items()},
         {name: _formula(value, f"{place}: {name}") for name, value in entries.items()},
-    )
+        {name: tidied(value) for name, value in entries.items()},
+        {name: tidied(value if isinstance(value, str) else repr(float(value)))
+         for name, value in symbols.items()},
+    )  # fmt: skip
 
 
 def parse(text: str, place: str = "expression") -> Node:
@@ -138,7 +140,7 @@ def parse(text: str, place: str = "expression") -> Node:
     """
     if len(text) > _LENGTH:
         raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
-    text = " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
+    text = tidied(text)
     _refuse_deep(text, place)
     try:
         parsed = ast.parse(text, mode="eval")
@@ -147,9 +149,14 @@ def parse(text: str, place: str = "expression") -> Node:
         raise ExpressionError(f"{place}: no arithmetic{where}: {_short(text)}") from None
     except (RecursionError, MemoryError):
         raise ExpressionError(f"{place}: nested too deep") from None
-    if sum(1 for _ in ast.walk(parsed)) > 3 * _NODES:
-        raise ExpressionError(f"{place}: more than {_NODES} terms and factors")
+    if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:
+        raise ExpressionError(f"{place}: more than {MOST_NODES} terms and factors")
     return _Reader(place).read(parsed.body, 0)
+
+
+def tidied(text: str) -> str:
+    """The text with ``**`` for ``^``, plain signs and single blanks, as Python reads it."""
+    return " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
 
 
 def canonical(name: str) -> Node:

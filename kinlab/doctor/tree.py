@@ -65,11 +65,14 @@ def add(*args: Node) -> Node:
 
 
 def mul(*args: Node) -> Node:
-    """A product; products inside it are opened, numbers are gathered in front."""
+    """A product; products inside it are opened, numbers are gathered in front.
+
+    Zero times what may have no real value (log(q1), 1/q1) stays as it is.
+    """
     flat = [b for a in args for b in (a.args if a.op == "mul" else (a,))]
     factor = reduce(lambda x, y: x * y, (a.value for a in flat if a.op == "num"), Fraction(1))
     rest = [a for a in flat if a.op != "num"]
-    if factor == 0:
+    if factor == 0 and all(everywhere(a) for a in rest):
         return num(0)
     if factor != 1 or not rest:
         rest = [num(factor), *rest]
@@ -77,16 +80,29 @@ def mul(*args: Node) -> Node:
 
 
 def power(base: Node, exponent: Fraction) -> Node:
-    """A power with a constant exponent."""
+    """A power with a constant exponent.
+
+    Powers of powers are joined where both exponents are whole: (x**2)**(1/2) is not x, and
+    (x**(1/2))**2 is x only where x is not negative.
+    """
     if exponent == 1:
         return base
-    if exponent == 0:
+    if exponent == 0 and everywhere(base):
         return num(1)
-    if base.op == "pow":
+    if base.op == "pow" and base.value.denominator == exponent.denominator == 1 and exponent:
         return power(base.args[0], base.value * exponent)
     if base.op == "num" and exponent.denominator == 1 and (base.value or exponent > 0):
         return num(base.value ** int(exponent))
     return Node("pow", (base,), exponent)
+
+
+def everywhere(node: Node) -> bool:
+    """Whether a tree surely has a real value for all real values of its names."""
+    if node.op == "pow" and (node.value.denominator != 1 or node.value < 0):
+        return False
+    if node.op in ("tan", "asin", "acos", "log", "sqrt", "exp"):
+        return False
+    return all(everywhere(a) for a in node.args)
 
 
 def call(name: str, *args: Node) -> Node:

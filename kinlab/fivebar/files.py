@@ -6,7 +6,6 @@ Keys are the arguments of :class:`kinlab.fivebar.linkage.Linkage`; numbers may b
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -16,7 +15,7 @@ import tomli_w
 
 from kinlab.errors import ExpressionError, MechanismError, NameUnknownError, near
 from kinlab.expressions import parse_number
-from kinlab.files import read_text, write_text
+from kinlab.files import read_text, read_toml, write_text
 from kinlab.fivebar.linkage import Linkage
 from kinlab.resources import robots_dir
 
@@ -57,10 +56,7 @@ def read(name_or_path: str | Path) -> dict[str, Any]:
 
 def loads(text: str, name: str) -> dict[str, Any]:
     """As :func:`read`, from TOML text."""
-    try:
-        data = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as problem:
-        raise MechanismError(f"five-bar {name!r}: not TOML: {problem}") from None
+    data = read_toml(text, f"five-bar {name!r}", MechanismError)
     place = f"five-bar {data.get('name', name)!r}"
     for key in data:
         if key not in _KEYS:

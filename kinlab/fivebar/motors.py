@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.errors import MotorError, NameUnknownError, near
-from kinlab.files import read_text
+from kinlab.files import read_text, read_toml
 from kinlab.resources import robots_dir
 
 FIGURES = (
@@ -82,10 +81,7 @@ def read_motors(path: str | Path) -> dict[str, Motor]:
         FileError: the file cannot be read.
         MotorError: not TOML, an unknown key, no name, a name twice, an impossible figure.
     """
-    try:
-        data = tomllib.loads(read_text(path))
-    except tomllib.TOMLDecodeError as problem:
-        raise MotorError(f"{path}: not TOML: {problem}") from None
+    data = read_toml(read_text(path), str(path), MotorError)
     rows = data.get("motors", [])
     if not isinstance(rows, list) or not rows:
         raise MotorError(f"{path}: no [[motors]] in it")

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.errors import OptionError, SweepError
+from kinlab.parent import end_with_parent
 from kinlab.sweeps.measures import Measure, evaluate
 from kinlab.sweeps.parts import Columns, Run
 from kinlab.sweeps.samples import Samples
@@ -186,10 +187,14 @@ class Pool:
 def _process_pool(workers: int) -> ProcessPoolExecutor:
     # not fork: threads of numba's and Pinocchio's callers do not survive it
     return ProcessPoolExecutor(
-        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_ignore_interrupt
+        workers, mp_context=multiprocessing.get_context("spawn"), initializer=_begin
     )
 
 
-def _ignore_interrupt() -> None:
-    """Ctrl-C reaches the whole group; the parent ends the workers, without their tracebacks."""
+def _begin() -> None:
+    """Ctrl-C reaches the whole group; the parent ends the workers, without their tracebacks.
+
+    Where the parent is killed, they end with it.
+    """
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)

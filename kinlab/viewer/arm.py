@@ -13,14 +13,13 @@ import numpy as np
 import pinocchio as pin
 from pinocchio.visualize import MeshcatVisualizer
 
-from kinlab import urdf_read
 from kinlab.arrays import Array
 from kinlab.library import example_robots
 from kinlab.robot import Robot
 from kinlab.viewer import shapes
+from kinlab.viewer.bodies import Bodies
 
 ROOT = "/meshcat/robot"
-_FORMATS = (".dae", ".obj", ".stl")
 _STAND_IN = (0.57, 0.64, 0.68, 1.0)
 _GHOSTLY = 0.3
 """Opacity of a ghost."""
@@ -129,39 +128,10 @@ def motion_subspace(model: Any, joint: int) -> Array:
 
 def _visual_model(robot: Robot, meshes: bool) -> tuple[Any, set[int], list[str]]:
     """The bodies that can be drawn, the joints left without any, and what is missing."""
-    from lxml import etree
-
-    joints = set(range(robot.model.njoints))
     if not robot.urdf:
-        return pin.GeometryModel(), joints - {0}, []
-    root = urdf_read.parse(robot.urdf, f"robot {robot.name!r}")
-    for element in root.findall("kinlab"):
-        root.remove(element)
-    folders = _mesh_folders(robot)
-    bare = set()
-    notes: list[str] = []
-    for link in root.findall("link"):
-        for visual in link.findall("visual"):
-            mesh = visual.find("geometry/mesh")
-            if mesh is None:
-                continue
-            name = mesh.get("filename") or ""
-            file = urdf_read.mesh_file(name, folders)
-            if meshes and file is not None and file.suffix.lower() in _FORMATS:
-                mesh.set("filename", str(file))
-                continue
-            link.remove(visual)
-            if robot.model.existFrame(link.get("name"), pin.FrameType.BODY):
-                frame = robot.model.getFrameId(link.get("name"), pin.FrameType.BODY)
-                bare.add(int(robot.model.frames[frame].parentJoint))
-            if meshes:
-                why = "is missing" if file is None else "cannot be shown in a browser"
-                notes.append(f"link {link.get('name')!r}: mesh {name!r} {why}; a rod stands for it")
-    text = etree.tostring(root, encoding="unicode")
-    visuals = pin.buildGeomFromUrdfString(robot.model, text, pin.GeometryType.VISUAL)
-    if not len(visuals.geometryObjects):
-        bare = joints
-    return visuals, bare - {0}, notes
+        return pin.GeometryModel(), set(range(1, robot.model.njoints)), []
+    bodies = Bodies(robot, _mesh_folders(robot), meshes)
+    return bodies.visuals, bodies.bare - {0}, bodies.notes
 
 
 def _mesh_folders(robot: Robot) -> list[Path]:
@@ -179,4 +149,5 @@ def _mesh_folders(robot: Robot) -> list[Path]:
 
 
 def _node_name(name: str) -> str:
-    return str(name).replace("/", "_")
+    plain = str(name).replace("/", "_")
+    return "visuals_" if plain == "visuals" else plain

@@ -1,0 +1,207 @@
+"""A user's file of marked functions, in a process of its own with a limit of time.
+
+What such a file does to its process (``exit()``, ``os._exit``, a crash in C, an endless loop) is
+a failure of its function, and never the end of the check. What it prints goes to stderr.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import multiprocessing
+import os
+import signal
+import sys
+import warnings
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+from kinlab import errors
+from kinlab.arrays import Array
+from kinlab.errors import FileError, KinlabError, OptionError
+from kinlab.formula import AnswerShapeError, Formula, FormulaError, formulas_in
+from kinlab.parent import end_with_parent
+
+VARIABLE = "KINLAB_CHECK_SECONDS"
+"""Environment variable: seconds that a file may take to load, and a function for all states."""
+
+_SECONDS = 20.0
+
+
+class FunctionLostError(FormulaError):
+    """A marked function ended its process, or did not come back."""
+
+
+class Guest:
+    """One user's file, loaded in a process of its own, started again after it was lost.
+
+    Args:
+        path: the file.
+
+    Raises:
+        FileError: no such file, or not a Python file.
+        FormulaError: loading it raised, ended the process, or took too long.
+    """
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._seconds = _limit()
+        self._process: Any = None
+        self._pipe: Any = None
+        if not Path(path).is_file():
+            raise FileError(f"{path}: no such file")
+        records = self._start()
+        self.formulas = [
+            replace(record, function=_Call(self, k, record.id)) for k, record in enumerate(records)
+        ]
+
+    def call(self, index: int, name: str, stacks: tuple[Array, ...]) -> Any:
+        """The answers of one function over all states.
+
+        Raises:
+            FormulaError: what it raised.
+            FunctionLostError: it ended its process, or took too long.
+        """
+        if self._process is None:
+            self._start()
+        try:
+            self._pipe.send((index, stacks))
+        except OSError:
+            self._lost(f"function {name!r}")
+        return self._answer(f"function {name!r}")
+
+    def _start(self) -> list[Formula]:
+        # a forked child has everything imported already; elsewhere fork is not to be trusted
+        method = "fork" if sys.platform == "linux" else "spawn"
+        context: Any = multiprocessing.get_context(method)
+        self._pipe, other = context.Pipe()
+        process = context.Process(
+            target=_serve, args=(other, self._pipe if method == "fork" else None, self._path),
+            daemon=True, name="kinlab check",
+        )  # fmt: skip
+        sys.stdout.flush()
+        sys.stderr.flush()
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)  # fork beside a progress bar
+            process.start()
+        other.close()
+        self._process = process
+        records: list[Formula] = self._answer(self._path, load=True)
+        return records
+
+    def _answer(self, what: str, *, load: bool = False) -> Any:
+        if not self._pipe.poll(self._seconds):
+            self._end()
+            error = FormulaError if load else FunctionLostError
+            raise error(f"{what} did not come back within {self._seconds:g} s")
+        try:
+            kind, content = self._pipe.recv()
+        except (EOFError, OSError):
+            self._lost(what, load=load)
+        if kind == "good":
+            return content
+        raise _ERRORS.get(kind, FormulaError)(content)
+
+    def _lost(self, what: str, *, load: bool = False) -> None:
+        self._process.join(self._seconds)
+        code = self._process.exitcode
+        self._end()
+        how = f"ended its process with exit code {code}"
+        if code is not None and code < 0:
+            how = f"ended its process by signal {signal.Signals(-code).name}"
+        raise (FormulaError if load else FunctionLostError)(f"{what} {how}")
+
+    def _end(self) -> None:
+        self._process.kill()
+        self._process.join()
+        self._pipe.close()
+        self._process = self._pipe = None
+
+
+class _Call:
+    """Stands for a function of the file: called as ``Formula.function`` is."""
+
+    def __init__(self, guest: Guest, index: int, name: str) -> None:
+        self._guest, self._index = guest, index
+        self.__name__ = name
+
+    def __call__(self, numbers: Any, *stacks: Array) -> Any:
+        del numbers
+        return self._guest.call(self._index, self.__name__, stacks)
+
+
+_ERRORS: dict[str, type[KinlabError]] = {
+    name: value
+    for name, value in {**vars(errors), "FormulaError": FormulaError,
+                        "AnswerShapeError": AnswerShapeError}.items()
+    if isinstance(value, type) and issubclass(value, KinlabError)
+}  # fmt: skip
+
+
+def _limit() -> float:
+    text = os.environ.get(VARIABLE)
+    if text is None:
+        return _SECONDS
+    try:
+        seconds = float(text)
+    except ValueError:
+        seconds = -1.0
+    if not 0.0 < seconds < 1e6:
+        raise OptionError(f"{VARIABLE} is {text!r}; give a number of seconds above zero")
+    return seconds
+
+
+def _serve(pipe: Any, others: Any, path: str) -> None:
+    """The child: loads the file, then answers calls until the parent has gone."""
+    if others is not None:
+        others.close()
+    end_with_parent()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
+    os.dup2(2, 1)  # what the file prints must not stand among the rows, or in the JSON
+    functions: list[Any] = []
+
+    def load() -> list[Formula]:
+        records = formulas_in(_module(Path(path)))
+        functions.extend(record.function for record in records)
+        return [replace(record, function=_nothing) for record in records]
+
+    _reply(pipe, load, f"{path}: ")
+    while True:
+        try:
+            index, stacks = pipe.recv()
+        except EOFError:
+            os._exit(0)
+        _reply(pipe, lambda i=index, s=stacks: functions[i](None, *s), "")
+
+
+def _reply(pipe: Any, work: Any, place: str) -> None:
+    try:
+        message = ("good", work())
+    except KinlabError as problem:
+        message = (type(problem).__name__, str(problem))
+    except SystemExit as end:
+        pipe.close()
+        os._exit(end.code if isinstance(end.code, int) else 0 if end.code is None else 1)
+    except BaseException as problem:  # noqa: BLE001  whatever a user's file may raise
+        message = ("FormulaError", f"{place}{type(problem).__name__}: {problem}")
+    try:
+        pipe.send(message)
+    except Exception as problem:  # noqa: BLE001  an answer that cannot be sent
+        pipe.send(("FormulaError", f"{place}the answer cannot be read: {problem}"))
+
+
+def _nothing(*anything: Any) -> None:
+    """Stands for a function while its record travels."""
+
+
+def _module(path: Path) -> ModuleType:
+    name = f"_kinlab_check_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise FileError(f"{path}: not a Python file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # and stays: the child has no other use
+    spec.loader.exec_module(module)
+    return module

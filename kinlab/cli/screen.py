@@ -1,0 +1,69 @@
+"""The one door to the terminal: what comes from a file is shown, never obeyed.
+
+Names, sources and messages may hold control codes or rich's markup; here the codes become
+visible and markup is plain text. Styles are given as styles.
+"""
+
+from __future__ import annotations
+
+import sys
+import unicodedata
+from typing import Any
+
+import typer
+from rich.console import Console
+from rich.text import Text
+
+LONGEST = 900
+"""Characters of an error message that are shown."""
+
+
+def visible(text: str) -> str:
+    """The text with every code that a terminal would obey written out, such as ``\\x1b``.
+
+    Line ends and tabs stay; codes that turn the direction of writing and halves of surrogate
+    pairs go too.
+    """
+    if text.isprintable():
+        return text
+    return "".join(_shown(letter) for letter in text)
+
+
+def _shown(letter: str) -> str:
+    if letter.isprintable() or letter in "\n\t":
+        return letter
+    if unicodedata.category(letter) == "Zs":  # other blanks, such as the no-break space
+        return letter
+    return letter.encode("unicode_escape").decode("ascii")
+
+
+class Screen(Console):
+    """A rich console that shows text as it is."""
+
+    def render_str(self, text: str, **options: Any) -> Text:
+        """Every piece of text that is printed, and every cell of a table, passes here."""
+        return super().render_str(visible(text), **{**options, "markup": False, "emoji": False})
+
+
+def screen(**options: Any) -> Screen:
+    """A console for the commands; options are rich's."""
+    return Screen(markup=False, emoji=False, **options)
+
+
+def styled(*parts: str | tuple[str, str]) -> Text:
+    """Text in pieces, each plain or (text, style)."""
+    pieces = [part if isinstance(part, tuple) else (part, "") for part in parts]
+    return Text.assemble(*((visible(text), style) for text, style in pieces))
+
+
+def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
+    """Prints a line without styles."""
+    typer.echo(visible(text), err=err, nl=nl)
+
+
+def complain(problem: BaseException) -> None:
+    """An error as one line on stderr."""
+    text = visible(" ".join(str(problem).split()))
+    if len(text) > LONGEST:
+        text = f"{text[:LONGEST]} ..."
+    print(f"kinlab: {text}", file=sys.stderr)

@@ -1,0 +1,59 @@
+"""A process that has computed on many threads can be forked: its child computes too."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+SCRIPT = """
+import multiprocessing, sys, threading, time, os
+import numpy as np
+import kinlab as kl
+
+robot = kl.load("ur5")
+q = np.random.default_rng(0).uniform(-1.0, 1.0, (40_000, 6))
+target = kl.fk(robot, q[:1200])
+work = {
+    "fk": lambda: kl.fk(robot, q), "jacobian": lambda: kl.jacobian(robot, q),
+    "mass_matrix": lambda: kl.mass_matrix(robot, q),
+    "inverse_dynamics": lambda: kl.inverse_dynamics(robot, q, q, q),
+    "forward_dynamics": lambda: kl.forward_dynamics(robot, q, q, q),
+    "ik_batch": lambda: kl.ik_batch(robot, target).q,
+}[sys.argv[1]]
+here = work()
+
+def in_child(_):
+    return work()
+
+stop = threading.Event()
+def busy():
+    while not stop.is_set():
+        kl.fk(robot, q[:8192])
+threads = [threading.Thread(target=busy) for _ in range(16)] if sys.argv[2] == "busy" else []
+for thread in threads:
+    thread.start()
+with multiprocessing.get_context("fork").Pool(2) as pool:
+    there = pool.map_async(in_child, range(2)).get(100)
+stop.set()
+for thread in threads:
+    thread.join()
+print(all(np.array_equal(here, one) for one in there))
+"""
+
+
+@pytest.mark.parametrize(
+    ("what", "how"),
+    [
+        ("fk", "idle"), ("fk", "busy"), ("jacobian", "idle"), ("mass_matrix", "idle"),
+        ("inverse_dynamics", "idle"), ("forward_dynamics", "idle"), ("ik_batch", "idle"),
+    ],
+)  # fmt: skip
+def test_a_forked_child_gives_the_same_answers(what, how, monkeypatch):
+    monkeypatch.setenv("KINLAB_THREADS", "16")
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", SCRIPT, what, how],
+        capture_output=True, text=True, timeout=150, check=False,
+    )  # fmt: skip
+    assert done.stdout == "True\n", done.stderr[-2000:]
