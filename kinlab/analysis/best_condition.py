@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.metrics import condition_number, singular_values
-from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box
 from kinlab.arrays import Array
 from kinlab.kinematics import jacobian
+from kinlab.structure.task_space import TaskSpace, search_box
 
 _POWERS = (1.0, 8.0, 64.0, 512.0, 4096.0, 3.2e4, 2.6e5, 2e6, 2e7)
 """Each minimisation starts where the one before ended. At 2e7 the surrogate of six equal

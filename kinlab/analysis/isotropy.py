@@ -18,15 +18,15 @@ from kinlab.analysis.isotropy_system import IsotropySystem
 from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import (
+from kinlab.arrays import Array, frozen
+from kinlab.errors import OptionError
+from kinlab.robot import Robot
+from kinlab.structure.task_space import (
     read_reachable_task,
     revolute,
     search_box,
     wrap,
 )
-from kinlab.arrays import Array, frozen
-from kinlab.errors import OptionError
-from kinlab.robot import Robot
 
 ISOTROPIC = 1e-8
 """Condition number - 1 at and below which a configuration is isotropic."""

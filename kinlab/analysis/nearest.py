@@ -12,11 +12,11 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import read_reachable_task, revolute
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_reachable_task, revolute
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 
-from kinlab.analysis.task_space import TaskSpace, search_box
 from kinlab.arrays import Array
 from kinlab.kinematics import fk, jacobian
+from kinlab.structure.task_space import TaskSpace, search_box
 
 _STEP = 1e-3
 """Of the arm's length: how far beyond a singular configuration the tool is asked to go. A fold

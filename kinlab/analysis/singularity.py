@@ -12,13 +12,13 @@ from numpy.typing import ArrayLike
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.reach import passes_beyond
-from kinlab.analysis.structure import name_singularity, structure
-from kinlab.analysis.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
-from kinlab.tasks import COORDINATES
+from kinlab.structure.axes import name_singularity, structure
+from kinlab.structure.task_space import TaskSpace, read_reachable_task
+from kinlab.structure.tasks import COORDINATES
 
 _SAME_ANGLE = 1e-6
 """rad or m: two values of a pinned joint closer than this are one. Solutions agree to 1e-9."""
@@ -43,7 +43,7 @@ class Singularity:
         pinned: values of the deciding joints where each is fixed on its own; else empty.
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
             ``boundary`` (the tool cannot pass on in the lost direction) or ``interior``.
-        task: the task. rows: its rows. length: metres, see :mod:`kinlab.analysis.task_space`.
+        task: the task. rows: its rows. length: metres, see :mod:`kinlab.structure.task_space`.
     """
 
     q: Array

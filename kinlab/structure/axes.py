@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinlab.analysis.task_space import TaskSpace
 from kinlab.arrays import Array
 from kinlab.kinematics import fk, jacobian
 from kinlab.robot import Robot
+from kinlab.structure.task_space import TaskSpace
 
 _MEET = 1e-9
 """Metres or sine below which axes meet or are parallel, on tables with ten digits."""
