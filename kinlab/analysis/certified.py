@@ -24,6 +24,9 @@ GOAL = 1e-6
 """rad or m between distance and bound at which they count as one."""
 _BATCH = 192
 """Boxes split at a time."""
+_SHARES = (*[1.0] * 8, *[0.5, 0.25] * 6, *[0.1] * 3)
+"""Shares of the way towards the point that the steps of a local search take: whole ones are fast
+where the zero set bends little, small ones converge where it bends away from the point."""
 _STARTS = 48
 """Local searches before the first box is split."""
 
@@ -61,14 +64,14 @@ def nearest_zero(
     """
     search = _Search(factor, here, lower, upper, cut)
     search.try_points(search.starts())
-    # the bound shall not hang on what was found: the box reaches as far as the best zero, no farther
+    # nothing farther than the best zero is of interest
     reach = search.reach()
     low, high = np.maximum(lower, here - reach), np.minimum(upper, here + reach)
     if np.any(low > high):
         return NearestZero(search.best, search.distance, np.inf, 0)
     centre, half = 0.5 * (low + high)[np.newaxis], 0.5 * (high - low)[np.newaxis]
     bound, centre, half = search.bounds(centre, half)
-    boxes, worth = 1, True
+    boxes = 1
     while len(bound) and boxes < most:
         order = np.argsort(bound, kind="stable")
         bound, centre, half = bound[order], centre[order], half[order]
@@ -77,15 +80,8 @@ def nearest_zero(
         count = min(_BATCH, len(bound))
         more, placed, sizes = search.bounds(*_split(centre[:count], half[:count]))
         boxes += 2 * count
-        if len(more) and worth:
-            before = search.distance
-            search.try_points(placed[np.argsort(more, kind="stable")[:6]])
-            # the local searches have done their work once they stop to gain
-            worth = (
-                search.distance < before - 1e-12
-                or not np.isfinite(search.distance)
-                or boxes % 8 == 0
-            )
+        if len(more):
+            search.try_points(placed[np.argsort(more, kind="stable")[:4]])
         bound = np.concatenate([bound[count:], more])
         centre = np.concatenate([centre[count:], placed])
         half = np.concatenate([half[count:], sizes])
@@ -118,10 +114,10 @@ class _Search:
 
     def try_points(self, x: Array) -> None:
         """Local searches from x (N, d): steps to the nearest point of the linearised zero set."""
-        for _ in range(25):
-            x = self._nearest_linear(x, pull=True)
+        for share in _SHARES:
+            x = self._nearest_linear(x, share)
         for _ in range(4):
-            x = self._nearest_linear(x, pull=False)
+            x = self._nearest_linear(x, 0.0)
         values, _ = self.factor.values(x)
         good = np.abs(values).max(axis=1) <= 1e-11 + 10.0 * self.factor.slack
         if not good.any():
@@ -131,9 +127,9 @@ class _Search:
         if apart[least] < self.distance:
             self.best, self.distance = x[good][least].copy(), float(apart[least])
 
-    def _nearest_linear(self, x: Array, pull: bool) -> Array:
+    def _nearest_linear(self, x: Array, share: float) -> Array:
         values, gradient = self.factor.values(x)
-        towards = self.here - x if pull else np.zeros_like(x)
+        towards = share * (self.here - x)
         step = np.zeros_like(x)
         fixed = np.zeros(x.shape, dtype=bool)
         for _ in range(x.shape[1]):  # joints that would leave the limits stay on them
@@ -282,6 +278,10 @@ def _by_curvature(
 
 def _truncated_inverse(gradient: Array, rank: int) -> Array:
     """Pseudo-inverses (N, d, k) of gradients (N, k, d), at most of the given rank."""
+    if gradient.shape[1] == 1:
+        size = np.maximum(np.einsum("nkd,nkd->n", gradient, gradient), 1e-300)
+        alone: Array = gradient.swapaxes(1, 2) / size[:, np.newaxis, np.newaxis]
+        return alone
     left, sizes, right = np.linalg.svd(gradient, full_matrices=False)
     kept = sizes > 1e-9 * np.maximum(sizes[:, :1], 1e-300)
     kept[:, rank:] = False

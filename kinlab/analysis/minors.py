@@ -107,7 +107,7 @@ class Factor:
             gradient[..., i] = np.einsum("b,nbk->nk", one.slope, along)
             hessian[..., i, i] = np.einsum("b,nbk->nk", one.curve, along)
             # the absolute sum counted the linear part, of which only its bend stays
-            rest -= np.einsum("nb,nbk->nk", one.bound * one.linear - one.bend, np.abs(along))
+            rest -= np.einsum("nb,nbk->nk", one.straight - one.bend, np.abs(along))
             gone = one.bound * (one.linear | one.square) - one.bend - one.bulge
             second -= np.einsum("nb,nbk->nk", gone, np.abs(along))
             for j in range(i + 1, d):
@@ -188,6 +188,11 @@ class _Axis:
     @property
     def linear(self) -> Any:
         return self.slope != 0.0
+
+    @property
+    def straight(self) -> Array:
+        """Bounds of the linear functions; zero for the others."""
+        return self.bound * self.linear
 
     @property
     def square(self) -> Any:
@@ -338,7 +343,7 @@ def _split(
 
 
 def _divide(tensor: Array, i: int) -> tuple[Array, Array] | None:
-    """Takes a factor a + b cos q_i + c sin q_i with two zeros out of all functions, if there is one.
+    """Takes a factor a + b cos q_i + c sin q_i with two zeros out of all functions.
 
     Returns:
         The factor's coefficients (3, 1), and the quotient, of one degree less along axis i.

@@ -3,8 +3,8 @@
 The minors of J are trigonometric polynomials (:mod:`kinlab.analysis.minors`); the singular set is
 a union of their factors' zeros, each a problem in a few joints that branch and bound solves with a
 lower bound (:mod:`kinlab.analysis.certified`). Where the polynomials would be too large, points of
-the set slide towards q from many starts, and the bound is Weyl's: sigma_min(J(q')) >= sigma_min(J(q))
-- K |q' - q| with K a bound of J's slope from the lengths of the arm.
+the set slide towards q from many starts, and the bound is Weyl's: sigma_min(J(q')) >=
+sigma_min(J(q)) - K |q' - q| with K a bound of J's slope from the lengths of the arm.
 """
 
 from __future__ import annotations
@@ -30,6 +30,11 @@ from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""
+
+
+_LIMIT_DIGITS = 1e-9
+"""rad or m by which zeros may lie beyond a limit: limits of ten digits (6.283185307 for a whole
+turn) do not hide a singularity that stands on them. The answer itself is within the limits."""
 
 
 @dataclass(frozen=True)
@@ -117,9 +122,8 @@ def _factor_by_factor(
         rest = np.delete(held - here, joints)
         aside = float(rest @ rest)  # joints outside their limits have a way to go in any case
         cut = np.sqrt(max(nearest**2 - aside, 0.0)) if np.isfinite(nearest) else np.inf
-        zero = nearest_zero(
-            factor, here[joints], robot.lower[joints], robot.upper[joints], cut, boxes
-        )
+        lower, upper = robot.lower[joints] - _LIMIT_DIGITS, robot.upper[joints] + _LIMIT_DIGITS
+        zero = nearest_zero(factor, here[joints], lower, upper, cut, boxes)
         looked += zero.boxes
         bound = min(bound, float(np.sqrt(max(zero.bound, 0.0) ** 2 + aside)))
         if zero.x is None:
