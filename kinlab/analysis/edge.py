@@ -5,7 +5,8 @@ quadratic form v -> u . (dJ/dt) v. If it takes both signs, both sides are reache
 (the map is open there). Otherwise solutions are looked for a little ahead on both sides, from many
 starts and from along the motions that the pose leaves free, where other branches begin: a solution
 on each side proves that the tool passes. Only where the form has one sign, the other side shows no
-solution and this side shows several is it *called* an edge; everything else is undecided.
+solution and this side shows several is it *called* an edge (of a redundant arm the form has zeros
+besides, for its self-motion); everything else is undecided.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.arrays import Array
 from kinlab.evidence import Evidence
 from kinlab.kinematics import fk, jacobian
-from kinlab.structure.task_space import TaskSpace, search_box
+from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
 _STEPS = (1e-3, 1e-2)
 """Of the arm's length: how far ahead the tool is asked to go. A fold leaves a gap as large as the
@@ -28,6 +29,7 @@ _MISS = 0.1
 """Share of the step within which the tool counts as arrived."""
 _SIGN = 1e-6
 """Eigenvalue of the form, over its own size in the arm's length unit, that has a sign."""
+_SECOND = "the second-order form of the internal motions"
 _STARTS = 160
 _ENOUGH = 4
 """Solutions on the near side without which silence on the far side says nothing."""
@@ -58,11 +60,10 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
     single = lost.shape[1] == 1
     least, most = _form(space, q, lost[:, 0]) if single else (0.0, 0.0)
     if least < -_SIGN and most > _SIGN:
-        return Edge(True, Evidence("the second-order form of the internal motions",
-                                   proved="the tool passes on to both sides"))  # fmt: skip
+        return Edge(True, Evidence(_SECOND, proved="the tool passes on to both sides"))
     if not _can_step(space):
-        return Edge(None, Evidence("the second-order form of the internal motions",
-                                   found="nothing: the task has a part of the orientation"))  # fmt: skip
+        why = "nothing: steps ahead mean nothing for a part of the orientation"
+        return Edge(None, Evidence(_SECOND, found=why))
     searched = f"{_STARTS} starts on either side of the lost direction"
     counts = (0, 0)
     for step in _STEPS:
@@ -71,18 +72,21 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
             solutions_ahead(space, q, -step * lost[:, 0], most >= -_SIGN),
         )
         if min(counts) > 0:
-            return Edge(True, Evidence(searched, min(counts), _STARTS,
-                                       "the tool passes on to both sides: solutions there"))  # fmt: skip
+            proved = "the tool passes on to both sides: there are solutions"
+            return Edge(True, Evidence(searched, min(counts), _STARTS, proved))
         if step == _STEPS[0]:
             near = counts
     ahead, behind = near
-    folded = (least > _SIGN and behind == 0 and ahead >= _ENOUGH) or (
-        most < -_SIGN and ahead == 0 and behind >= _ENOUGH
-    )
-    if folded and 0 in counts:
-        return Edge(False, Evidence(searched, max(near), _STARTS,
-                                    "near this configuration the tool turns back (second order)",
-                                    "that no other branch reaches beyond"))  # fmt: skip
+    up = most > _SIGN and least > -_SIGN and behind == 0 and ahead >= _ENOUGH
+    down = least < -_SIGN and most < _SIGN and ahead == 0 and behind >= _ENOUGH
+    if (up or down) and 0 in counts:
+        # motions that leave the tool where it is give the form zeros: then it proves nothing
+        strict = least > _SIGN or most < -_SIGN
+        turns = "near this configuration the tool turns back (second order)"
+        other = "that no other branch reaches beyond"
+        if strict:
+            return Edge(False, Evidence(searched, max(near), _STARTS, turns, other))
+        return Edge(False, Evidence(searched, max(near), _STARTS, "", f"{turns}; {other}"))
     return Edge(None, Evidence(searched, max(near), _STARTS, found="no solution on one side"))
 
 
@@ -93,6 +97,7 @@ def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     inside = (q > robot.lower + 1e-9) & (q < robot.upper - 1e-9)
     matrix = space.select(full, space.scale) * inside
     change = space.select(jacobian_derivative(full), space.scale)  # [j, :, i]
+    change = change * _unit(space)[:, np.newaxis, np.newaxis]
     bilinear = np.einsum("m,jmi->ji", direction, change) * np.outer(inside, inside)
     _, sigma, right = np.linalg.svd(matrix)
     rank = int(np.sum(sigma > 1e-8 * sigma[0]))
@@ -108,14 +113,15 @@ def _can_step(space: TaskSpace) -> bool:
     return angular in ((), (3, 4, 5)) or (angular == (5,) and flat)
 
 
-def solutions_ahead(space: TaskSpace, q: Array, twist: Array, all_: bool) -> int:
-    """How many starts within the limits bring the tool to the pose ahead of q by a small twist.
+def solutions_ahead(space: TaskSpace, q: Array, twist: Array, first: bool) -> int:
+    """How many starts within the limits bring the tool to the pose ahead of q by a small twist;
+    counted up to a few.
 
     Args:
         space: the task.
         q: a configuration, (n,).
         twist: (m,), entries in metres over ``space.scale``.
-        all_: stop at the first; else count.
+        first: stop at the first; else count.
     """
     robot = space.robot
     full = np.zeros(6)
@@ -129,26 +135,29 @@ def solutions_ahead(space: TaskSpace, q: Array, twist: Array, all_: bool) -> int
     states = _starts(space, q)
     lower, upper = search_box(robot)
     lower, upper = np.minimum(lower, q), np.maximum(upper, q)
-    best = np.full(len(states), np.inf)
-    eye = np.eye(space.m)
-    for _ in range(70):
+    unit, eye, count = _unit(space), np.eye(space.m), 0
+    for round_ in range(60):
         miss = _miss(space, states, target)
         size = np.linalg.norm(miss, axis=1)
-        best = np.minimum(best, size)
-        if all_ and float(size.min()) < tolerance:
+        there = size < tolerance
+        count += int(there.sum())
+        if not len(there) or (first and count) or count >= _ENOUGH:
             break
+        keep = np.flatnonzero(~there)
+        if round_ % 15 == 14:  # the slow half gives up, as long as some remain
+            slow_last = keep[np.argsort(size[keep], kind="stable")]
+            keep = np.sort(slow_last[: max(16, len(keep) // 2)])
+        states, miss, size = states[keep], miss[keep], size[keep]
         matrix = space.select(jacobian(robot, states), space.scale)
-        # joints on a limit that the step would push beyond it stay there
         step = _damped(matrix, miss, size, eye)
+        # joints on a limit that the step would push beyond it stay there
         pushed = ((states <= lower) & (step < 0.0)) | ((states >= upper) & (step > 0.0))
         if pushed.any():
             step = _damped(np.where(pushed[:, np.newaxis], 0.0, matrix), miss, size, eye)
         largest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, 0.5 / np.maximum(largest, 1e-12))
-        states = np.where(
-            (size < 1e-3 * tolerance)[:, np.newaxis], states, np.clip(states + step, lower, upper)
-        )
-    return int(np.sum(best < tolerance))
+        step *= np.minimum(1.0, 0.5 / np.maximum(largest, 1e-12)) * unit
+        states = np.clip(states + step, lower, upper)
+    return count
 
 
 def _damped(matrix: Array, miss: Array, size: Array, eye: Array) -> Array:
@@ -173,9 +182,15 @@ def _starts(space: TaskSpace, q: Array) -> Array:
     share = rng.normal(size=(quarter, len(motions)))
     share /= np.abs(share @ motions).max(axis=1, keepdims=True)
     share *= rng.uniform(0.0, np.pi, (quarter, 1))
-    states[quarter : 2 * quarter] = q + share @ motions + rng.normal(scale=0.01, size=robot.n)
+    swept = q + (share @ motions + rng.normal(scale=0.01, size=(quarter, robot.n))) * _unit(space)
+    states[quarter : 2 * quarter] = wrap(robot, swept)
     clipped: Array = np.clip(states, np.minimum(lower, q), np.maximum(upper, q))
     return clipped
+
+
+def _unit(space: TaskSpace) -> Array:
+    """What one unit of each joint means in J with its metres divided by the scale, (n,)."""
+    return np.where(revolute(space.robot), 1.0, space.scale)
 
 
 def _miss(space: TaskSpace, q: Array, target: Array) -> Array:

@@ -172,11 +172,11 @@ def find_singularities(
 
     A sheet is told by the joints that hold it (:mod:`kinlab.analysis.supports`): its free joints
     were moved, far, and the arm stayed singular. Points where two sheets cross, and extrema of one,
-    are members of a sheet and no families. Starts are the dips of sigma_min along the line of every joint through several points, so
-    that each sheet is met by construction; each is solved to rounding by Newton on the bordered
-    system of :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact, and of
-    a redundant arm every pair of joints is scanned for values that suffice alone. A redundant arm
-    is singular where its rank drops below the number of task rows.
+    are members of a sheet and no families. Starts are the dips of sigma_min along the line of every
+    joint through several points, each solved to rounding by Newton on the bordered system of
+    :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact, and of a redundant
+    arm every pair of joints is scanned for values that suffice alone. A redundant arm is singular
+    where its rank drops below the number of task rows.
 
     Args:
         robot: the robot.
