@@ -68,8 +68,8 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
     counts = (0, 0)
     for step in _STEPS:
         counts = (
-            solutions_ahead(space, q, step * lost[:, 0], least <= _SIGN),
-            solutions_ahead(space, q, -step * lost[:, 0], most >= -_SIGN),
+            solutions_ahead(space, q, step * lost[:, 0]),
+            solutions_ahead(space, q, -step * lost[:, 0]),
         )
         if min(counts) > 0:
             proved = "the tool passes on to both sides: there are solutions"
@@ -113,7 +113,7 @@ def _can_step(space: TaskSpace) -> bool:
     return angular in ((), (3, 4, 5)) or (angular == (5,) and flat)
 
 
-def solutions_ahead(space: TaskSpace, q: Array, twist: Array, first: bool) -> int:
+def solutions_ahead(space: TaskSpace, q: Array, twist: Array) -> int:
     """How many starts within the limits bring the tool to the pose ahead of q by a small twist;
     counted up to a few.
 
@@ -121,7 +121,6 @@ def solutions_ahead(space: TaskSpace, q: Array, twist: Array, first: bool) -> in
         space: the task.
         q: a configuration, (n,).
         twist: (m,), entries in metres over ``space.scale``.
-        first: stop at the first; else count.
     """
     robot = space.robot
     full = np.zeros(6)
@@ -141,7 +140,7 @@ def solutions_ahead(space: TaskSpace, q: Array, twist: Array, first: bool) -> in
         size = np.linalg.norm(miss, axis=1)
         there = size < tolerance
         count += int(there.sum())
-        if not len(there) or (first and count) or count >= _ENOUGH:
+        if not len(there) or count >= _ENOUGH:
             break
         keep = np.flatnonzero(~there)
         if round_ % 15 == 14:  # the slow half gives up, as long as some remain
