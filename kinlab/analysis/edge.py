@@ -94,7 +94,8 @@ def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     """Least and greatest eigenvalue of v -> u . (dJ/dt) v on J v = 0, limits respected."""
     robot = space.robot
     full = jacobian(robot, q)
-    inside = (q > robot.lower + 1e-9) & (q < robot.upper - 1e-9)
+    turning = revolute(robot) & (robot.upper - robot.lower >= 2.0 * np.pi - 1e-9)
+    inside = turning | ((q > robot.lower + 1e-9) & (q < robot.upper - 1e-9))
     matrix = space.select(full, space.scale) * inside
     change = space.select(jacobian_derivative(full), space.scale)  # [j, :, i]
     change = change * _unit(space)[:, np.newaxis, np.newaxis]

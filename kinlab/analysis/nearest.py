@@ -144,6 +144,7 @@ def _factor_by_factor(
 def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None:
     """The guess solved to rounding, joints on a limit staying there; ``None`` where it is none."""
     robot = space.robot
+    guess = np.clip(guess, robot.lower, robot.upper)
     on_limit = (guess <= robot.lower) | (guess >= robot.upper)
     tries = [tuple(i for i in joints if not on_limit[i]), tuple(joints)]
     for moving in tries:
