@@ -250,17 +250,32 @@ fortieth of that, and a double root, which linearises like a curve, draws its ne
 
 
 def _dimension(system: IsotropySystem, x: Array) -> int:
-    """Dimension of the solutions near x (1, k), from solutions around it and not from a tangent."""
+    """Dimension of the solutions near x (1, k), from solutions around it and not from a tangent.
+
+    Where families cross their solutions together span more: the least of x and of a few solutions
+    around it counts.
+    """
+    around, size = _neighbours(system, x)
+    for number in range(0, len(around), max(1, len(around) // 3)):
+        if size == 0:
+            break
+        size = min(size, _neighbours(system, around[number : number + 1])[1])
+    return size
+
+
+def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
+    """Solutions around x (1, k), (N, k), and how many directions they span."""
     _, slope = system(x)
     _, values, right = np.linalg.svd(slope[0])
     still = right[int(np.sum(values > 1e-5 * values[0])) :]
     if not len(still):
-        return 0
+        return x[:0], 0
     drawn = np.random.default_rng(6).normal(size=(8 * len(still), len(still))) @ still
     drawn *= _RADIUS / np.linalg.norm(drawn, axis=1, keepdims=True)
     ahead, norm = solve(system, x + drawn, iterations=120)
-    around = (system.q(ahead) - system.q(x))[norm < 1e-9]
+    around = ahead[norm < 1e-9]
     if not len(around):
-        return 0
-    spread = np.linalg.svd(around / np.sqrt(len(around)), compute_uv=False)
-    return int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))
+        return around, 0
+    apart = system.q(around) - system.q(x)
+    spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
+    return around, int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))
