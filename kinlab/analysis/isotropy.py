@@ -244,9 +244,9 @@ def _freedom(system: IsotropySystem, q: Array, length: float) -> tuple[tuple[int
     return tuple(free), max(len(free), _dimension(system, x))
 
 
-_RADIUS = 0.05
+_RADIUS = 0.005
 """rad or m around a configuration in which its family's dimension is measured: a curve bends by a
-fortieth of that, and a double root, which linearises like a curve, draws its neighbours back."""
+fraction of that, and a double root, which linearises like a curve, draws its neighbours back."""
 
 
 def _dimension(system: IsotropySystem, x: Array) -> int:
