@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
-from kinlab.analysis.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.arrays import Array, frozen
 from kinlab.errors import FileError, NameUnknownError, OptionError, near
 from kinlab.files import write_bytes
 from kinlab.robot import Robot
 from kinlab.stacks import fk, mass_matrix
+from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.sweeps.run import plan
 
 Progress = Callable[[int, int], None]

@@ -11,8 +11,9 @@ from random_tables import random_table
 
 import kinlab as kl
 from kinlab.analysis import metrics
-from kinlab.analysis.task_space import jacobian_derivative, read_task
+from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.errors import NameUnknownError, OptionError, StateError
+from kinlab.structure.task_space import read_task
 
 KINDS = ("yoshikawa", "inverse_condition", "min_singular", "asada", "isotropy")
 

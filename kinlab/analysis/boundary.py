@@ -14,12 +14,12 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from kinlab.analysis.structure import Axes
-from kinlab.analysis.task_space import search_box
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.stacks import fk
+from kinlab.structure.axes import Axes
+from kinlab.structure.task_space import search_box
 
 _SIDE = 1e-3
 """Of the arm's reach: how far beside a piece its sides are tried. Islands and gaps thinner than

@@ -15,16 +15,16 @@ from kinlab.analysis.isotropy_system import IsotropySystem
 from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import (
+from kinlab.arrays import Array
+from kinlab.dh import DHTable
+from kinlab.errors import OptionError
+from kinlab.robot import Robot
+from kinlab.structure.task_space import (
     TaskSpace,
     read_reachable_task,
     search_box,
     wrap,
 )
-from kinlab.arrays import Array
-from kinlab.dh import DHTable
-from kinlab.errors import OptionError
-from kinlab.robot import Robot
 
 _SAME = 1e-5
 """Relative difference of open numbers below which two designs are one."""

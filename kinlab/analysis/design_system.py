@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.design_model import OpenChain
 from kinlab.analysis.isotropy_system import isotropy_equations
-from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box
 from kinlab.arrays import Array
+from kinlab.structure.task_space import TaskSpace, search_box
 
 _COLLAPSED = 1e-6
 """Lengths below this share of the arm's own length unit are links that vanished."""

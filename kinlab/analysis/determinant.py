@@ -13,12 +13,12 @@ from numpy.typing import ArrayLike
 from kinlab import symbolic
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
-from kinlab.analysis.task_space import TaskSpace, read_task, search_box, wrap
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.extract import to_dh
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
 
 _ZERO = 1e-12
 """Value of a factor, over its size in general position, at which it counts as zero."""

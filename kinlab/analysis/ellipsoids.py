@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import SINGULAR, singular_values
-from kinlab.analysis.task_space import read_length, read_task
 from kinlab.arrays import Array, frozen
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.robot import Robot, require_inertia
 from kinlab.stacks import mass_matrix
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_length, read_task
 
 ELLIPSOIDS = ("velocity", "force", "dynamic")
 

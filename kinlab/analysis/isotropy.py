@@ -13,23 +13,27 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.best_condition import lower_condition
+from kinlab.analysis.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.isotropy_system import IsotropySystem
 from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import (
+from kinlab.arrays import Array, frozen
+from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
+from kinlab.robot import Robot
+from kinlab.structure.task_space import (
     read_reachable_task,
     revolute,
     search_box,
     wrap,
 )
-from kinlab.arrays import Array, frozen
-from kinlab.errors import OptionError
-from kinlab.robot import Robot
 
 ISOTROPIC = 1e-8
 """Condition number - 1 at and below which a configuration is isotropic."""
+
+_NEAR = 0.05
+"""Residual after thirty steps from which an isotropic configuration may still be reached."""
 
 _SAME = 1e-5
 """rad or m between two listings of one configuration. Double roots are solved to half the
@@ -45,7 +49,8 @@ class IsotropicConfiguration:
         condition: condition number of J there.
         length: characteristic length in metres, ``None`` where the task needs none.
         free: names of the joints that may take any value without changing J J^T.
-        freedom: dimension of the family; more than ``len(free)`` where joints move together.
+        freedom: dimension of the family in joint space; more than ``len(free)`` where joints move
+            together. Measured by configurations around this one.
         jacobian: the task's J, entries in metres over ``length``, (m, n).
     """
 
@@ -69,9 +74,9 @@ class IsotropySearch:
         best_condition: its condition number. best_length: its length, metres or ``None``.
         seeds: starts of the search. seed: of the random numbers.
         converged: starts that ended at isotropy.
-        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations
-            (from the dozen best starts that differ), where there is no isotropy: how far they
-            agree on the best one.
+        spread: 5 %, 50 % and 95 % quantiles of the condition number over the local minimisations,
+            where there is no isotropy: how far they agree on the best one.
+        evidence: what was searched, how often the answer was met, and how sure it is.
     """
 
     robot: str
@@ -87,6 +92,7 @@ class IsotropySearch:
     seed: int
     converged: int
     spread: tuple[float, float, float] | None
+    evidence: Evidence = field(repr=False)
 
     @property
     def found(self) -> bool:
@@ -118,7 +124,7 @@ def find_isotropic(
         task: a name, a mask of six booleans, or ``"auto"``; the answer states it.
         length: characteristic length in metres, or ``"optimal"``: solved for along with q. It
             matters for mixed tasks only; the answer states it.
-        seeds: random starts within the limits.
+        seeds: most random starts within the limits; more never give a worse condition number.
         seed: of the starts; the same seed gives the same answer.
 
     Returns:
@@ -135,7 +141,9 @@ def find_isotropic(
     system = IsotropySystem(space, given)
     lower, upper = search_box(robot)
     q = np.random.default_rng(seed).uniform(lower, upper, (seeds, robot.n))
-    x, _ = solve(system, system.start(q), iterations=80)
+    x, norm = solve(system, system.start(q), iterations=30)
+    near = norm < _NEAR  # the others have stalled at a local minimum
+    x[near], _ = solve(system, x[near], iterations=60)
     q, lengths = wrap(robot, system.q(x)), system.length(x)
     condition = condition_number(singular_values(space.jacobian(q, lengths)))
     inside = np.all((q >= lower - 1e-9) & (q <= upper + 1e-9), axis=1)
@@ -143,22 +151,43 @@ def find_isotropic(
     configurations = isotropic_families(
         system, np.clip(q, lower, upper)[isotropic], lengths[isotropic]
     )
-    spread = None
+    spread, least = None, None
     if configurations:
         best = min(configurations, key=lambda c: c.condition)
         best_q, best_length, best_condition = best.q, best.length, best.condition
     else:
-        state, size, reached = lower_condition(space, given, q, lengths)
-        least = int(np.argmin(reached))
-        best_q, best_condition = frozen(state[least]), float(reached[least])
-        best_length = float(size[least]) if space.mixed else None
-        low, middle, high = np.quantile(reached, [0.05, 0.5, 0.95])
+        least = least_condition(space, given, np.random.default_rng(seed), seeds)
+        best_q, best_condition = frozen(least.q), least.condition
+        best_length = least.length if space.mixed else None
+        low, middle, high = np.quantile(least.ends, [0.05, 0.5, 0.95])
         spread = (float(low), float(middle), float(high))
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     return IsotropySearch(
         robot.name, space.name, space.rows, space.suggested, how, configurations, best_q,
         best_condition, best_length, seeds, seed, int(isotropic.sum()), spread,
+        _evidence(seeds, seed, int(isotropic.sum()), least),
     )  # fmt: skip
+
+
+def _evidence(seeds: int, seed: int, met: int, least: LeastCondition | None) -> Evidence:
+    if least is None:
+        return Evidence(
+            f"{seeds} starts within the limits (seed {seed})", met, seeds,
+            f"J J^T = a 1 to {ISOTROPIC:g} at every listed configuration",
+            "that there is no other family",
+        )  # fmt: skip
+    # no start of N ended lower: with a share p of such starts the chance of that is (1 - p)^N
+    share = 1.0 - 0.05 ** (1.0 / least.starts)
+    stopped = "once it was met often enough" if least.met >= ENOUGH else "at the end"
+    return Evidence(
+        f"{seeds} starts for isotropy, {least.starts} brought down on the condition number (seed "
+        f"{seed}; stopped {stopped})",
+        least.met,
+        least.starts,
+        "",
+        f"the least condition number; a further start ends lower with a chance of at most "
+        f"{100.0 * share:.2g} % (95 % sure)",
+    )
 
 
 def isotropic_families(
@@ -212,18 +241,41 @@ def _freedom(system: IsotropySystem, q: Array, length: float) -> tuple[tuple[int
     x = system.start(q[np.newaxis])
     if system.open_length:
         x[:, -1] = np.log(length)
+    return tuple(free), max(len(free), _dimension(system, x))
+
+
+_RADIUS = 0.005
+"""rad or m around a configuration in which its family's dimension is measured: a curve bends by a
+fraction of that, and a double root, which linearises like a curve, draws its neighbours back."""
+
+
+def _dimension(system: IsotropySystem, x: Array) -> int:
+    """Dimension of the solutions near x (1, k), from solutions around it and not from a tangent.
+
+    Where families cross their solutions together span more: the least of x and of a few solutions
+    around it counts.
+    """
+    around, size = _neighbours(system, x)
+    for number in range(0, len(around), max(1, len(around) // 3)):
+        if size == 0:
+            break
+        size = min(size, _neighbours(system, around[number : number + 1])[1])
+    return size
+
+
+def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
+    """Solutions around x (1, k), (N, k), and how many directions they span."""
     _, slope = system(x)
     _, values, right = np.linalg.svd(slope[0])
     still = right[int(np.sum(values > 1e-5 * values[0])) :]
-    others = [i for i in range(right.shape[1]) if i not in free]
-    curved = 0
-    for direction in still:
-        rest = np.zeros_like(direction)
-        rest[others] = direction[others]
-        if float(np.linalg.norm(rest)) < 0.5:
-            continue
-        # a double root linearises like a curve; only a step along it tells them apart
-        ahead, norm = solve(system, x + 0.05 * rest)
-        if norm[0] < 1e-10 and float(np.linalg.norm(ahead - x)) > 0.025:
-            curved += 1
-    return tuple(free), len(free) + curved
+    if not len(still):
+        return x[:0], 0
+    drawn = np.random.default_rng(6).normal(size=(8 * len(still), len(still))) @ still
+    drawn *= _RADIUS / np.linalg.norm(drawn, axis=1, keepdims=True)
+    ahead, norm = solve(system, x + drawn, iterations=120)
+    around = ahead[norm < 1e-9]
+    if not len(around):
+        return around, 0
+    apart = system.q(around) - system.q(x)
+    spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
+    return around, int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinlab.analysis.task_space import TaskSpace, jacobian_derivative
+from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.arrays import Array
 from kinlab.stacks import jacobian
+from kinlab.structure.task_space import TaskSpace
 
 
 @dataclass(frozen=True)

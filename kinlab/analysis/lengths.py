@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import singular_values
-from kinlab.analysis.task_space import TaskSpace, read_length, read_task
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 OPTIMAL = "optimal"
 """In place of a number of metres: the length that minimises the condition number."""

@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import read_reachable_task, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
 
 _LINES = 64
 """Scan lines along each joint of a slice, stratified over the others' ranges: an arc that spans

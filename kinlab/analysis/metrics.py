@@ -28,12 +28,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.task_space import read_length, read_task
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.robot import Robot
 from kinlab.stacks import mass_matrix
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_length, read_task
 
 
 def yoshikawa(sigma: Array) -> Array:

@@ -1,25 +1,40 @@
-"""How far a configuration is from the nearest singular one, and where that is."""
+"""How far a configuration is from the nearest singular one, where that is, and what is proved.
+
+The minors of J are trigonometric polynomials (:mod:`kinlab.analysis.minors`); the singular set is
+a union of their factors' zeros, each a problem in a few joints that branch and bound solves with a
+lower bound (:mod:`kinlab.analysis.certified`). Where the polynomials would be too large, points of
+the set slide towards q from many starts, and the bound is Weyl's: sigma_min(J(q')) >=
+sigma_min(J(q)) - K |q' - q| with K a bound of J's slope from the lengths of the arm.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
+from kinlab.analysis.certified import GOAL, nearest_zero
 from kinlab.analysis.metrics import SINGULAR, singular_values
+from kinlab.analysis.minors import Factor, factors
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import read_reachable_task, revolute
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""
+
+
+_LIMIT_DIGITS = 1e-9
+"""rad or m by which zeros may lie beyond a limit: limits of ten digits (6.283185307 for a whole
+turn) do not hide a singularity that stands on them. The answer itself is within the limits."""
 
 
 @dataclass(frozen=True)
@@ -27,65 +42,160 @@ class NearestSingularity:
     """Answer of :func:`nearest_singularity`.
 
     Attributes:
-        distance: Euclidean distance in joint space, rad (and m for prismatic joints); infinity
-            where no singular configuration was found within the limits.
+        distance: Euclidean distance in joint space, rad (and m for prismatic joints), to the
+            nearest singular configuration found; infinity where none was found within the limits.
+        bound: no singular configuration within the limits is nearer than this: proved, up to
+            rounding. Infinity: there is none at all.
+        meets: distance and bound agree to 1e-6: the distance is proved.
         singularity: the configuration there, or ``None``.
         sigma: singular values at the q that was asked about, descending, entries in metres over
             ``length``. length: metres.
-        starts: how many starts the search used.
+        evidence: what was searched, and what is proved.
     """
 
     distance: float
+    bound: float
+    meets: bool
     singularity: Singularity | None
     sigma: Array
     length: float
-    starts: int
+    evidence: Evidence = field(repr=False)
 
 
 def nearest_singularity(
-    robot: Robot, q: ArrayLike, task: Any = "auto", *, points: int = 4, seed: int = 0
+    robot: Robot, q: ArrayLike, task: Any = "auto", *, boxes: int = 12_000, seed: int = 0
 ) -> NearestSingularity:
     """The singular configuration nearest to q in joint space, within the limits.
-
-    Each start is a point of the singular set; it slides along the set towards q (Gauss-Newton
-    on the constraint, the rest of the way along its tangent) until the way to q is normal to it.
 
     Args:
         robot: the robot.
         q: joint positions, (n,).
         task: as in :func:`kinlab.find_singularities`.
-        points: base points of the search besides q itself.
-        seed: of the base points.
+        boxes: most boxes of joint space that the proof may look at; more only narrow what is
+            between ``bound`` and ``distance``.
+        seed: of the starts, where there are starts (see the top of the module).
 
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
+    if boxes < 1:
+        raise OptionError(f"boxes {boxes}; at least 1 is needed")
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {here.shape}; give one state")
     sigma = singular_values(space.jacobian(here, space.scale))
+    parts = factors(space)
+    if parts is None:
+        state, bound, searched = _from_many_starts(space, here, seed)
+    else:
+        state, bound, searched = _factor_by_factor(space, parts, here, boxes)
+    distance = np.inf if state is None else float(np.linalg.norm(state - here))
+    bound = float(np.clip(bound, 0.0, distance))
+    meets = bool(bound >= distance - 2.0 * GOAL)
+    found = None if state is None else describe_singularity(robot, state, space_mask(space.rows))
+    return NearestSingularity(
+        distance, bound, meets, found, sigma, space.scale,
+        _evidence(searched, distance, bound, meets),
+    )  # fmt: skip
+
+
+def _evidence(searched: str, distance: float, bound: float, meets: bool) -> Evidence:
+    if np.isinf(bound):
+        return Evidence(searched, proved="no configuration within the limits is singular")
+    proved = f"no singular configuration within the limits is nearer than {bound:.6g}"
+    if meets:
+        return Evidence(searched, proved=proved)
+    found = f"the distance {distance:.6g}" if np.isfinite(distance) else "no singularity at all"
+    return Evidence(searched, proved=proved if bound > 0.0 else "", found=found)
+
+
+def _factor_by_factor(
+    space: TaskSpace, parts: tuple[Factor, ...], here: Array, boxes: int
+) -> tuple[Array | None, float, str]:
+    robot = space.robot
+    held = np.clip(here, robot.lower, robot.upper)
+    best: Array | None = None
+    nearest, bound, looked = np.inf, np.inf, 0
+    for factor in sorted(parts, key=lambda f: len(f.joints)):
+        joints = list(factor.joints)
+        rest = np.delete(held - here, joints)
+        aside = float(rest @ rest)  # joints outside their limits have a way to go in any case
+        cut = np.sqrt(max(nearest**2 - aside, 0.0)) if np.isfinite(nearest) else np.inf
+        lower, upper = robot.lower[joints] - _LIMIT_DIGITS, robot.upper[joints] + _LIMIT_DIGITS
+        zero = nearest_zero(factor, here[joints], lower, upper, cut, boxes)
+        looked += zero.boxes
+        bound = min(bound, float(np.sqrt(max(zero.bound, 0.0) ** 2 + aside)))
+        if zero.x is None:
+            continue
+        guess = held.copy()
+        guess[joints] = zero.x
+        state = _polished(space, guess, joints)
+        if state is None:
+            continue
+        distance = float(np.linalg.norm(state - here))
+        if distance < nearest:
+            nearest, best = distance, state
+    names = [" and ".join(robot.joint_names[i] for i in f.joints) for f in parts]
+    searched = f"{looked} boxes of joint space, for {'; '.join(names) or 'no joint'}"
+    return best, bound, searched
+
+
+def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None:
+    """The guess solved to rounding, joints on a limit staying there; ``None`` where it is none."""
+    robot = space.robot
+    guess = np.clip(guess, robot.lower, robot.upper)
+    on_limit = (guess <= robot.lower) | (guess >= robot.upper)
+    tries = [tuple(i for i in joints if not on_limit[i]), tuple(joints)]
+    for moving in tries:
+        system = sets.SingularSystem(space, moving, guess)
+        x, _ = solve(system, system.start(guess[np.newaxis]))
+        state = np.clip(system.states(x)[0], robot.lower, robot.upper)
+        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
+        if values[-1] <= SINGULAR * values[0] and np.linalg.norm(state - guess) < 1e-4:
+            return state
+    return None
+
+
+def _from_many_starts(space: TaskSpace, here: Array, seed: int) -> tuple[Array | None, float, str]:
+    """The nearest of many local solutions, and Weyl's bound."""
+    robot = space.robot
     system = sets.whole(space)
-    starts = np.concatenate(
-        [here[np.newaxis], sets.seeds(system, np.random.default_rng(seed), points)]
-    )
+    starts = np.concatenate([here[np.newaxis], sets.seeds(system, np.random.default_rng(seed), 8)])
     x, good = sets.project(system, starts)
     x = x[good]
     x[:, : robot.n] = _turned(robot, x[:, : robot.n], here)
     first = np.argsort(np.linalg.norm(x[:, : robot.n] - here, axis=1), kind="stable")
     x = _slide(system, x[first[:_SLIDERS]], here)
-    if not len(x):
-        return NearestSingularity(np.inf, None, sigma, space.scale, len(starts))
+    least = singular_values(space.jacobian(here, space.scale))[-1]
+    bound = float(least) / slope_bound(space)
+    searched = f"{len(starts)} starts (seed {seed}); J's slope from the lengths of the arm"
     distance = np.linalg.norm(x[:, : robot.n] - here, axis=1)
     for number in np.argsort(distance, kind="stable"):
         state = x[number, : robot.n]
         values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
         if values[-1] <= SINGULAR * values[0]:
-            found = describe_singularity(robot, state, space_mask(space.rows))
-            return NearestSingularity(
-                float(distance[number]), found, sigma, space.scale, len(starts)
-            )
-    return NearestSingularity(np.inf, None, sigma, space.scale, len(starts))
+            return state, bound, searched
+    return None, bound, searched
+
+
+def slope_bound(space: TaskSpace) -> float:
+    """K with |J(q') - J(q)| <= K |q' - q| in the spectral norm, entries in metres over the scale.
+
+    d J_i / d q_j is a cross product of a unit axis with a column (or zero), so that its length is
+    at most that of the column: the way from axis i to the tool, and one.
+    """
+    robot = space.robot
+    turns = revolute(robot)
+    steps = [float(np.linalg.norm(p.translation)) for p in list(robot.model.jointPlacements)[1:]]
+    steps.append(float(np.linalg.norm(robot.model.frames[robot.tool].placement.translation)))
+    travel = np.where(turns, 0.0, np.maximum(np.abs(robot.lower), np.abs(robot.upper)))
+    reach = np.array([sum(steps[i + 1 :]) + float(travel[i:].sum()) for i in range(robot.n)])
+    column = np.where(turns, (reach / space.scale) ** 2 + 1.0, 1.0)
+    # joint j turns every column, those before it by at most their length as seen from j
+    slope = [float(column[j:].sum() + j * (reach[j] / space.scale) ** 2) if turns[j] else float(j)
+             / space.scale**2 for j in range(robot.n)]  # fmt: skip
+    return float(np.sqrt(sum(slope)))
 
 
 def space_mask(rows: tuple[int, ...]) -> tuple[bool, ...]:

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import SINGULAR
-from kinlab.analysis.task_space import read_task
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_task
 
 
 @dataclass(frozen=True)

@@ -16,10 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.solver import solve
-from kinlab.analysis.task_space import TaskSpace, jacobian_derivative, search_box, wrap
 from kinlab.arrays import Array
 from kinlab.stacks import jacobian
+from kinlab.structure.task_space import TaskSpace, search_box, wrap
 
 CONVERGED = 1e-12
 """Norm of the residual, in the arm's own length unit, below which a solution is accepted; far

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
+from kinlab.analysis.edge import edge
 from kinlab.analysis.metrics import SINGULAR
-from kinlab.analysis.reach import passes_beyond
-from kinlab.analysis.structure import name_singularity, structure
-from kinlab.analysis.task_space import TaskSpace, read_reachable_task
+from kinlab.analysis.minors import factors
+from kinlab.analysis.supports import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
-from kinlab.tasks import COORDINATES
+from kinlab.structure.axes import name_singularity, structure
+from kinlab.structure.task_space import (
+    TaskSpace,
+    read_reachable_task,
+    revolute,
+    search_box,
+    wrap,
+)
+from kinlab.structure.tasks import COORDINATES
 
 _SAME_ANGLE = 1e-6
 """rad or m: two values of a pinned joint closer than this are one. Solutions agree to 1e-9."""
@@ -38,12 +47,13 @@ class Singularity:
             in ``rows`` order; entries in metres are divided by ``length``.
         internal: joint motions that do not move the task (right singular vectors), (n, n - rank).
         joints: names of the joints in the motion that became internal here.
-        deciding: names of the joints whose change leaves the singular set; the others may move
-            freely on it, to first order.
-        pinned: values of the deciding joints where each is fixed on its own; else empty.
+        deciding: names of the fewest joints that hold the arm singular: with these where they are
+            the others may take any value. All joints where nothing less does.
+        pinned: values of the deciding joints where they are isolated; else empty.
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
-            ``boundary`` (the tool cannot pass on in the lost direction) or ``interior``.
-        task: the task. rows: its rows. length: metres, see :mod:`kinlab.analysis.task_space`.
+            ``boundary`` (the tool cannot pass on in the lost direction), ``interior`` or
+            ``undecided``.
+        task: the task. rows: its rows. length: metres, see :mod:`kinlab.structure.task_space`.
     """
 
     q: Array
@@ -81,9 +91,11 @@ class SingularFamily:
         deciding: names of the joints that decide; the others are free.
         pinned: values of the deciding joints where each is fixed on this sheet; empty where
             they vary together along a curve or surface.
-        beyond: whether the tool can pass on in the lost direction at the representative:
-            ``False`` on the boundary of the workspace, ``None`` where it was not tried.
+        beyond: whether the tool can pass on in the lost direction at the representative, see
+            :mod:`kinlab.analysis.edge`: ``True``, ``False`` on the edge of the workspace, ``None``
+            undecided.
         members: found configurations, the representative first.
+        evidence: how the free joints were moved, and what the edge rests on.
     """
 
     kind: str
@@ -91,6 +103,7 @@ class SingularFamily:
     pinned: tuple[float, ...]
     beyond: bool | None
     members: tuple[Singularity, ...] = field(repr=False)
+    evidence: Evidence = field(repr=False)
 
     @property
     def representative(self) -> Singularity:
@@ -123,6 +136,7 @@ class SingularitySearch(Sequence[Singularity]):
         robot: its name. task: the task. suggested: kinlab chose the task.
         families: sheets of the singular set. Empty: none was found within the joint limits.
         effort: seeds and convergence.
+        evidence: what was searched, and what is proved of it.
     """
 
     robot: str
@@ -130,6 +144,7 @@ class SingularitySearch(Sequence[Singularity]):
     suggested: bool
     families: tuple[SingularFamily, ...]
     effort: Effort
+    evidence: Evidence = field(repr=False)
 
     @property
     def configurations(self) -> tuple[Singularity, ...]:
@@ -155,10 +170,13 @@ def find_singularities(
 ) -> SingularitySearch:
     """Configurations on the singular set within the joint limits, sheet by sheet.
 
-    Starts are the dips of sigma_min along the line of every joint through several points, so
-    that each sheet is met by construction; each is solved to rounding by Newton on the bordered
-    system of :mod:`kinlab.analysis.singular_set`. A redundant arm is singular where its rank
-    drops below the number of task rows.
+    A sheet is told by the joints that hold it (:mod:`kinlab.analysis.supports`): its free joints
+    were moved, far, and the arm stayed singular. Points where two sheets cross, and extrema of one,
+    are members of a sheet and no families. Starts are the dips of sigma_min along the line of every
+    joint through several points, each solved to rounding by Newton on the bordered system of
+    :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact, and of a redundant
+    arm every pair of joints is scanned for values that suffice alone. A redundant arm is singular
+    where its rank drops below the number of task rows.
 
     Args:
         robot: the robot.
@@ -180,23 +198,91 @@ def find_singularities(
     system = sets.whole(space)
     starts = sets.seeds(system, np.random.default_rng(seed), points)
     x, good = sets.project(system, starts)
-    kind = structure(robot)
-    groups: dict[tuple[Any, ...], list[Singularity]] = {}
+    known: list[_Sheet] = []
     last_new = 0
-    for number in np.flatnonzero(good):
-        found = _describe(system, x[number], kind)
-        if found is None:
-            continue
-        key = _family_key(found, groups)
-        if key not in groups:
-            last_new = int(number) + 1
-        members = groups.setdefault(key, [])
-        if len(members) < keep and not any(_close(found.q, other.q) for other in members):
-            members.append(found)
-    families = [_family(space, key, tuple(m)) for key, m in groups.items()]
+    states = [*_exact(space), *(state for _, state in _pairs(space))]
+    exact = len(states)
+    states += list(system.states(x[good]))
+    numbers = [0] * exact + [int(k) + 1 for k in np.flatnonzero(good)]
+    for number, state in zip(numbers, states, strict=True):
+        sheet = next((one for one in known if one.has(space, state)), None)
+        if sheet is None:
+            held = supports(space, state)[0]
+            sheet = _Sheet(held, pinned(space, state, held), state, [])
+            known.append(sheet)
+            last_new = number
+        if len(sheet.members) < keep and not any(_close(state, q) for q in sheet.members):
+            sheet.members.append(state)
+    families = [_family(space, sheet) for sheet in known]
     families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, f.pinned))
     effort = Effort(len(starts), int(good.sum()), last_new, seed)
-    return SingularitySearch(robot.name, space.name, space.suggested, tuple(families), effort)
+    return SingularitySearch(
+        robot.name, space.name, space.suggested, tuple(families), effort,
+        _evidence(space, effort, exact),
+    )  # fmt: skip
+
+
+@dataclass
+class _Sheet:
+    """A sheet while it is being filled: the joints that hold it, and its states."""
+
+    held: tuple[int, ...]
+    pinned: bool
+    first: Array
+    members: list[Array]
+
+    def has(self, space: TaskSpace, q: Array) -> bool:
+        """Whether q lies on it."""
+        if self.pinned:
+            turns = revolute(space.robot)[list(self.held)]
+            apart = q[list(self.held)] - self.first[list(self.held)]
+            apart = np.where(turns, 2.0 * np.sin(0.5 * apart), apart)
+            return bool(np.abs(apart).max() < _SAME_ANGLE)
+        return holds(space, q, self.held)
+
+
+def _exact(space: TaskSpace) -> Iterator[Array]:
+    """A state on every zero, within the limits, of the factors of one revolute joint."""
+    lower, upper = search_box(space.robot)
+    for factor in factors(space) or ():
+        if len(factor.joints) == 1 and factor.turns[0] and factor.degrees[0] == 1:
+            joint = factor.joints[0]
+            a, c, s = factor.coefficients[:, 0]
+            middle, half = np.arctan2(s, c), np.arccos(np.clip(-a / np.hypot(c, s), -1.0, 1.0))
+            for value in sorted({float(middle - half), float(middle + half)}):
+                state = np.random.default_rng(10).uniform(lower, upper)
+                state[joint] = value
+                state = wrap(space.robot, state)
+                inside = lower[joint] - 1e-9 <= state[joint] <= upper[joint] + 1e-9
+                if inside and holds(space, state, (joint,)):
+                    yield np.clip(state, lower, upper)
+
+
+def _pairs(space: TaskSpace) -> Iterator[tuple[tuple[int, int], Array]]:
+    """Of a redundant arm, one state on each pair of values that suffices and is no less."""
+    if space.m == space.robot.n:
+        return
+    seen: list[_Sheet] = []
+    for pair, state in pinned_pairs(space):
+        if any(holds(space, state, (i,)) for i in pair):
+            continue  # one of the two suffices
+        if not any(one.held == pair and one.has(space, state) for one in seen):
+            seen.append(_Sheet(pair, pinned(space, state, pair), state, []))
+            yield pair, state
+
+
+def _evidence(space: TaskSpace, effort: Effort, exact: int) -> Evidence:
+    searched = f"{effort.seeds} starts along every joint's line (seed {effort.seed})"
+    if space.m < space.robot.n:
+        searched += ", and the plane of every pair of joints"
+    return Evidence(
+        searched,
+        effort.converged,
+        effort.seeds,
+        "every listed configuration is singular, and stays so when its family's free joints move",
+        "that there is no other family"
+        + ("" if not exact else f"; the last new one came with start {effort.last_new}"),
+    )
 
 
 def describe_singularity(robot: Robot, q: ArrayLike, task: Any = "auto") -> Singularity:
@@ -210,8 +296,7 @@ def describe_singularity(robot: Robot, q: ArrayLike, task: Any = "auto") -> Sing
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
-    system = sets.whole(space)
-    found = _describe(system, system.start(state[np.newaxis])[0], structure(robot))
+    found = _describe(space, state)
     if found is None:
         values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
         raise OptionError(
@@ -220,22 +305,24 @@ def describe_singularity(robot: Robot, q: ArrayLike, task: Any = "auto") -> Sing
         )
     if found.kind:
         return found
-    return _with_kind(found, _place(passes_beyond(space, found.q, found.lost[:, 0])))
+    return replace(found, kind=_place(edge(space, found.q, found.lost).beyond))
 
 
-def _describe(system: sets.SingularSystem, x: Array, kind: str) -> Singularity | None:
-    space, robot = system.space, system.space.robot
-    q = system.states(x[np.newaxis])[0]
+def _describe(
+    space: TaskSpace, q: Array, held: tuple[int, ...] | None = None, fixed: bool | None = None
+) -> Singularity | None:
+    robot = space.robot
     left, sigma, right = np.linalg.svd(space.jacobian(q, space.scale))
     if sigma[-1] > SINGULAR * sigma[0]:
         return None
     rank = int(np.sum(sigma > SINGULAR * sigma[0]))
-    projector, codimension = sets.normal_projector(system, x)
-    deciding = [i for i in range(robot.n) if projector[i, i] > _INVOLVED]
+    held = supports(space, q)[0] if held is None else held
+    fixed = pinned(space, q, held) if fixed is None else fixed
     internal = right[rank:].T
     taking_part = np.linalg.norm(internal, axis=1) > _INVOLVED
     names = robot.joint_names
-    fixed = codimension == len(deciding)
+    kind = structure(robot)
+    named = space.m == robot.n or (space.m == 6 and kind == "anthropomorphic-7")
     return Singularity(
         q=frozen(q),
         ratio=float(sigma[-1] / sigma[0]),
@@ -243,47 +330,45 @@ def _describe(system: sets.SingularSystem, x: Array, kind: str) -> Singularity |
         lost=frozen(left[:, rank:]),
         internal=frozen(internal),
         joints=tuple(name for name, part in zip(names, taking_part, strict=True) if part),
-        deciding=tuple(names[i] for i in deciding),
-        pinned=tuple(float(q[i]) for i in deciding) if fixed else (),
-        kind=name_singularity(space, kind, q),
+        deciding=tuple(names[i] for i in held),
+        pinned=tuple(float(q[i]) for i in held) if fixed else (),
+        kind=name_singularity(robot, kind, q, held) if named else "",
         task=space.name,
         rows=space.rows,
         length=space.scale,
     )
 
 
-def _family_key(
-    found: Singularity, groups: dict[tuple[Any, ...], list[Singularity]]
-) -> tuple[Any, ...]:
-    """(kind, rank, deciding joints, pinned values): that of a family that exists, if one fits."""
-    for key in groups:
-        same = key[:3] == (found.kind, found.rank, found.deciding)
-        if same and len(key[3]) == len(found.pinned):
-            apart = np.sin(0.5 * (np.asarray(key[3]) - np.asarray(found.pinned)))
-            if np.all(np.abs(apart) < _SAME_ANGLE):
-                return key
-    return found.kind, found.rank, found.deciding, found.pinned
-
-
-def _family(
-    space: TaskSpace, key: tuple[Any, ...], members: tuple[Singularity, ...]
-) -> SingularFamily:
-    first = members[0]
-    beyond = passes_beyond(space, first.q, first.lost[:, 0])
-    if key[0]:
-        return SingularFamily(str(key[0]), key[2], key[3], beyond, members)
-    placed = [_with_kind(first, _place(beyond))]
-    placed += [_with_kind(m, _place(passes_beyond(space, m.q, m.lost[:, 0]))) for m in members[1:]]
-    kind = "/".join(sorted({m.kind for m in placed}))
-    return SingularFamily(kind, key[2], key[3], beyond, tuple(placed))
+def _family(space: TaskSpace, sheet: _Sheet) -> SingularFamily:
+    """The family of a sheet, the members in general position on it first."""
+    found = [_describe(space, q, sheet.held, sheet.pinned) for q in sheet.members]
+    sound = [s for s in found if s is not None]
+    # where sheets cross the rank is lower: such members come last
+    sound.sort(key=lambda s: -s.rank)
+    first = sound[0]
+    kinds = {s.kind for s in sound if s.rank == first.rank}
+    judged = edge(space, first.q, first.lost)
+    if first.kind:
+        kind = min(kinds, key=len)
+    else:
+        rest = [_place(edge(space, s.q, s.lost).beyond) for s in sound[1:]]
+        sound = [
+            replace(s, kind=k) for s, k in zip(sound, [_place(judged.beyond), *rest], strict=True)
+        ]
+        kind = "/".join(sorted({s.kind for s in sound}))
+    free = space.robot.n - len(sheet.held)
+    evidence = Evidence(
+        f"{free} free joints moved far, at random within their limits; {judged.evidence.searched}",
+        len(sound),
+        None,
+        "; ".join(filter(None, ["singular at every state tried", judged.evidence.proved])),
+        judged.evidence.found,
+    )
+    return SingularFamily(kind, first.deciding, first.pinned, judged.beyond, tuple(sound), evidence)
 
 
 def _place(beyond: bool | None) -> str:
-    return "boundary" if beyond is False else "interior"
-
-
-def _with_kind(found: Singularity, kind: str) -> Singularity:
-    return Singularity(**{**found.__dict__, "kind": kind})
+    return {True: "interior", False: "boundary", None: "undecided"}[beyond]
 
 
 def _close(one: Array, two: Array) -> bool:

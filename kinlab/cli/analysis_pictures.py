@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path) -> None:
     """Singular curves in a slice of joint space."""
     from kinlab.analysis.loci import singular_loci
-    from kinlab.analysis.task_space import read_task
     from kinlab.errors import OptionError
     from kinlab.plots.canvas import save
     from kinlab.plots.curves import plot_loci
+    from kinlab.structure.task_space import read_task
 
     needed = abs(read_task(robot, task).m - robot.n) + 2
     if joints is not None:
@@ -33,10 +33,10 @@ def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path)
 
 def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
     """The best conditioned pose with its ellipses, or where a spatial arm is well conditioned."""
-    from kinlab.analysis.task_space import TaskSpace
     from kinlab.plots.arms import plot_ellipse
     from kinlab.plots.canvas import save
     from kinlab.plots.maps import plot_map
+    from kinlab.structure.task_space import TaskSpace
     from kinlab.workspace_map import sample_workspace, stays_in_plane
 
     if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):

@@ -13,7 +13,7 @@ from kinlab.chain_arrays import chain
 from kinlab.inverse import methods
 from kinlab.robot import Robot
 from kinlab.stacks import fk, jacobian
-from kinlab.tasks import TASKS, require_task, task_rows
+from kinlab.structure.tasks import TASKS, require_task, task_rows
 
 STARTS = 256
 """States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to
@@ -93,10 +93,10 @@ def rows_of(robot: Robot, task: Any) -> tuple[int, ...]:
     """The rows of a task; ``"auto"`` is the largest that suits the arm.
 
     Raises:
-        NameUnknownError, OptionError: as :func:`kinlab.tasks.task_rows`.
+        NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
     """
     if isinstance(task, str) and task == "auto":
-        from kinlab.analysis.task_space import read_task
+        from kinlab.structure.task_space import read_task
 
         return read_task(robot, task).rows
     return task_rows(task)

@@ -60,7 +60,7 @@ def ik(
         tol_rotation: radians, of the rotation vector log(R_d R^T) in the base's axes, in the
             coordinates of the task.
         seed: of the table of starts.
-        task: a name of :data:`kinlab.tasks.TASKS`, a mask of six booleans, or ``"auto"``.
+        task: a name of :data:`kinlab.structure.tasks.TASKS`, a mask of six booleans, or ``"auto"``.
             With ``"pose"``, an arm of fewer than six joints meets only those T on its way.
         restarts: searches after the first.
         max_iterations: of one search; left out, 60 (gradient: 5000).

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.ellipsoids import ellipsoid
-from kinlab.analysis.structure import Axes
-from kinlab.analysis.task_space import TaskSpace
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
 from kinlab.robot import Robot
 from kinlab.stacks import fk
 from kinlab.states import joint_vector
+from kinlab.structure.axes import Axes
+from kinlab.structure.task_space import TaskSpace
 from kinlab.workspace_map import stays_in_plane
 
 _STYLES = {"velocity": (GREEN, "-"), "force": (RED, "--"), "dynamic": (GREY, "-.")}

@@ -9,11 +9,11 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.loci import Loci
 from kinlab.analysis.metrics import singular_values
-from kinlab.analysis.task_space import read_length, read_task
 from kinlab.errors import OptionError
 from kinlab.plots.canvas import BLUE, RED, new_axes
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
+from kinlab.structure.task_space import read_length, read_task
 
 
 def plot_singular_values(

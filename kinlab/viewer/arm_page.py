@@ -12,7 +12,7 @@ from kinlab.errors import StructureError
 from kinlab.extract import to_dh
 from kinlab.robot import Robot
 from kinlab.stacks import fk, jacobian
-from kinlab.tasks import TASKS, generic_rank
+from kinlab.structure.tasks import TASKS, generic_rank
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
 from kinlab.viewer.framing import look_at

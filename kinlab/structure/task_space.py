@@ -1,4 +1,4 @@
-"""The rows of J that a task asks for, in dimensionless form, and the derivative of J.
+"""The rows of J that a task asks for, in dimensionless form, and the box searches draw from.
 
 A Jacobian that mixes metres and radians has no condition number of its own. Its entries in
 metres (linear rows, revolute columns) are divided by a *characteristic length* L (Angeles,
@@ -20,7 +20,7 @@ from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.stacks import jacobian
-from kinlab.tasks import TASKS, generic_rank, require_task, task_name, task_rows
+from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
 AUTO = "auto"
 """The task that suits the arm: as many coordinates as it can move independently."""
@@ -107,10 +107,10 @@ def read_task(robot: Robot, task: Any) -> TaskSpace:
 
     Args:
         robot: the robot.
-        task: a name of :data:`kinlab.tasks.TASKS`, six booleans, ``"auto"`` or ``None``.
+        task: a name of :data:`kinlab.structure.tasks.TASKS`, six booleans, ``"auto"`` or ``None``.
 
     Raises:
-        NameUnknownError, OptionError: as :func:`kinlab.tasks.task_rows`.
+        NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
     """
     if task is None or (isinstance(task, str) and task == AUTO):
         rows = suggest_rows(robot)
@@ -162,29 +162,6 @@ def read_length(length: Any) -> float:
     if value <= 0.0:
         raise OptionError(f"characteristic length {float(value):g} m; it must be above 0")
     return float(value)
-
-
-def jacobian_derivative(full: Array) -> Array:
-    """Partial derivatives of a base-frame Jacobian, from the Jacobian alone.
-
-    With column i = (v_i, w_i): for j <= i, d(v_i, w_i)/dq_j = (w_j x v_i, w_j x w_i); for
-    j > i, d v_i/dq_j = w_i x v_j and d w_i/dq_j = 0. Holds for prismatic columns too (w = 0).
-    Haviland & Corke, "Manipulator differential kinematics, part 2", IEEE RAM 2023, section II.
-
-    Args:
-        full: (..., 6, n), ``frame="base"``.
-
-    Returns:
-        (..., n, 6, n): entry [..., j, :, i] is d J[:, i] / d q_j.
-    """
-    v, w = np.swapaxes(full[..., :3, :], -1, -2), np.swapaxes(full[..., 3:, :], -1, -2)
-    n = full.shape[-1]
-    j, i = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-    behind = (j <= i)[..., np.newaxis]
-    turned = np.cross(w[..., :, np.newaxis, :], v[..., np.newaxis, :, :])  # [j, i] = w_j x v_i
-    linear = np.where(behind, turned, np.swapaxes(turned, -3, -2))
-    angular = np.cross(w[..., :, np.newaxis, :], w[..., np.newaxis, :, :]) * behind
-    return np.swapaxes(np.concatenate([linear, angular], axis=-1), -1, -2)
 
 
 def search_box(robot: Robot) -> tuple[Array, Array]:

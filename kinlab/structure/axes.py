@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinlab.analysis.task_space import TaskSpace
 from kinlab.arrays import Array
 from kinlab.robot import Robot
 from kinlab.stacks import fk, jacobian
@@ -58,24 +57,33 @@ class Axes:
         return velocity
 
 
-def wrist_centre(axes: Axes) -> Array | None:
-    """The point where the last three revolute axes meet, or ``None``."""
-    if len(axes.turns) < 4 or not axes.turns[-3:].all():
+def meeting_point(axes: Axes, joints: tuple[int, ...]) -> Array | None:
+    """The point where these revolute axes meet, (3,), or ``None``."""
+    chosen = list(joints)
+    if not axes.turns[chosen].all():
         return None
-    # the point nearest to three lines, by least squares on (1 - z z^T)(p - c) = 0
-    planes = [np.eye(3) - np.outer(z, z) for z in axes.direction[-3:]]
+    # the point nearest to the lines, by least squares on (1 - z z^T)(p - c) = 0
+    planes = [np.eye(3) - np.outer(z, z) for z in axes.direction[chosen]]
     left = np.concatenate(planes)
-    right = np.concatenate([a @ p for a, p in zip(planes, axes.point[-3:], strict=True)])
+    right = np.concatenate([a @ p for a, p in zip(planes, axes.point[chosen], strict=True)])
     centre, *_ = np.linalg.lstsq(left, right, rcond=None)
     return centre if float(np.linalg.norm(left @ centre - right)) < _MEET else None
 
 
+def wrist_centre(axes: Axes) -> Array | None:
+    """The point where the last three revolute axes meet, or ``None``."""
+    n = len(axes.turns)
+    return meeting_point(axes, (n - 3, n - 2, n - 1)) if n >= 4 else None
+
+
 def structure(robot: Robot) -> str:
-    """What the arm is: ``planar``, ``wrist-partitioned``, ``parallel-arm``, ``regional`` or ``""``.
+    """What the arm is: ``planar``, ``wrist-partitioned``, ``parallel-arm``, ``regional``,
+    ``anthropomorphic-7`` or ``""``.
 
     planar: every axis parallel, two or three revolute joints. wrist-partitioned: six joints,
     the last three meeting in one point. parallel-arm: six revolute joints, the second to fourth
-    parallel (UR). regional: three joints that place a point.
+    parallel (UR). regional: three joints that place a point. anthropomorphic-7: seven revolute
+    joints, the first three meeting in one point and the last three in another (SRS).
     """
     q = np.random.default_rng(1).uniform(-1.0, 1.0, robot.n)
     axes = Axes.at(robot, q)
@@ -85,23 +93,30 @@ def structure(robot: Robot) -> str:
         return "wrist-partitioned"
     if robot.n == 6 and axes.turns.all() and axes.parallel(1, 2) and axes.parallel(2, 3):
         return "parallel-arm"
+    if (
+        robot.n == 7
+        and wrist_centre(axes) is not None
+        and meeting_point(axes, (0, 1, 2)) is not None
+    ):
+        return "anthropomorphic-7"
     return "regional" if robot.n == 3 else ""
 
 
-def name_singularity(space: TaskSpace, kind: str, q: Array) -> str:
+def name_singularity(robot: Robot, kind: str, q: Array, deciding: tuple[int, ...]) -> str:
     """``wrist``, ``elbow``, ``shoulder`` (joined by " + " where several hold), or ``""``.
 
     Args:
-        space: the task; names belong to the square J of the whole arm, and a redundant arm has
-            none.
+        robot: the robot; its task has as many rows as it has joints, or it has one joint more
+            and is ``anthropomorphic-7``.
         kind: answer of :func:`structure`.
         q: a singular configuration, (n,).
+        deciding: indices of the joints that decide; used where the arm has seven joints.
     """
-    robot = space.robot
-    if space.m != robot.n:
-        return ""
     axes = Axes.at(robot, q)
     match kind:
+        case "anthropomorphic-7":
+            parts = (("shoulder", {0, 1, 2}), ("elbow", {3}), ("wrist", {4, 5, 6}))
+            return " + ".join(name for name, joints in parts if joints & set(deciding))
         case "planar":
             return "elbow"
         case "wrist-partitioned":
