@@ -106,12 +106,12 @@ def sharpen(fixed, prismatic, target, q, axes, pose, jac, order, r, e):  # type:
             far = now < 0.9 * best
             best, halved, damped = now, 0, 1.0
             q[:] = trial[:n]
-            if now < 1e-15 or (not far and now < _SHARP):
+            if now < 1e-16 or (not far and now < 1e-14):
                 break
         else:
             halved += 1
             damped *= 0.25
-            if halved > 3 or best < _SHARP:
+            if halved > 3 or best < 1e-14:
                 break
             frames(fixed, prismatic, q, axes, pose)
             pose_error(pose, target, r, e)
@@ -312,7 +312,8 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
             trial = candidates[i]
             frames(form.arm_fixed, form.arm_prismatic, trial, arm_axes, pose)
             position, rotation = miss(form.task, pose, target, r, e)
-            if max(position, rotation) > _SHARP and form.family != PLANE:
+            rough = form.family == GENERAL or max(position, rotation) > _SHARP
+            if rough and form.family != PLANE:
                 sharpen(form.fixed, form.prismatic, target, trial, axes, pose, jac, order, r, e)
                 frames(form.arm_fixed, form.arm_prismatic, trial, arm_axes, pose)
                 position, rotation = miss(form.task, pose, target, r, e)
@@ -337,6 +338,11 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
             for j in range(n):
                 q[row, at, j] = trial[j]
             count += 1
+        # complex solutions come in pairs, so that the real ones are odd in number only where two
+        # run together
+        whole = form.family == GENERAL and form.real == 6 and not state & DOUBLE
+        if whole and (k - count) % 2 == 1:
+            state |= UNDECIDED
         counts[row] = count
         states[row] = state
 

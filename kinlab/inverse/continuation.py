@@ -18,7 +18,8 @@ case asked for.
 
 A path is dq/ds = J^-1 (v, omega), predicted by a cubic through the last two points and corrected
 by Newton steps. Paths that end in the same regular solution, or whose ends are not closed under
-complex conjugation, betray a slip and are followed again with smaller steps.
+complex conjugation, betray a slip: all are followed again, from another generic pose and with
+smaller steps.
 """
 
 from __future__ import annotations
@@ -39,10 +40,10 @@ _STEPS = 600
 """Steps of one path at most; 15 to 40 are usual, some 150 at a double solution."""
 
 _TRUST = (0.06, 0.01, 0.002)
-"""Radians that the first Newton step may take after a prediction, in the first round and in the
-two rounds for paths that slipped."""
+"""Radians that the first Newton step may take after a prediction, in the first round and in two
+more, each from another generic pose, where paths slipped."""
 
-_TWIN = 1e-6
+_TWIN = 1e-7
 """Radians within which two ends of paths are one solution."""
 
 _QUIET_LOOPS = 24
@@ -400,28 +401,23 @@ def follow_all(fixed, prismatic, length, poses, bank, target, ends, codes):  # t
     """
     k = bank.shape[1]
     goal, way = target.astype(np.complex128), np.empty((7, 6), np.complex128)
-    nearest, least = 0, np.inf
+    away = np.zeros(poses.shape[0])
     for i in range(poses.shape[0]):
-        away = 0.0
         for j in range(12):
             gap = _size(poses[i, j] - goal[j])
-            away += (gap / length if j % 4 == 3 else gap) ** 2
-        if away < least:
-            nearest, least = i, away
-    starts = bank[nearest]
-    theta = plan_path(poses[nearest], goal, way)
-    again = np.ones(k, np.bool_)
+            away[i] += (gap / length if j % 4 == 3 else gap) ** 2
     clean = False
     for trust in _TRUST:
-        for i in range(k):
-            if again[i]:
-                ends[i] = starts[i]
-                codes[i], _ = follow(fixed, prismatic, length, goal, way, theta, trust, ends[i])
-        again[:] = False
+        nearest = np.argmin(away)
+        if poses.shape[0] > 1:
+            away[nearest] = np.inf  # another way, where this one does not do
+        theta = plan_path(poses[nearest], goal, way)
         clean = True
         for i in range(k):
-            if codes[i] == LOST:
-                again[i], clean = True, False
+            ends[i] = bank[nearest, i]
+            codes[i], _ = follow(fixed, prismatic, length, goal, way, theta, trust, ends[i])
+            clean = clean and codes[i] != LOST
+        for i in range(k):
             if codes[i] != FOLLOWED:
                 continue
             conjugate = False
@@ -429,15 +425,12 @@ def follow_all(fixed, prismatic, length, poses, bank, target, ends, codes):  # t
                 if codes[j] != FOLLOWED:
                     continue
                 if j != i and _gap(prismatic, length, ends[i], ends[j], False) < _TWIN:
-                    again[i], again[j], clean = True, True, False
+                    clean = False
                 if _gap(prismatic, length, ends[i], ends[j], True) < _TWIN:
                     conjugate = True
-            if not conjugate:
-                clean = False
+            clean = clean and conjugate
         if clean:
             break
-        if not again.any():
-            again[:] = True
     return clean
 
 
