@@ -9,10 +9,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
+from kinlab.errors import NameUnknownError
 from kinlab.inverse.request import positive, read_guess, read_targets, require_robot
-from kinlab.inverse.result import IKResult
+from kinlab.inverse.result import IKResult, IKStatus
 from kinlab.inverse.setup import rows_of, setup
 from kinlab.inverse.single import ik
+from kinlab.inverse.verify import measure
 from kinlab.robot import Robot
 from kinlab.stacks import jacobian
 
@@ -57,6 +59,7 @@ def ik_path(
     *,
     task: Any = "pose",
     max_step: float = 0.5,
+    branch: str | None = None,
 ) -> IKPath:
     """Follows poses one after the other, each search starting at the answer before.
 
@@ -70,12 +73,15 @@ def ik_path(
         q0: where the arm is, (n,); it chooses the branch.
         tol_position, tol_rotation, seed, task: as in :func:`kinlab.ik`.
         max_step: largest change of a joint between poses that is still following, rad or m.
+        branch: stay on the branch of this name (:func:`kinlab.ik`), whatever q0 lies on; a pose
+            that does not have it is marked as failed.
 
     Returns:
         The path. A pose that cannot be had is marked, its closest q kept, and the path goes on.
 
     Raises:
-        StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik_batch`.
+        StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik_batch`;
+            NameUnknownError also where the first pose has no such branch.
     """
     require_robot(robot)
     targets = read_targets(robot, Ts)
@@ -85,6 +91,13 @@ def ik_path(
     answers: list[IKResult] = []
     jumps = []
     for row, target in enumerate(targets):
+        if branch is not None:
+            answer = _on_branch(robot, target, branch, here, tol_position, tol_rotation, row)
+            if row and _step(answer, here) > largest:
+                jumps.append(row)
+            answers.append(answer)
+            here = answer.q
+            continue
         options: dict[str, Any] = {
             "tol_position": tol_position, "tol_rotation": tol_rotation, "seed": seed, "task": task,
         }  # fmt: skip
@@ -119,3 +132,16 @@ def ik_path(
 
 def _step(answer: IKResult, here: Array) -> float:
     return float(np.abs(answer.q - here).max())
+
+
+def _on_branch(
+    robot: Robot, target: Array, branch: str, here: Array, position: float, rotation: float, row: int
+) -> IKResult:
+    """The answer on a named branch; where a later pose lacks it, a failure at the q before."""
+    try:
+        return ik(robot, target, here, "lm", position, rotation, branch=branch)
+    except NameUnknownError:
+        if row == 0:
+            raise
+    errors = measure(robot, here, target, np.ones(6))
+    return IKResult(here.copy(), False, IKStatus.UNREACHABLE, *errors, 0, 0)

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
+from kinlab.errors import OptionError
 from kinlab.inverse import kernel, methods, solve
+from kinlab.inverse.chosen import on_branch
 from kinlab.inverse.failed import failure, look_again
 from kinlab.inverse.request import (
     RESTARTS,
@@ -43,6 +45,7 @@ def ik(
     tol_step: float | None = None,
     alpha: str | float = "exact",
     history: bool = False,
+    branch: str | None = None,
 ) -> IKResult:
     """Joint positions at which the tool is at T.
 
@@ -68,6 +71,9 @@ def ik(
         alpha: for the gradient: ``"exact"`` (minimises the linearised error along the line), or
             a fixed number, in units where metres are divided by ``LENGTH`` of the arm.
         history: keep every iteration (the slow search over Pinocchio calls).
+        branch: only solutions of this name, such as ``"shoulder left, elbow up"`` (words that are
+            left out may be anything): one of :func:`kinlab.ik_branches`, within the limits where
+            there is one, the nearest to q0. No search is made.
 
     Returns:
         The result, its errors measured by Pinocchio at the q in it.
@@ -75,7 +81,7 @@ def ik(
     Raises:
         StateError: T not 4x4, not finite, not orthonormal, mirrored; q0 of the wrong shape.
         OptionError: a tolerance, number or task that cannot be had.
-        NameUnknownError: no such method or task.
+        NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
     require_robot(robot)
@@ -84,6 +90,10 @@ def ik(
     searches = 1 + whole(restarts, "restarts", 0)
     seed = whole(seed, "seed", 0)
     step = methods.choose(method, alpha)
+    if branch is not None:
+        if not isinstance(task, str) or task not in ("pose", "auto") or history:
+            raise OptionError("branch takes the whole pose: leave task and history out with it")
+        return on_branch(robot, target, branch, q0, tolerances)
     arm = setup(robot, rows_of(robot, task), seed, max(searches, STARTS))
     remarks: list[str] = []
     start: Array | None = None

@@ -1,6 +1,5 @@
 """All branches: each measured by Pinocchio, and none missing that a search can find."""
 
-import importlib.util
 import math
 from dataclasses import replace
 
@@ -8,8 +7,10 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.errors import MissingExtraError, StateError, StructureError
-from kinlab.inverse.planar import linear_trig
+from kinlab.errors import StateError, StructureError
+from kinlab.inverse import equations
+
+from arms import random_arm
 
 HALF = math.pi / 2
 
@@ -171,42 +172,135 @@ def test_stretched_planar_arm_has_one(name):
     assert len(found) == 1 and found.names == ("elbow straight",)
 
 
-@pytest.mark.parametrize("name", ["ur5", "panda"])
-def test_other_arms_need_the_extra(name):
+@pytest.mark.parametrize("name", ["ur5", "ur10", "erd:ur3"])
+def test_three_parallel_axes(name):
     robot = kl.load(name)
-    q = 0.5 * (robot.lower + robot.upper) + 0.3
-    T = kl.fk(robot, q)
-    if importlib.util.find_spec("ssik") is None:
-        with pytest.raises(MissingExtraError, match=r"kinlab\[analytic\]"):
-            kl.ik_branches(robot, T)
-        return
-    found = kl.ik_branches(robot, T)
-    assert found.method == "ssik" and len(found) >= 2
-    np.testing.assert_allclose(kl.fk(robot, found.q), np.tile(T, (len(found), 1, 1)), atol=1e-8)
-    assert found.complete == (robot.n == 6)
+    rng = np.random.default_rng(4)
+    for q in rng.uniform(-3, 3, (20, 6)):
+        T = kl.fk(robot, q)
+        found = kl.ik_branches(robot, T)
+        assert found.method == "three parallel axes" and found.complete
+        assert len(found) in (2, 4, 6, 8) and contains(found, q)
+        assert len(set(found.names)) == len(found)
+        assert max(found.position_error.max(), found.rotation_error.max()) < 1e-9
+        for start in rng.uniform(robot.lower, robot.upper, (6, 6)):
+            answer = kl.ik(robot, T, start, restarts=0, tol_position=1e-10, tol_rotation=1e-10)
+            assert not answer.success or contains(found, answer.q)
 
 
-def test_arms_without_a_closed_form():
-    with pytest.raises(StructureError, match="no closed form for 4 joints"):
-        kl.ik_branches(kl.load("scara"), np.eye(4))
+def test_ur_branches_have_the_eight_names():
+    robot = kl.load("ur5")
+    found = kl.ik_branches(robot, kl.fk(robot, [0.3, -1.2, 1.4, -0.6, 0.9, 0.2]))
+    parts = [name.split(", ") for name in found.names]
+    assert len(found) == 8 and len(set(found.names)) == 8
+    assert {p[0] for p in parts} == {"shoulder left", "shoulder right"}
+    assert {p[1] for p in parts} == {"elbow up", "elbow down"}
+    assert {p[2] for p in parts} == {"wrist flip", "wrist no flip"}
+
+
+def test_improper_poses():
+    robot = kl.load("puma560")
     with pytest.raises(StateError, match="mirror"):
-        kl.ik_branches(kl.load("puma560"), np.diag([1.0, 1.0, -1.0, 1.0]))
+        kl.ik_branches(robot, np.diag([1.0, 1.0, -1.0, 1.0]))
+    bad = np.eye(4)
+    bad[0, 3] = np.nan
+    with pytest.raises(StateError, match="finite"):
+        kl.ik_branches(robot, bad)
+    with pytest.raises(StateError, match=r"Ts\[1\]"):
+        kl.ik_branches(robot, np.array([np.eye(4), np.diag([1.0, 1.0, -1.0, 1.0])]))
 
 
 def test_a_wrist_that_three_parallel_axes_cannot_lift():
     links = [kl.DHLink(a=0.4), kl.DHLink(a=0.3), kl.DHLink(a=0.2, alpha=HALF),
              kl.DHLink(alpha=-HALF), kl.DHLink(alpha=HALF), kl.DHLink()]  # fmt: skip
     robot = kl.Robot.from_dh(kl.DHTable("flat", "standard", links))
-    with pytest.raises(StructureError, match="joint 3 does not change"):
+    with pytest.raises(StructureError, match="J singular everywhere"):
         kl.ik_branches(robot, kl.fk(robot, np.full(6, 0.3)))
 
 
 def test_linear_trig():
+    out = np.empty(2)
     for a, b, c in ((1.0, 2.0, 0.5), (0.0, -1.0, 0.3), (3.0, 4.0, 5.0)):
-        for x in linear_trig(a, b, c):
+        assert equations.linear_trig(a, b, c, out) == 2
+        for x in out:
             assert a * math.cos(x) + b * math.sin(x) == pytest.approx(c)
-    assert len(linear_trig(3.0, 4.0, 5.0)) == 1 and linear_trig(0.0, 0.0, 0.0) == []
-    assert linear_trig(1.0, 0.0, 1.1) == []
+    assert equations.linear_trig(0.0, 0.0, 0.0, out) == 0
+    assert equations.linear_trig(1.0, 0.0, 1.1, out) == 0
+
+
+def test_trigonometric_quartics_against_numpy():
+    rng = np.random.default_rng(5)
+    out = np.empty(4)
+    for f in rng.normal(size=(200, 5)):
+        z = np.roots([
+            complex(f[3], -f[4]), complex(f[1], -f[2]), 2 * f[0], complex(f[1], f[2]),
+            complex(f[3], f[4]),
+        ])  # fmt: skip
+        expected = np.sort(np.angle(z[np.abs(np.abs(z) - 1) < 1e-7]))
+        count = equations.trig_quartic(f, out)
+        np.testing.assert_allclose(np.sort(out[:count]), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_points_of_three_joints_against_brute_force(seed):
+    """q1 drops out of height and distance; q3 is scanned for the two that are left."""
+    robot = random_arm(seed, 3)
+    for q in np.random.default_rng(seed).uniform(-3, 3, (4, 3)):
+        T = kl.fk(robot, q)
+        found = kl.ik_branches(robot, T)
+        assert found.complete and len(found) in (2, 4) and contains(found, q)
+        seen = []
+        for start in np.random.default_rng(9).uniform(-3.1, 3.1, (60, 3)):
+            answer = kl.ik(
+                robot, T, start, restarts=0, task="position", tol_position=1e-11, tol_rotation=1.0
+            )
+            if answer.position_error < 1e-10 and not any(np.allclose(answer.q, s) for s in seen):
+                seen.append(answer.q)
+                assert contains(found, answer.q)
+        assert len(seen) == len(found)  # 60 starts find each of two or four
+
+
+def test_scara():
+    robot = kl.load("scara")
+    for q in np.random.default_rng(2).uniform(robot.lower, robot.upper, (20, 4)):
+        found = kl.ik_branches(robot, kl.fk(robot, q))
+        assert found.complete and len(found) == 2 and contains(found, q, [2])
+        assert set(found.names) == {"elbow left", "elbow right"}
+        poses = kl.fk(robot, found.q)
+        np.testing.assert_allclose(poses, np.tile(kl.fk(robot, q), (2, 1, 1)), atol=1e-12)
+
+
+@pytest.mark.parametrize("gap", [1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("what", ["puma wrist", "puma elbow", "ur wrist", "ur elbow"])
+def test_near_singular_poses_keep_their_branches(what, gap):
+    arm, part = what.split()
+    robot = kl.load("puma560" if arm == "puma" else "ur5")
+    if part == "wrist":
+        joint, value = 4, 0.0
+    else:
+        joint, value = 2, 0.0 if arm == "ur" else math.atan2(-0.4318, 0.0203)
+    for q in np.random.default_rng(3).uniform(-2, 2, (20, 6)):
+        q[joint] = value
+        assert abs(np.linalg.det(kl.jacobian(robot, q))) < 1e-9
+        at = q.copy()
+        at[joint] += gap
+        found = kl.ik_branches(robot, kl.fk(robot, at))
+        assert found.complete and len(found) % 2 == 0 and (arm == "ur" or len(found) == 8)
+        distance = np.abs((found.q - at + math.pi) % (2 * math.pi) - math.pi).max(axis=1)
+        assert np.sum(distance < 1e-3 * gap) == 1
+        assert np.diff(np.sort(distance))[0] > 0.5 * gap
+
+
+def test_families_are_said():
+    robot = kl.load("puma560")
+    q = np.array([0.3, -0.5, 0.6, 0.4, 0.0, -0.3])
+    found = kl.ik_branches(robot, kl.fk(robot, q))
+    assert not found.complete and "joint_4 is free" in found.evidence
+    (family,) = found.families
+    assert family.linear and family.joints == ("joint_4", "joint_6")
+    for t in (-1.0, 0.4, 2.0):
+        moved = kl.fk(robot, found.q[family.branch] + t * family.direction)
+        np.testing.assert_allclose(moved, kl.fk(robot, q), atol=1e-9)
 
 
 @pytest.mark.parametrize("name", ["puma560", "stanford", "erd:kinova"])
