@@ -13,8 +13,8 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.reach import passes_beyond
 from kinlab.analysis.structure import name_singularity, structure
-from kinlab.analysis.task_space import TaskSpace, read_reachable_task
-from kinlab.arrays import Array, frozen
+from kinlab.analysis.task_space import TaskSpace, read_reachable_task, revolute
+from kinlab.arrays import Array, frozen, largest_first
 from kinlab.errors import OptionError
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
@@ -40,7 +40,8 @@ class Singularity:
         joints: names of the joints in the motion that became internal here.
         deciding: names of the joints whose change leaves the singular set; the others may move
             freely on it, to first order.
-        pinned: values of the deciding joints where each is fixed on its own; else empty.
+        pinned: values of the deciding joints where each is fixed on its own; else empty. A
+            half turn is pi, not -pi, where the limits admit both.
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
             ``boundary`` (the tool cannot pass on in the lost direction) or ``interior``.
         task: the task. rows: its rows. length: metres, see :mod:`kinlab.analysis.task_space`.
@@ -63,7 +64,7 @@ class Singularity:
     def lost_direction(self) -> str:
         """The first lost direction in words, its main coordinate first."""
         column = self.lost[:, 0]
-        order = np.argsort(-np.abs(column))
+        order = largest_first(np.abs(column))
         parts = [
             f"{column[i]:+.3g} {COORDINATES[self.rows[i]]}"
             for i in order
@@ -194,7 +195,7 @@ def find_singularities(
         if len(members) < keep and not any(_close(found.q, other.q) for other in members):
             members.append(found)
     families = [_family(space, key, tuple(m)) for key, m in groups.items()]
-    families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, f.pinned))
+    families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, _rounded(f.pinned)))
     effort = Effort(len(starts), int(good.sum()), last_new, seed)
     return SingularitySearch(robot.name, space.name, space.suggested, tuple(families), effort)
 
@@ -244,12 +245,25 @@ def _describe(system: sets.SingularSystem, x: Array, kind: str) -> Singularity |
         internal=frozen(internal),
         joints=tuple(name for name, part in zip(names, taking_part, strict=True) if part),
         deciding=tuple(names[i] for i in deciding),
-        pinned=tuple(float(q[i]) for i in deciding) if fixed else (),
+        pinned=tuple(float(_half_turn(robot, q)[i]) for i in deciding) if fixed else (),
         kind=name_singularity(space, kind, q),
         task=space.name,
         rows=space.rows,
         length=space.scale,
     )
+
+
+def _half_turn(robot: Robot, q: Array) -> Array:
+    """q with -pi written as pi where the limits admit it: rounding must not choose between them."""
+    there = revolute(robot) & (np.abs(q + np.pi) < _SAME_ANGLE)
+    there &= robot.upper >= np.pi - _SAME_ANGLE
+    turned: Array = np.where(there, q + 2.0 * np.pi, q)
+    return turned
+
+
+def _rounded(pinned: tuple[float, ...]) -> tuple[float, ...]:
+    """Pinned values to the digits in which two families differ."""
+    return tuple(round(value / _SAME_ANGLE) * _SAME_ANGLE for value in pinned)
 
 
 def _family_key(
