@@ -51,7 +51,6 @@ def modules_after(code: str, folder: Path) -> set[str]:
     ("arguments", "fails"),
     [
         (["check", "puma560", "--samples", "300"], False),
-        (["check", "planar2r", "--samples", "300"], False),
         (["check", "f.toml", "--samples", "300"], True),
     ],
 )

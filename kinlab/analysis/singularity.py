@@ -14,7 +14,7 @@ from kinlab.analysis.edge import edge
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.minors import factors
 from kinlab.analysis.supports import holds, pinned, pinned_pairs, supports
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, frozen, largest_first
 from kinlab.errors import OptionError
 from kinlab.evidence import Evidence
 from kinlab.robot import Robot
@@ -49,7 +49,8 @@ class Singularity:
         joints: names of the joints in the motion that became internal here.
         deciding: names of the fewest joints that hold the arm singular: with these where they are
             the others may take any value. All joints where nothing less does.
-        pinned: values of the deciding joints where they are isolated; else empty.
+        pinned: values of the deciding joints where they are isolated; else empty. A half turn is
+            pi, not -pi, where the limits admit both.
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
             ``boundary`` (the tool cannot pass on in the lost direction), ``interior`` or
             ``undecided``.
@@ -73,7 +74,7 @@ class Singularity:
     def lost_direction(self) -> str:
         """The first lost direction in words, its main coordinate first."""
         column = self.lost[:, 0]
-        order = np.argsort(-np.abs(column))
+        order = largest_first(np.abs(column))
         parts = [
             f"{column[i]:+.3g} {COORDINATES[self.rows[i]]}"
             for i in order
@@ -214,7 +215,7 @@ def find_singularities(
         if len(sheet.members) < keep and not any(_close(state, q) for q in sheet.members):
             sheet.members.append(state)
     families = [_family(space, sheet) for sheet in known]
-    families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, f.pinned))
+    families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, _rounded(f.pinned)))
     effort = Effort(len(starts), int(good.sum()), last_new, seed)
     return SingularitySearch(
         robot.name, space.name, space.suggested, tuple(families), effort,
@@ -331,7 +332,7 @@ def _describe(
         internal=frozen(internal),
         joints=tuple(name for name, part in zip(names, taking_part, strict=True) if part),
         deciding=tuple(names[i] for i in held),
-        pinned=tuple(float(q[i]) for i in held) if fixed else (),
+        pinned=tuple(float(_half_turn(robot, q)[i]) for i in held) if fixed else (),
         kind=name_singularity(robot, kind, q, held) if named else "",
         task=space.name,
         rows=space.rows,
@@ -365,6 +366,19 @@ def _family(space: TaskSpace, sheet: _Sheet) -> SingularFamily:
         judged.evidence.found,
     )
     return SingularFamily(kind, first.deciding, first.pinned, judged.beyond, tuple(sound), evidence)
+
+
+def _half_turn(robot: Robot, q: Array) -> Array:
+    """q with -pi written as pi where the limits admit it: rounding must not choose between them."""
+    there = revolute(robot) & (np.abs(q + np.pi) < _SAME_ANGLE)
+    there &= robot.upper >= np.pi - _SAME_ANGLE
+    turned: Array = np.where(there, q + 2.0 * np.pi, q)
+    return turned
+
+
+def _rounded(pinned: tuple[float, ...]) -> tuple[float, ...]:
+    """Pinned values to the digits in which two families differ."""
+    return tuple(round(value / _SAME_ANGLE) * _SAME_ANGLE for value in pinned)
 
 
 def _place(beyond: bool | None) -> str:
