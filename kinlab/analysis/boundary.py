@@ -19,7 +19,7 @@ from kinlab.analysis.task_space import search_box
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
 from kinlab.kinematics import fk
-from kinlab.robot import Robot
+from kinlab.robot import Robot, require_robot
 
 _SIDE = 1e-3
 """Of the arm's reach: how far beside a piece its sides are tried. Islands and gaps thinner than
@@ -125,6 +125,7 @@ def planar_boundary(robot: Robot) -> PlanarBoundary:
 
 
 def _planar_chain(robot: Robot) -> _Chain:
+    require_robot(robot)
     axes = Axes.at(robot, np.zeros(robot.n))
     upright = np.abs(np.abs(axes.direction[:, 2]) - 1.0) < 1e-9
     if not (axes.turns.all() and upright.all()) or robot.n > _MOST_JOINTS:

@@ -23,7 +23,7 @@ from kinlab.analysis.task_space import (
 )
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
-from kinlab.errors import OptionError
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 
 _SAME = 1e-5
@@ -126,8 +126,7 @@ def design_isotropic(
         OptionError: a name in ``free`` that is none, a task the arm cannot do, length <= 0.
         NameUnknownError: unknown task.
     """
-    if seeds < 1 or keep < 1:
-        raise OptionError(f"seeds {seeds}, keep {keep}; both must be at least 1")
+    seeds, keep, seed = whole(seeds, "seeds"), whole(keep, "keep"), seed_of(seed)
     chain = open_chain(table, free)
     space = read_reachable_task(Robot.from_dh(table), task)
     given = read_length_choice(length)

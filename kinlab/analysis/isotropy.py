@@ -25,7 +25,7 @@ from kinlab.analysis.task_space import (
     wrap,
 )
 from kinlab.arrays import Array, frozen
-from kinlab.errors import OptionError
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 
 ISOTROPIC = 1e-8
@@ -128,8 +128,7 @@ def find_isotropic(
         NameUnknownError, OptionError: unknown task, one with coordinates that the arm cannot
             move independently (then no configuration is isotropic), length <= 0.
     """
-    if seeds < 1:
-        raise OptionError(f"seeds {seeds}; at least 1 is needed")
+    seeds, seed = whole(seeds, "seeds"), seed_of(seed)
     space = read_reachable_task(robot, task)
     given = read_length_choice(length)
     system = IsotropySystem(space, given)

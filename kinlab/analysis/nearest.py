@@ -15,6 +15,7 @@ from kinlab.analysis.solver import solve
 from kinlab.analysis.task_space import read_reachable_task, revolute
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 
@@ -60,14 +61,14 @@ def nearest_singularity(
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
-    space = read_reachable_task(robot, task)
+    space, points = read_reachable_task(robot, task), whole(points, "points")
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {here.shape}; give one state")
     sigma = singular_values(space.jacobian(here, space.scale))
     system = sets.whole(space)
     starts = np.concatenate(
-        [here[np.newaxis], sets.seeds(system, np.random.default_rng(seed), points)]
+        [here[np.newaxis], sets.seeds(system, np.random.default_rng(seed_of(seed)), points)]
     )
     x, good = sets.project(system, starts)
     x = x[good]

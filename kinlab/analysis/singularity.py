@@ -16,6 +16,7 @@ from kinlab.analysis.structure import name_singularity, structure
 from kinlab.analysis.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.tasks import COORDINATES
@@ -174,8 +175,7 @@ def find_singularities(
         NameUnknownError, OptionError: an unknown task, or one whose coordinates the arm can
             never move independently (every configuration is singular).
     """
-    if points < 1 or keep < 1:
-        raise OptionError(f"points {points}, keep {keep}; both must be at least 1")
+    points, keep, seed = whole(points, "points"), whole(keep, "keep"), seed_of(seed)
     space = read_reachable_task(robot, task)
     system = sets.whole(space)
     starts = sets.seeds(system, np.random.default_rng(seed), points)
