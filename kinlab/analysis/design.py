@@ -127,6 +127,8 @@ def design_isotropic(
         NameUnknownError: unknown task.
     """
     seeds, keep, seed = whole(seeds, "seeds"), whole(keep, "keep"), seed_of(seed)
+    if not isinstance(table, DHTable):
+        raise OptionError(f"table: {type(table).__name__} is no DHTable; kl.to_dh makes one")
     chain = open_chain(table, free)
     space = read_reachable_task(Robot.from_dh(table), task)
     given = read_length_choice(length)

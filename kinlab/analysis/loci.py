@@ -158,16 +158,9 @@ def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:
                     f"robot {robot.name!r}: joint {joint!r} does not exist; {near(joint, names)}"
                 )
             chosen.append(names.index(joint))
-        elif (
-            isinstance(joint, (int, np.integer))
-            and not isinstance(joint, bool)
-            and 0 <= joint < robot.n
-        ):
-            chosen.append(int(joint))
         else:
-            raise OptionError(
-                f"robot {robot.name!r}: joint {shown(joint)}; indices are 0 to {robot.n - 1}"
-            )
+            what = f"robot {robot.name!r}: index of a joint"
+            chosen.append(whole(joint, what, 0, robot.n - 1))
     if len(set(chosen)) < len(chosen):
         raise OptionError(f"robot {robot.name!r}: joints {list(joints)}: one is named twice")
     return tuple(chosen)
