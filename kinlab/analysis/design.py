@@ -23,6 +23,7 @@ from kinlab.analysis.task_space import (
 )
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
+from kinlab.errors import OptionError
 from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 

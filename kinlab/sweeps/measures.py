@@ -66,8 +66,8 @@ def read_measure(measure: str | Iterable[str] | Measure) -> Measure:
     for name in names:
         if not isinstance(name, str) or name not in NAMES:
             raise NameUnknownError(
-                f"sweep: measure {shown(name)} is unknown; {near(str(name), NAMES)}; for other tasks "
-                "give a function f(robot, q)"
+                f"sweep: measure {shown(name)} is unknown; {near(str(name), NAMES)}; for other "
+                "tasks give a function f(robot, q)"
             )
     if not names or len(set(names)) < len(names):
         raise OptionError(f"sweep: measures {list(names)}; name at least one, each once")
