@@ -10,6 +10,9 @@ from kinlab.tolerances import TOLERANCES
 
 Array = NDArray[np.float64]
 
+LARGEST = 1e100
+"""Largest number that is read: the products of three of them still have a value."""
+
 
 def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateError) -> Array:
     """Reads real numbers as float64 and refuses everything else, NaN and infinity included.
@@ -23,19 +26,30 @@ def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateErro
         A float64 array (the same object where nothing had to change).
 
     Raises:
-        KinlabError: (the class given) complex, boolean, text or ragged input, NaN, infinity.
+        KinlabError: (the class given) complex, boolean, text, ragged or masked input, NaN,
+            infinity, or a number beyond :data:`LARGEST`.
     """
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise error(f"{what}: masked entries have no value; fill them in")
     try:
         array = np.asarray(value)
     except ValueError as problem:
         raise error(f"{what}: rows of unequal length ({problem})") from None
+    except Exception as problem:  # noqa: BLE001  whatever an object's own __array__ raises
+        why = f"{type(value).__name__} cannot be read as numbers ({type(problem).__name__})"
+        raise error(f"{what}: {why}") from None
     if array.dtype.kind not in "iuf":
         raise error(f"{what}: dtype {array.dtype} is not real numbers")
-    result: Array = np.asarray(array, dtype=np.float64)
-    if not np.isfinite(result).all():
-        place = tuple(int(i) for i in np.argwhere(~np.isfinite(result))[0])
+    with np.errstate(over="ignore"):
+        result: Array = np.asarray(array, dtype=np.float64)
+    fine = np.abs(result) <= LARGEST  # false for NaN
+    if not fine.all():
+        place = tuple(int(i) for i in np.argwhere(~fine)[0])
         where = f" at index {place[0] if len(place) == 1 else place}" if place else ""
-        raise error(f"{what}: {array[place]}{where}; every entry must be finite")
+        rule = "every entry must be finite"
+        if np.isfinite(result[place]):
+            rule = f"beyond {LARGEST:g} products overflow"
+        raise error(f"{what}: {array[place]}{where}; {rule}")
     return result
 
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import frozen, shaped
 from kinlab.errors import TableError
 from kinlab.inertia import check_inertia
+from kinlab.options import shown
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,12 +56,12 @@ class DHLink:
     name: str | None = None
 
     def __post_init__(self) -> None:
-        place = f"link {self.name!r}" if self.name else "link"
         if self.name is not None:
-            check_name(self.name, f"{place}: name")
-        if self.joint not in ("revolute", "prismatic"):
+            check_name(self.name, "link: name")
+        place = f"link {self.name!r}" if self.name else "link"
+        if not isinstance(self.joint, str) or self.joint not in ("revolute", "prismatic"):
             raise TableError(
-                f'{place}: joint type {self.joint!r}; choose "revolute" or "prismatic"'
+                f'{place}: joint type {shown(self.joint)}; choose "revolute" or "prismatic"'
             )
         if not isinstance(self.flip, (bool, np.bool_)):
             raise TableError(f"{place}: flip is {self.flip!r}; it must be true or false")
@@ -103,7 +104,7 @@ def check_name(name: object, place: str) -> None:
         TableError: with ``place`` in front.
     """
     if not isinstance(name, str) or not name.strip() or not name.isprintable():
-        raise TableError(f"{place} is {name!r}; it must be printable text")
+        raise TableError(f"{place} is {shown(name)}; it must be printable text")
 
 
 def same_value(one: Any, two: Any) -> bool:

@@ -18,7 +18,7 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.dh import DHLink, DHTable
 from kinlab.errors import StructureError
-from kinlab.robot import Robot
+from kinlab.robot import Robot, require_robot
 from kinlab.tolerances import TOLERANCES
 
 
@@ -48,6 +48,7 @@ def to_dh(robot: Robot | Any) -> DHTable:
     """
     if isinstance(robot, pin.Model):
         robot = Robot.from_model(robot)
+    require_robot(robot)
     model, data = robot.model, robot.model.createData()
     zero = np.zeros(robot.n)
     pin.computeJointJacobians(model, data, zero)

@@ -151,6 +151,22 @@ class Robot:
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
+def require_robot(robot: object) -> None:
+    """Refuses what is no robot.
+
+    Raises:
+        StructureError: saying how to make one of it.
+    """
+    if isinstance(robot, Robot):
+        return
+    if isinstance(robot, str):
+        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
+    if isinstance(robot, DHTable):
+        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
+    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
+    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
+
+
 def scratch(robot: Robot) -> Any:
     """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
     try:
@@ -174,6 +190,7 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
+    require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from math import isfinite
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import LARGEST, Array, real_array
 from kinlab.errors import StateError
-from kinlab.robot import Robot
+from kinlab.robot import Robot, require_robot
 
 _FLOAT = np.dtype(np.float64)
 Number = TypeVar("Number", Array, np.float64)
@@ -22,6 +21,8 @@ def plain(robot: Robot, *values: ArrayLike) -> bool:
     Says nothing about NaN: callers on the fast path look at the answer, one sum for all inputs
     together, and take the slow path to find the culprit.
     """
+    if type(robot) is not Robot:
+        require_robot(robot)
     shape = robot.shape
     for value in values:  # a loop, since all() over a generator costs more than the engine's call
         if type(value) is not np.ndarray or value.dtype is not _FLOAT or value.shape != shape:
@@ -56,11 +57,13 @@ def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
     Raises:
         StateError: wrong length, not real numbers, NaN or infinity.
     """
+    if type(robot) is not Robot:
+        require_robot(robot)
     if (
         type(value) is np.ndarray
         and value.dtype is _FLOAT
         and value.shape == robot.shape
-        and isfinite(sum(value.tolist()))  # a tenth of np.isfinite(value).all()
+        and -LARGEST < sum(value.tolist()) < LARGEST  # a tenth of np.isfinite(value).all()
     ):
         return value
     array = real_array(value, f"robot {robot.name!r}: {name}")

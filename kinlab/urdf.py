@@ -13,6 +13,7 @@ from kinlab import urdf_shapes
 from kinlab.arrays import Array
 from kinlab.convention import Convention
 from kinlab.dh import DHLink, DHTable
+from kinlab.errors import TableError
 from kinlab.model.urdf_records import EXTENSION
 from kinlab.placements import LinkPlacement, placements
 from kinlab.rotations import matrix_rpy
@@ -40,6 +41,8 @@ def to_urdf(table: DHTable) -> str:
         URDF text. Gravity other than standard and armatures stand in a ``<kinlab>`` element,
         which other tools ignore.
     """
+    if not isinstance(table, DHTable):
+        raise TableError(f"to_urdf: {type(table).__name__} is no DHTable; kl.to_dh makes one")
     from yourdfpy import urdf as y  # half a second to import
 
     places = placements(table)

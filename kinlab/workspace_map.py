@@ -14,8 +14,9 @@ import numpy as np
 
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.arrays import Array, frozen
-from kinlab.errors import FileError, NameUnknownError, OptionError, near
+from kinlab.errors import FileError, NameUnknownError, OptionError
 from kinlab.files import write_bytes
+from kinlab.options import seed_of, whole, word
 from kinlab.robot import Robot
 from kinlab.stacks import fk, mass_matrix
 from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
@@ -151,12 +152,8 @@ def sample_workspace(
     """
     space, size = read_task(robot, task), read_length(length)
     read_kind(metric)
-    if sampling not in ("random", "grid"):
-        raise NameUnknownError(
-            f"sampling {sampling!r} is unknown; {near(str(sampling), ('random', 'grid'))}"
-        )
-    if samples < 1:
-        raise OptionError(f"samples {samples}; at least 1 is needed")
+    sampling = word(sampling, ("random", "grid"), "sampling")
+    samples, seed = whole(samples, "samples"), seed_of(seed)
     states = _random(robot, samples, seed) if sampling == "random" else _grid(robot, samples)
     measure = Dexterity(space.rows, metric, size)
     sweep = plan(robot, measure, states, workers=workers, executor=executor, folder=folder)

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
-from kinlab.robot import Robot
+from kinlab.robot import Robot, require_robot
 from kinlab.stacks import fk
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import search_box
@@ -125,6 +125,7 @@ def planar_boundary(robot: Robot) -> PlanarBoundary:
 
 
 def _planar_chain(robot: Robot) -> _Chain:
+    require_robot(robot)
     axes = Axes.at(robot, np.zeros(robot.n))
     upright = np.abs(np.abs(axes.direction[:, 2]) - 1.0) < 1e-9
     if not (axes.turns.all() and upright.all()) or robot.n > _MOST_JOINTS:

@@ -18,6 +18,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
 from kinlab.errors import OptionError
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.structure.task_space import (
     TaskSpace,
@@ -126,8 +127,9 @@ def design_isotropic(
         OptionError: a name in ``free`` that is none, a task the arm cannot do, length <= 0.
         NameUnknownError: unknown task.
     """
-    if seeds < 1 or keep < 1:
-        raise OptionError(f"seeds {seeds}, keep {keep}; both must be at least 1")
+    seeds, keep, seed = whole(seeds, "seeds"), whole(keep, "keep"), seed_of(seed)
+    if not isinstance(table, DHTable):
+        raise OptionError(f"table: {type(table).__name__} is no DHTable; kl.to_dh makes one")
     chain = open_chain(table, free)
     space = read_reachable_task(Robot.from_dh(table), task)
     given = read_length_choice(length)

@@ -17,6 +17,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
 from kinlab.errors import OptionError
+from kinlab.options import shown
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _LENGTHS = ("a", "d")
@@ -132,8 +133,10 @@ def open_chain(table: DHTable, free: Sequence[str]) -> OpenChain:
         OptionError: no names, a name that is none, a row that does not exist, a name twice, or
             the number that a joint adds to its q anyway.
     """
-    if isinstance(free, str) or not len(free):
-        raise OptionError(f"free {free!r}; give a list of numbers to open, as ['a1', 'tool.x']")
+    if isinstance(free, (str, bytes)) or not isinstance(free, Sequence) or not free:
+        raise OptionError(
+            f"free {shown(free)}; give a list of numbers to open, as ['a1', 'tool.x']"
+        )
     opened = tuple(_read_open(table, name) for name in free)
     if len({(o.row, o.column) for o in opened}) < len(opened):
         raise OptionError(f"free {list(free)}: a number is named twice")

@@ -16,6 +16,7 @@ from kinlab.analysis.solver import System, solve
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.extract import to_dh
+from kinlab.options import seed_of
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
@@ -106,7 +107,7 @@ def factored_determinant(robot: Robot, task: Any = "auto", *, seed: int = 0) -> 
     arm = symbolic.arm(table)
     derived = symbolic.det_jacobian(arm, space.rows)
     singular = set(derived.singular_factors)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(seed_of(seed))
     factors = tuple(
         _meaning(space, arm, expression, power, rng)
         for expression, power in derived.factors

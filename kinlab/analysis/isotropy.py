@@ -19,8 +19,8 @@ from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen
-from kinlab.errors import OptionError
 from kinlab.evidence import Evidence
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.structure.task_space import (
     read_reachable_task,
@@ -134,8 +134,7 @@ def find_isotropic(
         NameUnknownError, OptionError: unknown task, one with coordinates that the arm cannot
             move independently (then no configuration is isotropic), length <= 0.
     """
-    if seeds < 1:
-        raise OptionError(f"seeds {seeds}; at least 1 is needed")
+    seeds, seed = whole(seeds, "seeds"), seed_of(seed)
     space = read_reachable_task(robot, task)
     given = read_length_choice(length)
     system = IsotropySystem(space, given)

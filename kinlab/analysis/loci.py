@@ -20,6 +20,7 @@ from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.options import number, seed_of, shown, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
@@ -29,6 +30,8 @@ _LINES = 64
 two 64ths of the range of any joint is met, however short it is along the others."""
 
 
+_LEAST_STEP = 1e-4
+"""rad (or m). Shorter steps take for ever and show nothing more."""
 _MOST = 6000
 """Steps after which one curve is cut: a closed curve of 100 turns."""
 
@@ -110,12 +113,13 @@ def singular_loci(
     space = read_reachable_task(robot, task)
     chosen = _read_joints(robot, joints)
     lower, upper = search_box(robot)
+    seed = seed_of(seed)
     drawn = np.random.default_rng(seed).uniform(lower, upper)
     middle = drawn if q is None else joint_vector(robot, q, "q")
     if middle.shape != (robot.n,):
         raise OptionError(f"robot {robot.name!r}: q has shape {middle.shape}; give one state")
-    if not (step > 0.0 and levels >= 1):
-        raise OptionError(f"step {step}, levels {levels}; step must be above 0, levels at least 1")
+    step = number(step, "step", above=_LEAST_STEP)
+    levels = whole(levels, "levels")
     needed = abs(space.m - robot.n) + 2
     if len(chosen) == needed:
         system = sets.SingularSystem(space, chosen, middle)
@@ -143,8 +147,8 @@ def singular_loci(
 
 
 def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:
-    if isinstance(joints, str):
-        raise OptionError(f"joints {joints!r}; give a list of two or three joints")
+    if isinstance(joints, str) or not isinstance(joints, (Sequence, np.ndarray)):
+        raise OptionError(f"joints {shown(joints)}; give a list of two or three joints")
     names = robot.joint_names
     chosen = []
     for joint in joints:
@@ -154,12 +158,9 @@ def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:
                     f"robot {robot.name!r}: joint {joint!r} does not exist; {near(joint, names)}"
                 )
             chosen.append(names.index(joint))
-        elif isinstance(joint, (int, np.integer)) and 0 <= joint < robot.n:
-            chosen.append(int(joint))
         else:
-            raise OptionError(
-                f"robot {robot.name!r}: joint {joint!r}; indices are 0 to {robot.n - 1}"
-            )
+            what = f"robot {robot.name!r}: index of a joint"
+            chosen.append(whole(joint, what, 0, robot.n - 1))
     if len(set(chosen)) < len(chosen):
         raise OptionError(f"robot {robot.name!r}: joints {list(joints)}: one is named twice")
     return tuple(chosen)

@@ -24,6 +24,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.evidence import Evidence
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
@@ -78,8 +79,7 @@ def nearest_singularity(
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
-    if boxes < 1:
-        raise OptionError(f"boxes {boxes}; at least 1 is needed")
+    boxes = whole(boxes, "boxes")
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
@@ -161,7 +161,8 @@ def _from_many_starts(space: TaskSpace, here: Array, seed: int) -> tuple[Array |
     """The nearest of many local solutions, and Weyl's bound."""
     robot = space.robot
     system = sets.whole(space)
-    starts = np.concatenate([here[np.newaxis], sets.seeds(system, np.random.default_rng(seed), 8)])
+    rng = np.random.default_rng(seed_of(seed))
+    starts = np.concatenate([here[np.newaxis], sets.seeds(system, rng, 8)])
     x, good = sets.project(system, starts)
     x = x[good]
     x[:, : robot.n] = _turned(robot, x[:, : robot.n], here)

@@ -17,6 +17,7 @@ from kinlab.analysis.supports import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen, largest_first
 from kinlab.errors import OptionError
 from kinlab.evidence import Evidence
+from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.axes import name_singularity, structure
@@ -193,8 +194,7 @@ def find_singularities(
         NameUnknownError, OptionError: an unknown task, or one whose coordinates the arm can
             never move independently (every configuration is singular).
     """
-    if points < 1 or keep < 1:
-        raise OptionError(f"points {points}, keep {keep}; both must be at least 1")
+    points, keep, seed = whole(points, "points"), whole(keep, "keep"), seed_of(seed)
     space = read_reachable_task(robot, task)
     system = sets.whole(space)
     starts = sets.seeds(system, np.random.default_rng(seed), points)

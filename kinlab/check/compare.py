@@ -22,6 +22,7 @@ from kinlab.check.quantities import quantity as find_quantity
 from kinlab.check.quantity import Quantity
 from kinlab.errors import OptionError
 from kinlab.formula import AnswerShapeError, FormulaError, function_name, state_by_state
+from kinlab.options import seed_of, whole
 from kinlab.tolerances import TOLERANCES
 
 VANISHES = 1e-12
@@ -122,8 +123,7 @@ def compare_stacked(
     seed: int,
 ) -> Comparison:
     """As :func:`compare`, for a function called as ``Formula.function`` is."""
-    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 1:
-        raise OptionError(f"samples is {samples!r}; it must be a whole number from 1 up")
+    samples, seed = whole(samples, "samples"), seed_of(seed)
     states = quantity.states(mechanism, int(samples), seed)
     engine = quantity.answers(mechanism, int(samples), seed)
     hand = _read(function(numbers, *(np.array(s) for s in states)), engine, name, quantity)

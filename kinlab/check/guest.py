@@ -26,7 +26,7 @@ from kinlab.parent import end_with_parent
 VARIABLE = "KINLAB_CHECK_SECONDS"
 """Environment variable: seconds that a file may take to load, and a function for all states."""
 
-_SECONDS = 20.0
+_SECONDS = 15.0
 
 
 class FunctionLostError(FormulaError):
@@ -94,7 +94,8 @@ class Guest:
         if not self._pipe.poll(self._seconds):
             self._end()
             error = FormulaError if load else FunctionLostError
-            raise error(f"{what} did not come back within {self._seconds:g} s")
+            late = f"{what} did not come back within {self._seconds:g} s"
+            raise error(f"{late} ({VARIABLE} allows more)")
         try:
             kind, content = self._pipe.recv()
         except (EOFError, OSError):

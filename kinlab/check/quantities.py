@@ -18,6 +18,7 @@ from kinlab.check import (
 )
 from kinlab.check.quantity import Quantity
 from kinlab.errors import NameUnknownError, near
+from kinlab.options import shown
 
 _MODULES = (
     serial_quantities,
@@ -46,13 +47,19 @@ def quantities() -> dict[str, Quantity]:
     return found
 
 
-@cache
 def quantity(name: str) -> Quantity:
     """The quantity of a name such as ``"fk"``, ``"inverse_dynamics[0]"`` or ``"fk[:3,3]"``.
 
     Raises:
         NameUnknownError: no such quantity, or an index that cannot be read.
     """
+    if not isinstance(name, str):
+        raise NameUnknownError(f"quantity {shown(name)} is unknown; give a name, as text")
+    return _quantity(name)
+
+
+@cache
+def _quantity(name: str) -> Quantity:
     known = quantities()
     if name in known:
         return known[name]

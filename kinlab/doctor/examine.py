@@ -27,6 +27,7 @@ from kinlab.doctor.terms import Slip
 from kinlab.doctor.tree import Node
 from kinlab.errors import KinlabError, OptionError
 from kinlab.formula import function_name, state_by_state
+from kinlab.options import seed_of, whole
 from kinlab.tolerances import TOLERANCES
 
 _SCREEN = 3
@@ -147,8 +148,7 @@ def prepare(
     Raises:
         NameUnknownError, OptionError: as :func:`diagnose`.
     """
-    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)) or samples < 10:
-        raise OptionError(f"samples is {samples!r}; it must be a whole number from 10 up")
+    samples, seed = whole(samples, "samples", 10), seed_of(seed)
     found = find_quantity(plain)
     if found.domain is not SERIAL:
         raise OptionError(

@@ -185,7 +185,7 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
         sets = [[k] for k in different]
         if likely == 1.0:
             sets += [list(two) for two in combinations(different, 2)]
-        if len(different) > 2 or likely > 1.0 and len(different) == 2:
+        if len(different) > 2 or (likely > 1.0 and len(different) == 2):
             sets.append(different)
         for rows in sets:
             cells = chain.cells.copy()

@@ -24,6 +24,7 @@ from kinlab.errors import OptionError, SingularError, UnreachableError
 from kinlab.fivebar.continuation import lead_to_zero
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import HANGING, Mode, read_mode
+from kinlab.options import shown, whole
 from kinlab.tolerances import TOLERANCES
 
 CRANKS, PASSIVE = (0, 2), (1, 3)
@@ -66,8 +67,8 @@ class ClosedChain:
             UnreachableError: the rods cannot meet there; the message holds the gap that is left.
             OptionError: another assembly, or a guess of the other sign.
         """
-        if assembly not in (1, -1):
-            raise OptionError(f"assembly {assembly!r} does not exist; choose +1 or -1")
+        if whole(assembly, "assembly", -1, 1) not in (1, -1):
+            raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
         name, data = self.linkage.name, self.model.createData()
         angles = shaped(theta, (2,), f"{name}: theta")
         q = np.zeros(4)
@@ -172,12 +173,13 @@ class ClosedChain:
         linkage = self.linkage
         return float(np.sum(linkage.l1) + np.sum(linkage.l2) + 2.0 * linkage.e)
 
-    def closure(self, q: Array, data: Any = None) -> tuple[Array, Array]:
+    def closure(self, q: ArrayLike, data: Any = None) -> tuple[Array, Array]:
         """Gap of the loop (2,), m, and its Jacobian (2, 4), in the base's axes.
 
         Pinocchio gives both in the axes of rod 1, which turn; in the base's axes the Jacobian
         of the passive angles is regular wherever the rods are not in line, closed or not.
         """
+        q = self._four(q, "q")
         data = data or self.model.createData()
         anchor = self.anchor.createData()
         pin.computeJointJacobians(self.model, data, q)
@@ -187,8 +189,9 @@ class ClosedChain:
         gap = turn @ anchor.constraint_position_error[:2]
         return gap, turn @ rows[:2] + np.outer([-gap[1], gap[0]], [1.0, 1.0, 0.0, 0.0])
 
-    def closure_bias(self, q: Array, qd: Array) -> Array:
+    def closure_bias(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """Jc_dot qd of the closed loop, (2,), m/s², in the base's axes."""
+        q, qd = self._four(q, "q"), self._four(qd, "qd")
         data, anchor = self.model.createData(), self.anchor.createData()
         pin.forwardKinematics(self.model, data, q, qd, np.zeros(4))
         pin.computeJointJacobians(self.model, data, q)
@@ -196,14 +199,16 @@ class ClosedChain:
         turn = data.oMi[self.anchor.joint1_id].rotation[:2, :2]
         return np.asarray(turn @ anchor.constraint_acceleration_error[:2])
 
-    def fk(self, q: Array) -> Array:
+    def fk(self, q: ArrayLike) -> Array:
         """The tool, (2,), m."""
+        q = self._four(q, "q")
         data = self.model.createData()
         pin.framesForwardKinematics(self.model, data, q)
         return np.array(data.oMf[self.tool].translation[:2])
 
-    def tool_jacobian(self, q: Array) -> Array:
+    def tool_jacobian(self, q: ArrayLike) -> Array:
         """Tool velocity per joint rate of the open tree, (2, 4), base axes."""
+        q = self._four(q, "q")
         data = self.model.createData()
         pin.computeJointJacobians(self.model, data, q)
         pin.updateFramePlacement(self.model, data, self.tool)
@@ -212,12 +217,13 @@ class ClosedChain:
         )
         return np.array(rows[:2])
 
-    def projection(self, q: Array) -> Array:
+    def projection(self, q: ArrayLike) -> Array:
         """G of qd = G theta_dot through the loop, (4, 2).
 
         Raises:
             SingularError: type II, where the cranks do not determine the rods.
         """
+        q = self._four(q, "q")
         self._refuse_type_two(q)
         _, rows = self.closure(q)
         out = np.zeros((4, 2))
@@ -225,20 +231,23 @@ class ClosedChain:
         out[[*PASSIVE]] = -np.linalg.solve(rows[:, PASSIVE], rows[:, CRANKS])
         return out
 
-    def jacobian(self, q: Array) -> Array:
+    def jacobian(self, q: ArrayLike) -> Array:
         """J of theta_dot = J v, (2, 2), rad/m; raises SingularError at type I and II."""
+        q = self._four(q, "q")
         self._refuse_type_one(q)
         return np.asarray(np.linalg.inv(self.tool_jacobian(q) @ self.projection(q)), np.float64)
 
-    def joint_rates(self, q: Array, v: ArrayLike) -> Array:
+    def joint_rates(self, q: ArrayLike, v: ArrayLike) -> Array:
         """All four joint rates for a tool velocity (2,), rad/s."""
+        q = self._four(q, "q")
         self._refuse_type_one(q)
         velocity = shaped(v, (2,), f"{self.linkage.name}: v")
         _, rows = self.closure(q)
         return np.linalg.solve(np.vstack([self.tool_jacobian(q), rows]), [*velocity, 0.0, 0.0])
 
-    def joint_accelerations(self, q: Array, qd: Array, a: ArrayLike) -> Array:
+    def joint_accelerations(self, q: ArrayLike, qd: ArrayLike, a: ArrayLike) -> Array:
         """All four joint accelerations for a tool acceleration (2,), rad/s²."""
+        q, qd = self._four(q, "q"), self._four(qd, "qd")
         self._refuse_type_one(q)
         acceleration = shaped(a, (2,), f"{self.linkage.name}: a")
         data = self.model.createData()
@@ -251,23 +260,31 @@ class ClosedChain:
         target = np.concatenate([acceleration - drift, -self.closure_bias(q, qd)])
         return np.linalg.solve(np.vstack([self.tool_jacobian(q), rows]), target)
 
-    def inverse_dynamics(self, q: Array, qd: Array, qdd: Array) -> Array:
+    def inverse_dynamics(self, q: ArrayLike, qd: ArrayLike, qdd: ArrayLike) -> Array:
         """Crank torques G^T rnea, (2,), N m; raises SingularError at type II."""
+        q, qd, qdd = self._four(q, "q"), self._four(qd, "qd"), self._four(qdd, "qdd")
         tree = pin.rnea(self.model, self.model.createData(), q, qd, qdd)
         return np.asarray(self.projection(q).T @ tree)
 
-    def mass_matrix(self, q: Array) -> Array:
+    def mass_matrix(self, q: ArrayLike) -> Array:
         """G^T M G in the cranks' coordinates, (2, 2), kg m²; SingularError at type II."""
+        q = self._four(q, "q")
         projection = self.projection(q)
         mass = pin.crba(self.model, self.model.createData(), q)
         mass = np.triu(mass) + np.triu(mass, 1).T
         return np.asarray(projection.T @ mass @ projection)
 
-    def energy(self, q: Array, qd: Array) -> tuple[float, float]:
+    def energy(self, q: ArrayLike, qd: ArrayLike) -> tuple[float, float]:
         """Kinetic (rotors included) and potential energy, J."""
+        q, qd = self._four(q, "q"), self._four(qd, "qd")
         data = self.model.createData()
         kinetic = pin.computeKineticEnergy(self.model, data, q, qd)
         return float(kinetic), float(pin.computePotentialEnergy(self.model, data, q))
+
+    def _four(self, value: ArrayLike, name: str) -> Array:
+        """A vector of the four joints at the door, in the machine's own numbers."""
+        vector = shaped(value, (4,), f"{self.linkage.name}: {name}")
+        return np.ascontiguousarray(vector)
 
     def _refuse_type_one(self, q: Array) -> None:
         for leg, joint in enumerate(PASSIVE, 1):

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, frozen, real_array, shaped
 from kinlab.errors import MechanismError
+from kinlab.options import shown
 
 JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
 """Names of the four joints of the tree that the loop is cut into."""
@@ -73,6 +74,11 @@ class Linkage:
     source: str = ""
 
     def __post_init__(self) -> None:
+        for column, text in (("name", self.name), ("source", self.source)):
+            if not isinstance(text, str):
+                raise MechanismError(f"five-bar: {column} is {shown(text)}; it must be text")
+        if not self.name.strip() or not self.name.isprintable():
+            raise MechanismError(f"five-bar: name is {shown(self.name)}; it must be printable")
         for column in _PAIRS:
             object.__setattr__(self, column, frozen(self._pair(column)))
         for column in ("e", "payload"):

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError, SingularError, StateError, UnreachableError
 from kinlab.fivebar.linkage import Linkage
+from kinlab.options import shown
 from kinlab.tolerances import TOLERANCES
 
 Mode = Sequence[int] | Array
@@ -97,10 +98,13 @@ def read_mode(mode: Mode) -> Array:
     Raises:
         OptionError: not a pair of +1 and -1.
     """
-    signs = np.asarray(mode)
+    try:
+        signs = np.asarray(mode)
+    except Exception:  # noqa: BLE001  whatever an object's own __array__ raises
+        signs = np.empty(0)
     if signs.shape != (2,) or signs.dtype.kind not in "if" or not np.all(np.abs(signs) == 1):
         raise OptionError(
-            f"mode {mode!r} does not exist; choose one of {', '.join(map(str, MODES))}: "
+            f"mode {shown(mode)} does not exist; choose one of {', '.join(map(str, MODES))}: "
             "the signs of u_1 x w_1 and u_2 x w_2"
         )
     return signs.astype(np.float64)
@@ -112,8 +116,8 @@ def read_choice(choice: str) -> bool:
     Raises:
         OptionError: anything else.
     """
-    if choice not in ("raise", "mask"):
-        raise OptionError(f'on_unreachable is {choice!r}; choose "raise" or "mask"')
+    if not isinstance(choice, str) or choice not in ("raise", "mask"):
+        raise OptionError(f'on_unreachable is {shown(choice)}; choose "raise" or "mask"')
     return choice == "mask"
 
 

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import OptionError, near
 from kinlab.fivebar.linkage import Linkage
+from kinlab.options import shown
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,7 @@ def rod_model(linkage: Linkage, model: str) -> RodModel:
     Raises:
         OptionError: no model of that name.
     """
-    if model not in ROD_MODELS:
-        raise OptionError(f"rod model {model!r} does not exist; {near(model, ROD_MODELS)}")
+    if not isinstance(model, str) or model not in ROD_MODELS:
+        choices = near(model if isinstance(model, str) else "", ROD_MODELS)
+        raise OptionError(f"rod model {shown(model)} does not exist; {choices}")
     return ROD_MODELS[model](linkage)

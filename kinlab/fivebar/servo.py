@@ -25,8 +25,12 @@ from kinlab.fivebar.pose import HANGING, Mode, Pose
 from kinlab.fivebar.rods import rod_model
 from kinlab.fivebar.room import Rectangle, read_rectangle
 from kinlab.fivebar.trajectory import LIFT, TRAVEL, Cycle, Path, follow, pick_and_place
+from kinlab.options import number
 
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
+
+_LEAST = 1e-9
+"""A speed, acceleration, ratio or efficiency of no more than this is none."""
 
 
 @dataclass(frozen=True)
@@ -103,13 +107,20 @@ def size_servo(
         InertiaError: the linkage has neither masses nor a payload.
     """
     box = read_rectangle(workspace, linkage.name)
+    v_max, a_max = (
+        number(value, f"{linkage.name}: {name}")
+        for name, value in (("v_max", v_max), ("a_max", a_max))
+    )
+    efficiency = number(efficiency, f"{linkage.name}: efficiency")
+    if gear_ratio is not None:
+        gear_ratio = number(gear_ratio, f"{linkage.name}: gear_ratio")
     limits = {"v_max": v_max, "a_max": a_max}
     for name, value in (
         limits if gear_ratio is None else limits | {"gear_ratio": gear_ratio}
     ).items():
-        if not (np.isfinite(value) and value > 0):
+        if not value > _LEAST:
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
-    if not 0.0 < efficiency <= 1.0:
+    if not _LEAST < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
     if not any(np.any(getattr(linkage, name)) for name in _MASSES):
         raise InertiaError(

@@ -11,6 +11,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.chain_arrays import chain
 from kinlab.inverse import methods
+from kinlab.options import seed_of
 from kinlab.robot import Robot
 from kinlab.stacks import fk, jacobian
 from kinlab.structure.tasks import TASKS, require_task, task_rows
@@ -111,7 +112,7 @@ def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Set
     upper = np.where(robot.upper > _ENDLESS, np.inf, robot.upper)
     rigid = float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum())
     low, high = _window(lower, upper, slides, max(rigid, 1.0))
-    sample = np.random.default_rng(seed).uniform(low, high, (count, n))
+    sample = np.random.default_rng(seed_of(seed)).uniform(low, high, (count, n))
     if rows != TASKS["pose"]:
         require_task(rows, jacobian(robot, sample[:8]), f"robot {robot.name!r}")
     travel = np.maximum(np.abs(lower), np.abs(upper))[slides].sum()

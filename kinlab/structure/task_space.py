@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError
-from kinlab.robot import Robot
+from kinlab.robot import Robot, require_robot
 from kinlab.stacks import jacobian
 from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
@@ -112,6 +112,7 @@ def read_task(robot: Robot, task: Any) -> TaskSpace:
     Raises:
         NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
     """
+    require_robot(robot)
     if task is None or (isinstance(task, str) and task == AUTO):
         rows = suggest_rows(robot)
         return TaskSpace(robot, rows, plain_name(rows), suggested=True)

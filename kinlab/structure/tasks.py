@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.options import shown
 from kinlab.tolerances import TOLERANCES
 
 TASKS: dict[str, tuple[int, ...]] = {
@@ -55,15 +56,16 @@ def task_rows(task: Any) -> tuple[int, ...]:
     choice = f"give one of {', '.join(map(repr, TASKS))}, or a mask of six booleans"
     try:
         mask = np.asarray(task)
-    except ValueError:
-        raise OptionError(f"task {task!r}: not a mask; {choice}") from None
+    except Exception:  # noqa: BLE001  whatever an object's own __array__ raises
+        raise OptionError(f"task {shown(task)}: not a mask; {choice}") from None
     if mask.shape != (6,):
-        raise OptionError(f"task {task!r}: a mask of shape {mask.shape}; {choice} (shape (6,))")
+        which = f"task {shown(task)}: a mask of shape {mask.shape}"
+        raise OptionError(f"{which}; {choice} (shape (6,))")
     if mask.dtype.kind not in "biuf" or not np.isin(mask, (0, 1)).all():
-        raise OptionError(f"task {task!r}: entries other than true and false; {choice}")
+        raise OptionError(f"task {shown(task)}: entries other than true and false; {choice}")
     rows = tuple(int(i) for i in np.flatnonzero(mask))
     if not rows:
-        raise OptionError(f"task {task!r}: the mask asks for nothing; {choice}")
+        raise OptionError(f"task {shown(task)}: the mask asks for nothing; {choice}")
     return rows
 
 

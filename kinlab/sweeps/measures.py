@@ -12,6 +12,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.options import shown
 from kinlab.stacks import fk, jacobian
 
 Measure = Callable[[Any, Array], Any]
@@ -59,12 +60,14 @@ def read_measure(measure: str | Iterable[str] | Measure) -> Measure:
     """
     if callable(measure):
         return measure
+    if isinstance(measure, bytes) or not isinstance(measure, Iterable):
+        raise OptionError(f"sweep: measure is {shown(measure)}; give a name or a function")
     names = (measure,) if isinstance(measure, str) else tuple(measure)
     for name in names:
-        if name not in NAMES:
+        if not isinstance(name, str) or name not in NAMES:
             raise NameUnknownError(
-                f"sweep: measure {name!r} is unknown; {near(str(name), NAMES)}; for other tasks "
-                "give a function f(robot, q)"
+                f"sweep: measure {shown(name)} is unknown; {near(str(name), NAMES)}; for other "
+                "tasks give a function f(robot, q)"
             )
     if not names or len(set(names)) < len(names):
         raise OptionError(f"sweep: measures {list(names)}; name at least one, each once")

@@ -9,8 +9,11 @@ from __future__ import annotations
 
 import asyncio
 import errno
+import ipaddress
 import json
+import re
 import signal
+import socket
 import threading
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -26,6 +29,11 @@ from kinlab.errors import KinlabError, OptionError
 
 _TRIES = 50
 """How many ports after the wanted one are tried."""
+
+_DEAF = 8 << 20
+"""Bytes that may wait for a page; more is not sent, and the page loads itself anew later."""
+
+_HOST = re.compile(r"(?:\[([0-9a-f:.]+)\]|([a-z0-9._-]+))(?::[0-9]{1,5})?")
 
 
 class Served(Protocol):
@@ -56,6 +64,7 @@ class LiveServer:
 
     def __init__(self, page: Served, host: str, port: int) -> None:
         self._sockets, self.port = _bind(host, port)
+        self._host = host
         shown = f"[{host}]" if ":" in host else host
         self.url = f"http://{shown}:{self.port}/"
         self._page = page
@@ -86,7 +95,10 @@ class LiveServer:
     async def _serve(self, ready: threading.Event | None) -> None:
         self._loop, self._stop = asyncio.get_running_loop(), asyncio.Event()
         web = tornado.web.Application(
-            [("/", _Html, {"page": self._page}), ("/socket", _Socket, {"server": self})]
+            [
+                ("/", _Html, {"page": self._page, "server": self}),
+                ("/socket", _Socket, {"server": self}),
+            ]
         )
         server = tornado.httpserver.HTTPServer(web)
         server.add_sockets(self._sockets)
@@ -98,8 +110,8 @@ class LiveServer:
             ready.set()
         await self._stop.wait()
         server.stop()
-        for socket in list(self._open):
-            socket.close()
+        for page in list(self._open):
+            page.close()
         await server.close_all_connections()
 
     def _from_any_thread(self, message: bytes | dict[str, Any]) -> None:
@@ -107,18 +119,33 @@ class LiveServer:
             self._loop.call_soon_threadsafe(self._broadcast, message)
 
     def _broadcast(self, message: bytes | dict[str, Any]) -> None:
-        binary = isinstance(message, bytes)
-        for socket in self._open:
-            socket.write_message(message if binary else json.dumps(message), binary=binary)
+        data = message if isinstance(message, bytes) else json.dumps(message)
+        for page in list(self._open):
+            page.tell(data)
 
-    def connected(self, socket: _Socket) -> None:
+    def connected(self, page: _Socket) -> None:
         """A page has opened: it learns the revision, and reloads if it shows an older one."""
-        self._open.add(socket)
-        socket.write_message(json.dumps({"revision": str(self._page.revision)}))
+        self._open.add(page)
+        page.tell(json.dumps({"revision": str(self._page.revision)}))
 
-    def disconnected(self, socket: _Socket) -> None:
+    def knows(self, host: str) -> bool:
+        """Whether a request's Host is this server and not a name that was made to point here.
+
+        A page of another site can have its own name resolved to this machine and so read from
+        this server as if it were its own; an address in digits cannot be made to point anywhere.
+        """
+        name = _host_name(host)
+        if name in ("localhost", self._host.lower()):
+            return True
+        try:
+            asked = ipaddress.ip_address(name)
+        except ValueError:
+            return not _loopback(self._host) and name == socket.gethostname().lower()
+        return asked.is_loopback or not _loopback(self._host)
+
+    def disconnected(self, page: _Socket) -> None:
         """A page has been closed."""
-        self._open.discard(socket)
+        self._open.discard(page)
 
     def moved(self, q: Any) -> None:
         """A page's slider has moved; nonsense from a page is left aside."""
@@ -129,8 +156,12 @@ class LiveServer:
 
 
 class _Html(tornado.web.RequestHandler):
-    def initialize(self, page: Served) -> None:
-        self.page = page
+    def initialize(self, page: Served, server: LiveServer) -> None:
+        self.page, self.server = page, server
+
+    def prepare(self) -> None:
+        if not self.server.knows(self.request.headers.get("Host", "")):
+            raise tornado.web.HTTPError(421)
 
     def get(self) -> None:
         self.set_header("Cache-Control", "no-store")
@@ -140,6 +171,34 @@ class _Html(tornado.web.RequestHandler):
 class _Socket(tornado.websocket.WebSocketHandler):
     def initialize(self, server: LiveServer) -> None:
         self.server = server
+        self._waiting, self._stale = 0, False
+
+    def prepare(self) -> None:
+        if not self.server.knows(self.request.headers.get("Host", "")):
+            raise tornado.web.HTTPError(421)
+
+    def tell(self, message: str | bytes) -> None:
+        """Sends a message; a page that has gone or takes nothing costs neither error nor memory."""
+        if self._waiting > _DEAF:
+            self._stale = True
+            return
+        try:
+            sent = asyncio.ensure_future(
+                self.write_message(message, binary=isinstance(message, bytes))
+            )
+        except tornado.websocket.WebSocketClosedError:
+            return
+        self._waiting += len(message)
+
+        def done(future: asyncio.Future[None]) -> None:
+            self._waiting -= len(message)
+            if not future.cancelled():
+                future.exception()  # that of a page that has gone is looked at, and left
+            if self._stale and not self._waiting:
+                self._stale = False
+                self.tell(json.dumps({"reload": True}))
+
+        sent.add_done_callback(done)
 
     def open(self, *args: str, **kwargs: str) -> None:
         self.server.connected(self)
@@ -156,8 +215,23 @@ class _Socket(tornado.websocket.WebSocketHandler):
             self.server.moved(data["q"])
 
 
+def _host_name(host: str) -> str:
+    """The name in a Host header, without port and brackets; empty where it is no host."""
+    found = _HOST.fullmatch(host.lower())
+    return (found[1] or found[2]) if found else ""
+
+
+def _loopback(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host).is_loopback
+    except ValueError:
+        return host.lower() == "localhost"
+
+
 def _bind(host: str, port: int) -> tuple[list[Any], int]:
     """Sockets on the wanted port or the next free one."""
+    if not host.strip():
+        raise OptionError("host is empty; give an address such as 127.0.0.1")
     if not 0 <= port <= 65535:
         raise OptionError(f"port {port}: choose 0 (any free one) to 65535")
     for candidate in range(port, min(port + _TRIES, 65536)):
@@ -167,5 +241,7 @@ def _bind(host: str, port: int) -> tuple[list[Any], int]:
             if problem.errno == errno.EADDRINUSE:
                 continue
             raise OptionError(f"cannot listen on {host}:{candidate} ({problem.strerror})") from None
+        except (ValueError, OverflowError):  # UnicodeError too: no name that could be looked up
+            raise OptionError(f"cannot listen on {host[:80]!r}: no address") from None
         return sockets, int(sockets[0].getsockname()[1])
     raise OptionError(f"ports {port} to {port + _TRIES - 1} are all taken; name another")

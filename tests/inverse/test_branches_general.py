@@ -4,11 +4,10 @@ import importlib.util
 
 import numpy as np
 import pytest
+from arms import built_by_ssik, crx10ia, jaco2, manseur_doty, random_arm, xarm6
 
 import kinlab as kl
 from kinlab.errors import NameUnknownError, OptionError, StructureError
-
-from arms import built_by_ssik, crx10ia, jaco2, manseur_doty, random_arm, xarm6
 
 
 def gaps(q, others, slides=()):
