@@ -239,6 +239,9 @@ def _com_cause(one: _Link) -> Cause:
         if one.alike(written, meant[list(order)]):
             return cause("axes", "has its axes in another order", 1.0)
     for name, pose in _frames_of(one):
+        if name == f"frame {one.row + 1}" and np.allclose(pose[:3, :3], np.eye(3), atol=1e-9):
+            if one.alike(written, meant - pose[:3, 3]):  # as well in that frame
+                return cause("other end", f"is counted from the origin of {name}", 1.0)
         if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
             return cause("frame", f"is given in {name}", 1.0)
         if one.alike(written, meant - pose[:3, 3]):

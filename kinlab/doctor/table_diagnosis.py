@@ -23,7 +23,7 @@ from kinlab.doctor.table_chain import Chain
 from kinlab.doctor.table_readings import Reading
 from kinlab.doctor.table_result import TableDiagnosis, joined
 from kinlab.doctor.table_search import explain
-from kinlab.doctor.table_words import Cause, listed
+from kinlab.doctor.table_words import SIX, Cause, listed
 from kinlab.errors import InertiaError, OptionError, StructureError, TableError
 from kinlab.robot import Robot
 
@@ -113,7 +113,7 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
         noisy = table_noise.judge(table, reference, notes)
         if noisy is not None:
             return noisy
-    if not found:
+    if not found or found[0].cost >= SIX:
         found = _explained(chain, reference, 2)
     same = None
     if not found:
@@ -203,6 +203,8 @@ def _with_bodies(
         dynamic: list[Cause] = []
         if bodies and reference.bodies is not None and repaired.n == reference.n:
             repaired, dynamic = table_bodies.differences(repaired, reference.bodies)
+            new = {i + 1 for i, origin in enumerate(one.chain.source) if origin is None}
+            dynamic = [c for c in dynamic if not c.rows or not set(c.rows) <= new]
         rank = (len(dynamic), _foreign(one.chain, reference), place)
         options.append((rank, (repaired, (*one.causes, *dynamic), dynamic)))
     options.sort(key=lambda option: option[0])

@@ -54,7 +54,9 @@ def _stages(
     def two() -> list[Reading]:
         solved = one_change([Reading(chain), *first], target) + two_cells(chain, target)
         found = [r for r in solved if len(r.causes) == 2]
-        return found + _two_readings(first, target, base, tool, bool(found))
+        return found + _two_readings(
+            first, target, base, tool, any(r.cost < SIX + 0.8 for r in found)
+        )
 
     return one, two
 
