@@ -95,11 +95,11 @@ def _wrong(found: TableDiagnosis) -> list[int | str]:
     """What is to be lit: rows (1-based), ``"base"`` or ``"tool"``."""
     parts: list[int | str] = []
     for cause in found.causes:
-        ends = [end for end in ("base", "tool") if end in cause.column]
-        rows = list(cause.rows)
+        ends: list[int | str] = [end for end in ("base", "tool") if end in cause.column]
+        rows: list[int | str] = list(cause.rows)
         if not rows and not ends and cause.column in ("convention", "order", "units"):
             rows = list(found.rows_in_question) or list(range(1, _n(found) + 1))
-        parts += [part for part in (*ends, *rows) if part not in parts]
+        parts += [part for part in [*ends, *rows] if part not in parts]
     if not found.causes and not found.agrees:
         parts += list(found.rows_in_question)
     return [part for part in parts if isinstance(part, str) or part <= _n(found)]

@@ -48,6 +48,7 @@ def view(
     """
     from kinlab.viewer.scene import FiveBarScene, Scene
 
+    arm: Any = robot
     scene: Scene | FiveBarScene
     if isinstance(robot, DHTable):
         robot = Robot.from_dh(robot)
@@ -56,7 +57,7 @@ def view(
     if against is not None:
         from kinlab.viewer.against import against_scene
 
-        scene = against_scene(robot, against, q)
+        scene = against_scene(arm, against, q)
     elif isinstance(robot, Robot):
         scene = Scene(robot, q, meshes=meshes)
     else:
