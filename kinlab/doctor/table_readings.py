@@ -110,12 +110,16 @@ def _units(chain: Chain) -> Iterator[Reading]:
     angles = ((turn, "degrees", "in degrees"),
               (1.0 / turn, "radians for degrees", "turned into radians twice"))  # fmt: skip
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
+        if _entries(chain, columns) < 2:
+            continue  # a cell of its own
         for factor, kind, told in angles:
             cells = chain.cells.copy()
             cells[:, columns] *= factor
             yield Reading(chain.with_cells(cells), (_unit_cause(columns, kind, told, ""),))
     for factor, kind, told in _SCALES:
         for columns in ((A,), (D,), (A, D)):
+            if len(columns) == 1 and _entries(chain, columns) < 2:
+                continue
             cells = chain.cells.copy()
             cells[:, columns] *= factor
             other = chain.with_cells(cells)
@@ -141,6 +145,11 @@ def _units(chain: Chain) -> Iterator[Reading]:
         (Cause(None, "units", "degrees and millimetres", "radians and metres", "units",
                "the table is in degrees and millimetres", 1.3),),
     )  # fmt: skip
+
+
+def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
+    """How many cells of the columns are not zero."""
+    return int(np.count_nonzero(chain.cells[:, columns]))
 
 
 def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: str) -> Cause:
