@@ -44,6 +44,13 @@ def view(
     meshes: Annotated[
         bool, typer.Option(help="Draw the URDF's meshes, or rods from joint to joint.")
     ] = True,
+    against: Annotated[
+        str | None,
+        typer.Option(
+            "--against",
+            help="Another description of the arm (as for check --against), drawn over the table.",
+        ),
+    ] = None,
     host: Annotated[
         str, typer.Option(help="Address to listen on; anything but loopback opens it to others.")
     ] = "127.0.0.1",
@@ -51,7 +58,7 @@ def view(
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
-    page = _open(name, tip, q, animate, meshes)
+    page = _open(name, tip, q, animate, meshes, against)
     for note in page.notes:
         echo(f"note: {note}", err=True)
     if save is not None:
@@ -61,13 +68,22 @@ def view(
     _serve(page, name, host, port, browser)
 
 
-def _open(name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool) -> Page:
+def _open(
+    name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool,
+    against: str | None,
+) -> Page:  # fmt: skip
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
     from kinlab.library import load
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
+    if against is not None:
+        from kinlab.viewer.against import against_scene
+
+        if animate is not None:
+            raise OptionError("view --against: leave --animate out; the sliders move both arms")
+        return against_scene(name, against, start, tool=tip)
     if name in presets() or _holds_five_bar(name):
         if tip is not None:
             raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")

@@ -122,24 +122,13 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
     Raises:
         KinlabError: what cannot be used, with its remedy.
     """
-    if isinstance(against, (str, Path)) and str(against).lower().endswith(".csv"):
-        from kinlab.doctor.table_poses import is_poses_file, read_poses
-
-        if is_poses_file(against):
-            return of_poses(*read_poses(against, table.n), name=Path(str(against)).name)
-    if isinstance(against, tuple) and len(against) == 2:
-        return of_poses(*against)
+    poses = poses_of(against, table.n)
+    if poses is not None:
+        name = Path(str(against)).name if isinstance(against, (str, Path)) else "the poses"
+        return of_poses(*poses, name=name)
+    against = robot_of(against, tool)
     if isinstance(against, DHTable):
         return _of_table(against, seed)
-    if isinstance(against, Path) or (isinstance(against, str) and "<" not in against):
-        against = load(against, tool)
-    elif isinstance(against, str):
-        against = Robot.from_urdf(against, tool)
-    if not isinstance(against, Robot):
-        raise TableError(
-            f"{type(against).__name__} is nothing to compare a table with; give a DHTable, a "
-            "robot, a name, a .toml, .csv or .urdf file, or poses=(q, T)"
-        )
     if against.table is not None:
         return _of_table(against.table, seed)
     reference = _of_robot(against, seed)
@@ -153,6 +142,47 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
     note = "the angles of the URDF are printed with few digits; read as the multiples of 15 deg"
     sharp = replace(sharp, name=reference.name, notes=(*sharp.notes, note))
     return replace(reference, sharper=sharp)
+
+
+def poses_of(against: Any, n: int) -> tuple[ArrayLike, ArrayLike] | None:
+    """q and T, where poses are given as arrays or as a CSV; else None.
+
+    Args:
+        against: as for :func:`read_reference`.
+        n: joints of the user's table.
+
+    Raises:
+        FileError: a CSV that cannot be read.
+    """
+    if isinstance(against, tuple) and len(against) == 2:
+        return against
+    if isinstance(against, (str, Path)) and str(against).lower().endswith(".csv"):
+        from kinlab.doctor.table_poses import is_poses_file, read_poses
+
+        if is_poses_file(against):
+            return read_poses(against, n)
+    return None
+
+
+def robot_of(against: Any, tool: str | None) -> Robot | DHTable:
+    """The robot or table that a reference other than poses is.
+
+    Raises:
+        TableError: it is none.
+        KinlabError: a file or name that cannot be used.
+    """
+    if isinstance(against, DHTable):
+        return against
+    if isinstance(against, Path) or (isinstance(against, str) and "<" not in against):
+        against = load(against, tool)
+    elif isinstance(against, str):
+        against = Robot.from_urdf(against, tool)
+    if not isinstance(against, Robot):
+        raise TableError(
+            f"{type(against).__name__} is nothing to compare a table with; give a DHTable, a "
+            "robot, a name, a .toml, .csv or .urdf file, or poses=(q, T)"
+        )
+    return against
 
 
 def of_poses(q: ArrayLike, T: ArrayLike, name: str = "the poses") -> Reference:

@@ -239,6 +239,9 @@ def _com_cause(one: _Link) -> Cause:
         if one.alike(written, meant[list(order)]):
             return cause("axes", "has its axes in another order", 1.0)
     for name, pose in _frames_of(one):
+        plain = name == f"frame {one.row + 1}" and np.allclose(pose[:3, :3], np.eye(3), atol=1e-9)
+        if plain and one.alike(written, meant - pose[:3, 3]):  # as well in that frame
+            return cause("other end", f"is counted from the origin of {name}", 1.0)
         if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
             return cause("frame", f"is given in {name}", 1.0)
         if one.alike(written, meant - pose[:3, 3]):
@@ -264,8 +267,8 @@ def _inertia_cause(one: _Link) -> Cause:
     at = f"row {one.row}: inertia"
 
     def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(one.row, "inertia", written, meant, kind,
-                     f"{at} {told}: {_tensor(written)} written, {_tensor(meant)} meant", cost)  # fmt: skip
+        numbers = f"{_tensor(written)} written, {_tensor(meant)} meant"
+        return Cause(one.row, "inertia", written, meant, kind, f"{at} {told}: {numbers}", cost)
 
     if not written.any():
         return cause("missing", "is missing", 1.0)
@@ -285,8 +288,9 @@ def _inertia_cause(one: _Link) -> Cause:
             if factor >= 1e4:
                 return cause("units", f"is {factor:g} times too large, as in other units", 1.0)
             return cause("decimal", "has the decimal point displaced", 1.0)
-    wrong = [(i, j) for i in range(3) for j in range(i, 3)
-             if abs(written[i, j] - meant[i, j]) > 1e-8 * np.max(np.abs(meant)) + one.slack]  # fmt: skip
+    limit = 1e-8 * float(np.max(np.abs(meant))) + one.slack
+    off = np.abs(written - meant) > limit
+    wrong = [(i, j) for i in range(3) for j in range(i, 3) if off[i, j]]
     if len(wrong) == 1:
         i, j = wrong[0]
         name = f"I{'xyz'[i]}{'xyz'[j]}"

@@ -14,6 +14,7 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from kinlab.arrays import Array
 from kinlab.doctor.table_chain import (
@@ -210,8 +211,8 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
     told = row_text(new.cells[row])
     for other in (row - 1, row + 1):
         if 0 <= other < chain.n and np.array_equal(chain.cells[other], written):
-            cause = Cause(row + 1, "order", written, new.cells[row], "doubled",
-                          f"row {row + 1} repeats row {other + 1}: meant is {told}", 1.2)  # fmt: skip
+            said = f"row {row + 1} repeats row {other + 1}: meant is {told}"
+            cause = Cause(row + 1, "order", written, new.cells[row], "doubled", said, 1.2)
             return [Reading(new, (*first.causes, cause))]
     return []
 
@@ -329,7 +330,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
     return [found[k] for k in target.met_by([one.chain for one in found])]
 
 
-def _columns(poses: Array, axis: Array) -> Array:
+def _columns(poses: Array, axis: NDArray[np.intp]) -> Array:
     """Column axis[p] of the rotation of each pose (N, P, 4, 4), (N, P, 3)."""
     index = axis[None, :, None, None]
     out: Array = np.take_along_axis(poses[..., :3, :3], index, axis=-1)[..., 0]

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -90,6 +91,7 @@ class Chain:
         links = []
         for i, origin in enumerate(self.source):
             a, alpha, d, theta = (float(x) for x in self.cells[i])
+            joint: Literal["revolute", "prismatic"]
             joint = "prismatic" if self.prismatic[i] else "revolute"
             link = table.links[origin] if origin is not None else DHLink(joint=joint)
             same = link.joint == joint

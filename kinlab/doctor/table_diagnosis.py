@@ -23,7 +23,7 @@ from kinlab.doctor.table_chain import Chain
 from kinlab.doctor.table_readings import Reading
 from kinlab.doctor.table_result import TableDiagnosis, joined
 from kinlab.doctor.table_search import explain
-from kinlab.doctor.table_words import Cause, listed
+from kinlab.doctor.table_words import SIX, Cause, listed
 from kinlab.errors import InertiaError, OptionError, StructureError, TableError
 from kinlab.robot import Robot
 
@@ -108,13 +108,13 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     chain = Chain.of(table)
     before = reference.target.error(chain)
     agreed = before <= reference.target.tolerance
-    found = [Reading(chain)] if agreed else _explained(chain, reference, 1)
+    found = [Reading(chain)] if agreed else _explained(chain, reference, (1,))
     if not found and reference.axes is None and table.n == reference.n:
         noisy = table_noise.judge(table, reference, notes)
         if noisy is not None:
             return noisy
-    if not found:
-        found = _explained(chain, reference, 2)
+    if not found or found[0].cost >= SIX:
+        found = _explained(chain, reference, (1, 2))
     same = None
     if not found:
         same = table_zeros.same_arm(chain, reference)
@@ -126,10 +126,10 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     return _told(table, reference, found, same is not None, bodies, before, notes)
 
 
-def _explained(chain: Chain, reference: Reference, most: int) -> list[Reading]:
+def _explained(chain: Chain, reference: Reference, slips: tuple[int, ...]) -> list[Reading]:
     bases, tools = table_zeros.ends(chain, reference)
     return explain(
-        chain, reference.target, [*reference.base, *bases], [*reference.tool, *tools], most
+        chain, reference.target, [*reference.base, *bases], [*reference.tool, *tools], slips
     )
 
 
@@ -151,6 +151,10 @@ def _told(
             rows_in_question=doubt, **common,
         )  # fmt: skip
     options = _with_bodies(table, reference, found, bodies)
+    if len(found[0].causes) == 1 and len(options[0][2]) > 1 and table.n == reference.n:
+        # bodies that are wrong in many rows speak against the one kinematic slip
+        more = _explained(chain, reference, (2,))
+        options = _with_bodies(table, reference, [*found, *more], bodies)
     repaired, causes, dynamic = options[0]
     if len(dynamic) > MOST or (len(causes) > MOST and not many):
         rows = sorted({row for cause in dynamic for row in cause.rows})
@@ -203,6 +207,8 @@ def _with_bodies(
         dynamic: list[Cause] = []
         if bodies and reference.bodies is not None and repaired.n == reference.n:
             repaired, dynamic = table_bodies.differences(repaired, reference.bodies)
+            new = {i + 1 for i, origin in enumerate(one.chain.source) if origin is None}
+            dynamic = [c for c in dynamic if not c.rows or not set(c.rows) <= new]
         rank = (len(dynamic), _foreign(one.chain, reference), place)
         options.append((rank, (repaired, (*one.causes, *dynamic), dynamic)))
     options.sort(key=lambda option: option[0])
@@ -261,8 +267,10 @@ def _gauge(mine: Chain, theirs: Chain) -> tuple[str, ...]:
         return ("the conventions differ",)
     if mine.n != theirs.n:
         return ()
-    rows = [i + 1 for i in range(mine.n)
-            if np.max(np.abs(_circle(mine.cells[i]) - _circle(theirs.cells[i]))) > 1e-9]  # fmt: skip
+    gaps = [
+        np.max(np.abs(_circle(mine.cells[i]) - _circle(theirs.cells[i]))) for i in range(mine.n)
+    ]
+    rows = [i + 1 for i, gap in enumerate(gaps) if gap > 1e-9]
     told = []
     if rows:
         told.append(f"row{'s' if len(rows) > 1 else ''} {listed(rows)} place the frames elsewhere")

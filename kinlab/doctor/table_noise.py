@@ -247,11 +247,11 @@ def _slopes(chain: Chain, poses: Array) -> Array:
             else:
                 out[:, 4 * row + column, :3] = axis
     for k, frame in ((0, poses[:, 0]), (6, poses[:, -1])):
-        for axis in range(3):
-            way = frame[:, :3, axis]
-            out[:, 4 * chain.n + k + axis, :3] = way
-            out[:, 4 * chain.n + k + 3 + axis, :3] = np.cross(way, tool - frame[:, :3, 3])
-            out[:, 4 * chain.n + k + 3 + axis, 3:] = way
+        for i in range(3):
+            way = frame[:, :3, i]
+            out[:, 4 * chain.n + k + i, :3] = way
+            out[:, 4 * chain.n + k + 3 + i, :3] = np.cross(way, tool - frame[:, :3, 3])
+            out[:, 4 * chain.n + k + 3 + i, 3:] = way
     return out
 
 

@@ -91,12 +91,10 @@ def _shifted(chain: Chain) -> Iterator[Reading]:
             end = 1 if step > 0 else chain.n
             rest = f"; row {end} has none" if fill else ""
             sentence = f"a and alpha belong to the row {told} the one they stand in{rest}"
-            for column in ("a, alpha",):
-                yield Reading(
-                    chain.with_cells(cells),
-                    (Cause(every, column, chain.cells[:, [A, ALPHA]], moved, "shifted", sentence,
-                           1.1 if fill else 1.15),),
-                )  # fmt: skip
+            cost = 1.1 if fill else 1.15
+            written = chain.cells[:, [A, ALPHA]]
+            cause = Cause(every, "a, alpha", written, moved, "shifted", sentence, cost)
+            yield Reading(chain.with_cells(cells), (cause,))
 
 
 _SCALES = (
@@ -112,16 +110,20 @@ def _units(chain: Chain) -> Iterator[Reading]:
     angles = ((turn, "degrees", "in degrees"),
               (1.0 / turn, "radians for degrees", "turned into radians twice"))  # fmt: skip
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
+        if _entries(chain, columns) < 2:
+            continue  # a cell of its own
         for factor, kind, told in angles:
             cells = chain.cells.copy()
             cells[:, columns] *= factor
-            yield Reading(chain.with_cells(cells), (_unit_cause(chain, columns, kind, told, ""),))
+            yield Reading(chain.with_cells(cells), (_unit_cause(columns, kind, told, ""),))
     for factor, kind, told in _SCALES:
         for columns in ((A,), (D,), (A, D)):
+            if len(columns) == 1 and _entries(chain, columns) < 2:
+                continue
             cells = chain.cells.copy()
             cells[:, columns] *= factor
             other = chain.with_cells(cells)
-            yield Reading(other, (_unit_cause(chain, columns, kind, f"in {told}", ""),))
+            yield Reading(other, (_unit_cause(columns, kind, f"in {told}", ""),))
             if len(columns) == 2:
                 ends = {}
                 for which in ("base", "tool"):
@@ -133,7 +135,7 @@ def _units(chain: Chain) -> Iterator[Reading]:
                     extra = f", {' and '.join(some)}"
                     yield Reading(
                         other.but(**changed),
-                        (_unit_cause(chain, columns, kind, f"in {told}", extra),),
+                        (_unit_cause(columns, kind, f"in {told}", extra),),
                     )
     cells = chain.cells.copy()
     cells[:, [A, D]] *= 1e-3
@@ -145,13 +147,17 @@ def _units(chain: Chain) -> Iterator[Reading]:
     )  # fmt: skip
 
 
-def _unit_cause(chain: Chain, columns: tuple[int, ...], kind: str, told: str, extra: str) -> Cause:
+def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
+    """How many cells of the columns are not zero."""
+    return int(np.count_nonzero(chain.cells[:, columns]))
+
+
+def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: str) -> Cause:
     names = listed([COLUMNS[c] for c in columns]) + extra
     verb = "are" if len(columns) > 1 or extra else "is"
     sentence = f"column{'s' if verb == 'are' else ''} {names} {verb} {told}"
     written = told.removeprefix("in ")
     meant = "radians" if columns[0] in (ALPHA, THETA) else "metres"
-    del chain
     cost = 1.0 + 0.05 * (len(columns) - 1) + (0.05 if extra else 0.0)
     return Cause(None, "units", written, meant, kind, sentence, cost)
 
@@ -165,8 +171,9 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         rows = tuple(int(k) + 1 for k in np.flatnonzero(chain.cells[:, column]))
         if len(rows) < 2:
             continue  # a cell of its own
-        cause = Cause(every if len(rows) == chain.n else rows, name, chain.cells[:, column],
-                      cells[:, column], "sign", f"column {name} has the wrong sign", 1.1)  # fmt: skip
+        told = f"column {name} has the wrong sign"
+        place = every if len(rows) == chain.n else rows
+        cause = Cause(place, name, chain.cells[:, column], cells[:, column], "sign", told, 1.1)
         yield Reading(chain.with_cells(cells), (cause,))
     cause = Cause(every, "flip", list(chain.sign < 0), list(chain.sign > 0), "sense",
                   "every joint turns the other way", 1.2)  # fmt: skip

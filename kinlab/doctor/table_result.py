@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field
 from html import escape
@@ -80,6 +81,8 @@ class TableDiagnosis:
             numbers += f": {self._noise()}"
         elif self.agrees:
             numbers += f": poses differ by {self.error_before:.1e} of the arm's size at most"
+        elif math.isinf(self.error_before):
+            numbers += ", with another number of joints"
         else:
             numbers += f": poses differ by {self.error_before:.3g} of the arm's size"
             if self.error_after is not None:
@@ -152,7 +155,7 @@ class TableDiagnosis:
             "certain_rows": list(self.certain_rows),
             "rows_in_question": list(self.rows_in_question),
             "states": self.states,
-            "error_before": self.error_before,
+            "error_before": self.error_before if math.isfinite(self.error_before) else None,
             "error_after": self.error_after,
             "tolerance": self.tolerance,
             "clear": dict(self.clear),

@@ -15,7 +15,7 @@ from kinlab.doctor.table_words import SIX
 
 
 def explain(
-    chain: Chain, target: Target, base: list[Array], tool: list[Array], most: int = 2
+    chain: Chain, target: Target, base: list[Array], tool: list[Array], slips: Sequence[int]
 ) -> list[Reading]:
     """The fewest slips that, taken back, give the target's poses at every state.
 
@@ -23,15 +23,17 @@ def explain(
         chain: the user's table.
         target: the reference's poses.
         base, tool: frames that the reference is known to have.
-        most: slips that are looked for, 1 or 2.
+        slips: numbers of slips that are looked for, of 1 and 2 in this order.
 
     Returns:
-        All explanations of that many slips (one or two), the likeliest first; none where three
-        or more would be needed.
+        All explanations of the least of these numbers, the likeliest first; none where none of
+        them suffices. Where base or tool with six unknown numbers is all there is, more slips
+        of known kinds are listed before it.
     """
     found: list[Reading] = []
-    for stage in _stages(chain, target, base, tool)[:most]:
-        found = _distinct([*found, *stage()])
+    stages = _stages(chain, target, base, tool)
+    for count in slips:
+        found = _distinct([*found, *stages[count - 1]()])
         if found and found[0].cost < SIX:
             break
     return found
@@ -54,7 +56,9 @@ def _stages(
     def two() -> list[Reading]:
         solved = one_change([Reading(chain), *first], target) + two_cells(chain, target)
         found = [r for r in solved if len(r.causes) == 2]
-        return found + _two_readings(first, target, base, tool, bool(found))
+        return found + _two_readings(
+            first, target, base, tool, any(r.cost < SIX + 0.8 for r in found)
+        )
 
     return one, two
 

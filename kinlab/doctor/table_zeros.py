@@ -219,7 +219,15 @@ def sure_rows(chain: Chain, reference: Reference) -> tuple[int, ...]:
     behind = chain.n
     while behind > 0 and _on(moved, axes, behind - 1):
         behind -= 1
-    # row i lies between axes i and i + 1 (standard) or i - 1 and i (modified), and the place of
-    # the axis behind it tells its theta and d
-    first = behind + (2 if chain.modified else 1)
-    return tuple(sorted({*range(1, ahead), *range(first, chain.n + 1)}))
+    # row i is told by the normals in front of and behind axis i, so by axes i - 1, i and i + 1
+    rows = {*range(1, ahead), *range(behind + 2, chain.n + 1)}
+    return tuple(i for i in sorted(rows) if _tells(axes, i))
+
+
+def _tells(axes: Axes, i: int) -> bool:
+    """Whether the axes about row i fix all its cells: no slide has a place, no parallel a d."""
+    near = [k for k in (i - 2, i - 1, i) if 0 <= k < len(axes.slides)]
+    if any(axes.slides[k] for k in near):
+        return False
+    normals = [np.cross(axes.direction[k], axes.direction[k + 1]) for k in near[:-1]]
+    return all(float(np.linalg.norm(normal)) > _LINE for normal in normals)

@@ -37,7 +37,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     """
     size = reach(robot)
     set_stage(vis, size)
-    camera = look_at(_origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.2 * size)
+    camera = look_at(origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.2 * size)
     spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
     try:
@@ -49,7 +49,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     model = robot.model
     spec |= {
         "kind": "arm",
-        "joints": [_joint(robot, i) for i in range(1, model.njoints)],
+        "joints": [joint_json(robot, i) for i in range(1, model.njoints)],
         "tool": _flat(model.frames[robot.tool].placement.homogeneous),
         "rows": rows,
         "task": task,
@@ -92,7 +92,7 @@ def linear_rank(robot: Robot) -> int:
     return max(1, generic_rank(stack, TASKS["position"]))
 
 
-def _joint(robot: Robot, i: int) -> dict[str, Any]:
+def joint_json(robot: Robot, i: int) -> dict[str, Any]:
     subspace = motion_subspace(robot.model, i)
     revolute = bool(subspace[3:].any())
     kind = "revolute" if revolute else "prismatic"
@@ -121,7 +121,7 @@ def _flat(matrix: Array) -> list[float]:
     return [float(x) for x in np.asarray(matrix).reshape(-1)]
 
 
-def _origins(robot: Robot, q: Array) -> Array:
+def origins(robot: Robot, q: Array) -> Array:
     """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
     data = robot.model.createData()
     pin.forwardKinematics(robot.model, data, q)

@@ -52,7 +52,7 @@ def draw_dh(scene: Any, robot: Robot, table: DHTable) -> DHPicture:
     picture = DHPicture(convention=str(table.convention))
     modified = table.convention is Convention.MODIFIED
     size = reach(robot)
-    carriers = _Carriers(robot)
+    carriers = Carriers(robot)
     frames = [np.asarray(table.base), *table.frames(np.zeros(table.n))]
     for i, frame in enumerate(frames):
         _frame(scene, carriers, picture, i, frame, size)
@@ -123,7 +123,7 @@ def columns(convention: str) -> list[str]:
     return [f"a{behind}", f"α{behind}", "d<sub>i</sub>", "θ<sub>i</sub>"]
 
 
-class _Carriers:
+class Carriers:
     """Hangs frames given in the world at q = 0 below the joint that carries them."""
 
     def __init__(self, robot: Robot) -> None:
@@ -142,7 +142,7 @@ class _Carriers:
 
 
 def _frame(
-    scene: Any, carriers: _Carriers, picture: DHPicture, i: int, frame: Array, size: float
+    scene: Any, carriers: Carriers, picture: DHPicture, i: int, frame: Array, size: float
 ) -> None:
     """Triad i, and its z axis drawn long, each in a node of its own."""
     triad = carriers.place(scene, f"frame_{i}", i, frame)

@@ -136,6 +136,10 @@ const kinlab = (() => {
           const motion = jointMotion(joint.type, joint.axis, q[i]);
           place(joint.path, multiply(joint.placement, motion));
         });
+        (spec.followers || []).forEach((joint) => {
+          const motion = jointMotion(joint.type, joint.axis, q[joint.joint]);
+          place(joint.path, multiply(joint.placement, motion));
+        });
         for (const row of spec.dh) drawDhRow(row, q);
       },
     };

@@ -5,10 +5,13 @@ from __future__ import annotations
 import os
 import sys
 import webbrowser
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from kinlab.dh import DHTable
+from kinlab.library import load
 from kinlab.robot import Robot
 
 if TYPE_CHECKING:
@@ -17,7 +20,11 @@ if TYPE_CHECKING:
 
 
 def view(
-    robot: Robot | Linkage, q: ArrayLike | None = None, *, meshes: bool = True
+    robot: Robot | Linkage | DHTable | str | Path,
+    q: ArrayLike | None = None,
+    *,
+    meshes: bool = True,
+    against: Any = None,
 ) -> Scene | FiveBarScene:
     """Shows an arm or a five-bar: inline in a notebook, otherwise in the browser.
 
@@ -25,10 +32,12 @@ def view(
     is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
 
     Args:
-        robot: the arm, or a :class:`kinlab.FiveBar`.
+        robot: the arm, a DH table or its file, or a :class:`kinlab.FiveBar`.
         q: joint positions at the start, (n,); of a five-bar the crank angles, (2,). Left out,
             zero, and for a five-bar its best-conditioned hanging pose.
         meshes: draw the URDF's meshes; otherwise rods from joint to joint.
+        against: another description of the same arm, as for :func:`kinlab.diagnose_table`: it is
+            drawn see-through over the arm, moves with it, and what is wrong in the table is lit.
 
     Returns:
         The scene, to which frames, paths, clouds and (of an arm) ghosts can be added.
@@ -39,7 +48,20 @@ def view(
     """
     from kinlab.viewer.scene import FiveBarScene, Scene
 
-    scene = Scene(robot, q, meshes=meshes) if isinstance(robot, Robot) else FiveBarScene(robot, q)
+    arm: Any = robot
+    scene: Scene | FiveBarScene
+    if isinstance(robot, DHTable):
+        robot = Robot.from_dh(robot)
+    elif isinstance(robot, (str, Path)):
+        robot = load(robot)
+    if against is not None:
+        from kinlab.viewer.against import against_scene
+
+        scene = against_scene(arm, against, q)
+    elif isinstance(robot, Robot):
+        scene = Scene(robot, q, meshes=meshes)
+    else:
+        scene = FiveBarScene(robot, q)
     if not in_notebook():
         server = scene.serve()
         print(f"{robot.name}: {server.url}")
