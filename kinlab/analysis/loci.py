@@ -9,7 +9,7 @@ method; Allgower & Georg, *Introduction to Numerical Continuation Methods*, chap
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.evidence import Evidence
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
@@ -68,6 +69,7 @@ class Loci:
         joints: indices of the joints of the slice.
         held: q of the other joints, (n,).
         curves: what was found.
+        evidence: what was searched for a first point of each curve.
     """
 
     robot: str
@@ -75,6 +77,7 @@ class Loci:
     joints: tuple[int, ...]
     held: Array
     curves: tuple[Locus, ...]
+    evidence: Evidence = field(repr=False)
 
 
 def singular_loci(
@@ -139,7 +142,13 @@ def singular_loci(
             f"robot {robot.name!r}: {len(chosen)} joints; for task {space.name} with {robot.n} "
             f"joints the singular set is made of curves in slices of {needed}"
         )
-    return Loci(robot.name, space.name, chosen, frozen(middle), curves)
+    evidence = Evidence(
+        f"{_LINES} stratified lines along each joint of {'each' if len(chosen) > needed else 'the'} "
+        f"slice (seed {seed}), each curve followed to its ends",
+        proved="every listed point is singular",
+        found="that there is no other curve",
+    )
+    return Loci(robot.name, space.name, chosen, frozen(middle), curves, evidence)
 
 
 def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:

@@ -61,7 +61,8 @@ def singular(
     effort = search.effort
     console.print(
         f"[dim]{effort.seeds} starts, {effort.converged} reached the singular set within the "
-        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})[/dim]",
+        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})\n"
+        f"{search.evidence}[/dim]",
         highlight=False,
     )
     if at is not None:
