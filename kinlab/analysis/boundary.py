@@ -132,7 +132,7 @@ def _evidence(candidates: int) -> Evidence:
     return Evidence(
         f"{candidates} arcs that limits and stretched or folded parts allow: all there are",
         proved="the boundary is made of these arcs",
-        found=f"which pieces: a side without a solution {_SIDE:g} of the reach away is out of reach",
+        found=f"which pieces: a side where no solution was met, {_SIDE:g} of the reach away",
     )
 
 

@@ -143,8 +143,8 @@ def singular_loci(
             f"joints the singular set is made of curves in slices of {needed}"
         )
     evidence = Evidence(
-        f"{_LINES} stratified lines along each joint of {'each' if len(chosen) > needed else 'the'} "
-        f"slice (seed {seed}), each curve followed to its ends",
+        f"{_LINES} stratified lines along each joint of every slice (seed {seed}), each curve "
+        "followed to its ends",
         proved="every listed point is singular",
         found="that there is no other curve",
     )
