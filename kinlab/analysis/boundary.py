@@ -9,13 +9,14 @@ they cross, and a piece belongs to the boundary where one of its two sides is ou
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import pairwise, product
 
 import numpy as np
 
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.robot import Robot, require_robot
 from kinlab.stacks import fk
 from kinlab.structure.axes import Axes
@@ -58,11 +59,13 @@ class PlanarBoundary:
         robot: its name.
         arcs: the boundary, outer and inner.
         candidates: how many arcs were tried.
+        evidence: what was tried, and what is proved of it.
     """
 
     robot: str
     arcs: tuple[Arc, ...]
     candidates: int
+    evidence: Evidence = field(repr=False)
 
     def points(self, spacing: float = 0.01) -> Array:
         """Points along all arcs, at most ``spacing`` metres apart, (K, 2)."""
@@ -114,14 +117,23 @@ def planar_boundary(robot: Robot) -> PlanarBoundary:
     candidates = _distinct(_candidates(chain))
     pieces = _cut(candidates, _SIDE * chain.reach)
     if not pieces:
-        return PlanarBoundary(robot.name, (), len(candidates))
+        return PlanarBoundary(robot.name, (), len(candidates), _evidence(len(candidates)))
     middle = np.array([a.centre + a.radius * _unit(0.5 * (a.start + a.stop)) for a in pieces])
     normal = np.array([_unit(0.5 * (a.start + a.stop)) for a in pieces])
     side = _SIDE * chain.reach
     outside = _reachable(chain, middle + side * normal)
     inside = _reachable(chain, middle - side * normal)
     kept = [a for a, o, i in zip(pieces, outside, inside, strict=True) if not (o and i)]
-    return PlanarBoundary(robot.name, tuple(_joined(kept)), len(candidates))
+    joined = tuple(_joined(kept))
+    return PlanarBoundary(robot.name, joined, len(candidates), _evidence(len(candidates)))
+
+
+def _evidence(candidates: int) -> Evidence:
+    return Evidence(
+        f"{candidates} arcs that limits and stretched or folded parts allow: all there are",
+        proved="the boundary is made of these arcs",
+        found=f"which pieces: a side where no solution was met, {_SIDE:g} of the reach away",
+    )
 
 
 def _planar_chain(robot: Robot) -> _Chain:

@@ -18,6 +18,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array
 from kinlab.dh import DHTable
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.options import seed_of, whole
 from kinlab.robot import Robot
 from kinlab.structure.task_space import (
@@ -74,6 +75,7 @@ class DesignSearch:
         designs: what was found; empty where no start became isotropic.
         best_condition: least condition number met by a start that kept limits and signs.
         seeds: starts. converged: those that ended at an accepted design. seed: of the numbers.
+        evidence: what was searched, and what is proved of it.
     """
 
     task: str
@@ -85,6 +87,7 @@ class DesignSearch:
     seeds: int
     converged: int
     seed: int
+    evidence: Evidence = field(repr=False)
 
     def __len__(self) -> int:
         return len(self.designs)
@@ -147,6 +150,11 @@ def design_isotropic(
         space.name, space.suggested, how,
         "sum of the open lengths kept" if system.scalable else "set by the numbers that stay",
         designs, float(finite.min(initial=np.inf)), seeds, int(accepted.sum()), seed,
+        Evidence(
+            f"{seeds} starts in the open numbers and q (seed {seed})", int(accepted.sum()), seeds,
+            "every listed design is isotropic to 1e-8 by the engine" if designs else "",
+            "that there is no other design" if designs else "that no such design exists",
+        ),
     )  # fmt: skip
 
 

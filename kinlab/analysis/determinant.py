@@ -15,6 +15,7 @@ from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.extract import to_dh
 from kinlab.options import seed_of
 from kinlab.robot import Robot
@@ -24,6 +25,9 @@ from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
 _ZERO = 1e-12
 """Value of a factor, over its size in general position, at which it counts as zero."""
 
+
+_STARTS = 48
+"""Starts from which a zero of each factor is sought."""
 
 _EXAMPLES = 4
 """Zeros of a factor that are looked at to say what it means."""
@@ -64,6 +68,7 @@ class FactoredDeterminant:
         factors: the factors that can make the arm singular.
         complete: False where a block was too large to be factored.
         function: q (n,) to the value of det J in SI units.
+        evidence: what is derived and what is searched.
     """
 
     robot: str
@@ -73,6 +78,7 @@ class FactoredDeterminant:
     factors: tuple[SingularFactor, ...]
     complete: bool
     function: Callable[[ArrayLike], Array] = field(repr=False)
+    evidence: Evidence = field(repr=False)
 
     def at(self, q: ArrayLike) -> float:
         """det J at q (n,), by the formula."""
@@ -116,6 +122,11 @@ def factored_determinant(robot: Robot, task: Any = "auto", *, seed: int = 0) -> 
     return FactoredDeterminant(
         robot.name, space.name, space.suggested, derived.expression, factors, derived.complete,
         symbolic.to_function(arm, derived.expression),
+        Evidence(
+            f"{_STARTS} starts for the zeros of each factor (seed {seed})",
+            proved="det J is the product, by exact algebra on the table's numbers",
+            found="what the zeros of a factor mean, from a few of them; which have none",
+        ),
     )  # fmt: skip
 
 
@@ -142,7 +153,7 @@ def _meaning(
     slope = symbolic.to_function(arm, sympy.Matrix([[sympy.diff(expression, q) for q in arm.q]]))
     size = _size(robot, function)
     lower, upper = search_box(robot)
-    starts = rng.uniform(lower, upper, (48, robot.n))
+    starts = rng.uniform(lower, upper, (_STARTS, robot.n))
     found, miss = solve(_as_system(function, slope, size), starts)
     found = wrap(robot, found[miss < _ZERO])
     inside = np.all((found >= lower) & (found <= upper), axis=1)

@@ -199,18 +199,19 @@ def isotropic_families(
     parked = np.clip(np.zeros(robot.n), lower, upper)
     seen: list[tuple[tuple[int, ...], int, Array, float]] = []
     for state, size in zip(q, lengths, strict=True):
-        free, freedom = _freedom(system, state, float(size))
+        free = _free_joints(system, state, float(size))
         place = state.copy()
         place[list(free)] = parked[list(free)]
+        alike = [(freedom, other) for group, freedom, other, _ in seen if group == free]
         apart = [
             np.where(turns, 2.0 * np.abs(np.sin(0.5 * (place - other))), np.abs(place - other))
-            for group, _, other, _ in seen
-            if group == free
+            for _, other in alike
         ]
         # a curved family has no coordinates to compare: it is listed by its first member
-        known_curve = freedom > len(free) and any(g[:2] == (free, freedom) for g in seen)
+        known_curve = any(freedom > len(free) for freedom, _ in alike)
         if known_curve or any(float(d.max()) < _SAME for d in apart):
             continue
+        freedom = max(len(free), _dimension(system, state, float(size)))
         seen.append((free, freedom, place, float(size)))
     names = robot.joint_names
     found = []
@@ -227,8 +228,8 @@ def isotropic_families(
     return tuple(sorted(found, key=lambda c: tuple(np.round(c.q, 6))))
 
 
-def _freedom(system: IsotropySystem, q: Array, length: float) -> tuple[tuple[int, ...], int]:
-    """Joints that may move alone, tried and not only linearised, and the family's dimension."""
+def _free_joints(system: IsotropySystem, q: Array, length: float) -> tuple[int, ...]:
+    """Joints that may move alone, tried and not only linearised."""
     space, robot = system.space, system.space.robot
     free = []
     for joint in range(robot.n):
@@ -237,10 +238,7 @@ def _freedom(system: IsotropySystem, q: Array, length: float) -> tuple[tuple[int
         sigma = singular_values(space.jacobian(moved, length))
         if float((condition_number(sigma) - 1.0).max()) <= 10.0 * ISOTROPIC:
             free.append(joint)
-    x = system.start(q[np.newaxis])
-    if system.open_length:
-        x[:, -1] = np.log(length)
-    return tuple(free), max(len(free), _dimension(system, x))
+    return tuple(free)
 
 
 _RADIUS = 0.005
@@ -248,12 +246,15 @@ _RADIUS = 0.005
 fraction of that, and a double root, which linearises like a curve, draws its neighbours back."""
 
 
-def _dimension(system: IsotropySystem, x: Array) -> int:
-    """Dimension of the solutions near x (1, k), from solutions around it and not from a tangent.
+def _dimension(system: IsotropySystem, q: Array, length: float) -> int:
+    """Dimension of the solutions near q, from solutions around it and not from a tangent.
 
     Where families cross their solutions together span more: the least of x and of a few solutions
     around it counts.
     """
+    x = system.start(q[np.newaxis])
+    if system.open_length:
+        x[:, -1] = np.log(length)
     around, size = _neighbours(system, x)
     for number in range(0, len(around), max(1, len(around) // 3)):
         if size == 0:

@@ -9,7 +9,7 @@ method; Allgower & Georg, *Introduction to Numerical Continuation Methods*, chap
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.evidence import Evidence
 from kinlab.options import number, seed_of, shown, whole
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
@@ -71,6 +72,7 @@ class Loci:
         joints: indices of the joints of the slice.
         held: q of the other joints, (n,).
         curves: what was found.
+        evidence: what was searched for a first point of each curve.
     """
 
     robot: str
@@ -78,6 +80,7 @@ class Loci:
     joints: tuple[int, ...]
     held: Array
     curves: tuple[Locus, ...]
+    evidence: Evidence = field(repr=False)
 
 
 def singular_loci(
@@ -143,7 +146,13 @@ def singular_loci(
             f"robot {robot.name!r}: {len(chosen)} joints; for task {space.name} with {robot.n} "
             f"joints the singular set is made of curves in slices of {needed}"
         )
-    return Loci(robot.name, space.name, chosen, frozen(middle), curves)
+    evidence = Evidence(
+        f"{_LINES} stratified lines along each joint of every slice (seed {seed}), each curve "
+        "followed to its ends",
+        proved="every listed point is singular",
+        found="that there is no other curve",
+    )
+    return Loci(robot.name, space.name, chosen, frozen(middle), curves, evidence)
 
 
 def _read_joints(robot: Robot, joints: Sequence[int | str]) -> tuple[int, ...]:

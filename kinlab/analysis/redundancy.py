@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
+from kinlab.evidence import Evidence
 from kinlab.robot import Robot
 from kinlab.states import joint_vector
 from kinlab.structure.task_space import read_task
@@ -33,6 +34,7 @@ class Redundancy:
         inverse: J^T (J J^T)^-1, (n, m), SI units; ``None`` where the rank is below the number of
             rows and it does not exist.
         why: in words, why this inverse and not another.
+        evidence: what the rank rests on.
     """
 
     task: str
@@ -41,6 +43,7 @@ class Redundancy:
     null_space: Array
     inverse: Array | None
     why: str
+    evidence: Evidence
 
 
 def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
@@ -70,6 +73,10 @@ def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
         frozen(right[rank:].T),
         inverse,
         _why(space.m, robot.n, rank),
+        Evidence(
+            "the singular values of J at this q; nothing else",
+            proved=f"rank {rank}: singular values above {SINGULAR:g} of the largest",
+        ),
     )
 
 

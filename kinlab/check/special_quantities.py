@@ -75,15 +75,11 @@ def planar_position_determinant(robot: Robot, q: Any) -> Array:
     return value
 
 
-def column_products(robot: Robot, q: Any) -> Array:
-    """Scalar product of each pair of columns of the rows vx, vy."""
-    jacobian = kinematics.jacobian(robot, q)[:, :2]
-    return np.stack(
-        [
-            [[np.dot(one[:, i], one[:, k]) for k in range(robot.n)] for i in range(robot.n)]
-            for one in jacobian
-        ]
-    )
+def isotropy_defect(robot: Robot, q: Any) -> Array:
+    """Sum of (sigma_i^2 / mean - 1)^2 over the singular values of the rows vx, vy."""
+    squares = np.linalg.svd(kinematics.jacobian(robot, q)[:, :2], compute_uv=False) ** 2
+    defect: Array = np.sum((squares / squares.mean(axis=1, keepdims=True) - 1.0) ** 2, axis=1)
+    return defect
 
 
 def orthogonal_columns_cosine(robot: Robot, q: Any) -> Array:
@@ -217,7 +213,10 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ),
     ("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz", None),
     ("planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy", None),
-    ("column_products", "q", column_products, "products of J's columns (vx, vy), (n, n)", None),
+    (
+        "isotropy_defect", "q", isotropy_defect,
+        "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy", None,
+    ),
     ("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number", None),
     ("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number", None),
     (

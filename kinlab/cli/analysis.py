@@ -60,7 +60,8 @@ def singular(
     effort = search.effort
     console.print(
         f"{effort.seeds} starts, {effort.converged} reached the singular set within the "
-        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})",
+        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})\n"
+        f"{search.evidence}",
         style="dim",
         highlight=False,
     )

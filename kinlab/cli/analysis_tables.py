@@ -44,7 +44,8 @@ def families(search: SingularitySearch) -> Any:
             condition = ", ".join(f"{joint} = {round(value, 6) + 0.0:g}" for joint, value in pairs)
         else:
             condition = "a curve or surface in " + ", ".join(family.deciding)
-        edge = " (edge of the workspace)" if family.beyond is False else ""
+        edges = {False: " (edge of the workspace)", None: " (edge undecided)", True: ""}
+        edge = edges[family.beyond]
         first = family.representative
         table.add_row(
             family.kind + edge, condition, str(first.rank), first.lost_direction,
@@ -55,11 +56,12 @@ def families(search: SingularitySearch) -> Any:
 
 def nearest(near: NearestSingularity) -> str:
     if near.singularity is None:
-        return "no singular configuration within the limits was found"
+        return f"no singular configuration within the limits was found\n[dim]{near.evidence}[/dim]"
     q = ", ".join(f"{round(float(v), 6) + 0.0:g}" for v in near.singularity.q)
     return (
         f"nearest singularity: {near.singularity.kind} at distance {near.distance:.6g} rad (or m), "
-        f"q = {q}; sigma_min here {near.sigma[-1]:.4g} (length {near.length:.4g} m)"
+        f"q = {q}; sigma_min here {near.sigma[-1]:.4g} (length {near.length:.4g} m)\n"
+        f"[dim]{near.evidence}[/dim]"
     )
 
 
@@ -107,8 +109,7 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
             highlight=False,
         )
         console.print(
-            f"{search.seeds} starts; local minima: 5 % {low:.6g}, 50 % {middle:.6g}, "
-            f"95 % {high:.6g} (seed {search.seed})",
+            f"local minima: 5 % {low:.6g}, 50 % {middle:.6g}, 95 % {high:.6g}\n{search.evidence}",
             style="dim",
             highlight=False,
         )

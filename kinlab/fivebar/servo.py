@@ -51,7 +51,8 @@ class ServoSizing:
         sigma: least and largest singular value of J in the workspace, rad/m. |G| is least where
             sigma is sqrt(eta): there each crank works half for itself and half for the payload.
         cycle: the pick-and-place cycle that the RMS figures are taken over.
-        fits: motors, those that fit first, by margin.
+        fits: motors: those that fit first, the smallest peak torque first; then the others, the
+            nearest to fitting first.
     """
 
     workspace: Rectangle
@@ -92,7 +93,8 @@ def size_servo(
         workspace: (x_min, x_max, y_min, y_max), m.
         v_max: m/s. a_max: m/s².
         motor: one motor, by name or as data; none tries the whole catalogue.
-        gear_ratio: j; none takes for each motor the one of least peak torque that N_max allows.
+        gear_ratio: j; none takes for each motor the one whose least margin (speed, peak and rated
+            torque) is largest.
         mode: signs of u_i x w_i.
         efficiency: of the gears, 0 to 1.
 

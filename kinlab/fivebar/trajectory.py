@@ -221,7 +221,9 @@ def motor_torques(
     """Torque at the motors' shafts along a cycle, (K, 2), N m.
 
     tau_load / (j efficiency) + I_M j theta_ddot: the load passes the gear and pays its losses in
-    both directions (on the safe side), the rotor does not.
+    both directions of power, the rotor does not. While the load drives the motor its true part is
+    tau_load efficiency / j; counting more is on the safe side except where the rotor's torque is
+    opposite to the load's and larger, as in hard braking of a large rotor.
 
     Args:
         linkage: the five-bar; its own rotor inertia is left out in favour of the motor's.

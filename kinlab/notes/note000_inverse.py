@@ -123,6 +123,7 @@ def loss(arm: Arm, q: Array, target: Array) -> Any:
     quantity="loss_gradient",
     robots="planar3r",
     latex=r"\nabla g = -J^T [x_d - f(q)]",
+    remark="the brace under (df/dq)^T is labelled J; it is J^T",
 )
 def loss_gradient(arm: Arm, q: Array, target: Array) -> Array:
     """Gradient of the loss."""

@@ -22,7 +22,8 @@ from kinlab.notes.frames import (
     quantity="jacobian",
     robots="serial",
     latex=r"J = \left[\frac{\partial f_i}{\partial q_j}\right]",
-    remark="the note loses the ∂ in front of q in some entries",
+    remark="the note loses the ∂ in front of q in some entries; in space the rows of omega are "
+    "derivatives of no coordinates",
 )
 def jacobian_by_differentiation(arm: Arm, q: Array) -> Array:
     """J = df/dq: the chain product differentiated factor by factor."""
@@ -100,6 +101,30 @@ _VELOCITY = (
 )
 
 
+def _no_formula(arm: Arm, q: Array) -> Array:
+    return np.full((*np.shape(q)[:-1], 3, arm.n), np.nan)
+
+
+@formula(
+    "000.Jv",
+    source="note 000, section 4.2",
+    quantity="jacobian[:3]",
+    robots="serial",
+    latex=r"\fixed{{}^0J_v = ({}^0\hat Z_1 \times ({}^0p_e - {}^0p_1)\ \cdots"
+    r"\ {}^0\hat Z_n \times ({}^0p_e - {}^0p_n))}",
+    printed=Printed(
+        _no_formula,
+        "the linear velocity is said to have no general formula; it has one, for any arm (shown: "
+        "the printed form gives nothing)",
+        r"{}^0J_v:\ \wrong{\text{no general formula}}",
+    ),
+    remark="the column of a prismatic joint is its axis",
+)
+def linear_jacobian(arm: Arm, q: Array) -> Array:
+    """The linear rows of J: each axis crossed with the way from it to the tool."""
+    return geometric_jacobian(arm, q, tool_pose(arm, q)[..., :3, 3])[..., :3, :]
+
+
 @formula(
     "000.vel",
     source="note 000, section 4.2",
@@ -112,6 +137,7 @@ _VELOCITY = (
         _VELOCITY + r"\wrong{\text{ (revolute only)}}",
         robots=("sliding",),
     ),
+    remark="^iZ_n is the direction of Z_n in frame {i}; the note's words say frame {1}",
 )
 def velocities(arm: Arm, q: Array, v: Array) -> Array:
     """Velocity propagation from link to link, revolute and prismatic."""

@@ -46,28 +46,45 @@ def tip_jacobian(arm: Arm, q: Array) -> Array:
     return matrix([l1 * np.sin(q2), 0.0], [l1 * np.cos(q2) + l2, l2])
 
 
-def _rows_gram(arm: Arm, q: Array) -> Array:
-    jacobian = tip_jacobian(arm, q)
-    return jacobian @ turn(jacobian)
+def _planar_jacobian(arm: Arm, q: Array) -> Array:
+    """Rows vx, vy of a planar arm of any number of links, (..., 2, n)."""
+    angles = np.cumsum(q, axis=-1)
+    steps = np.stack(lengths(arm)) * np.stack([-np.sin(angles), np.cos(angles)])
+    columns_: Array = np.moveaxis(np.cumsum(steps[..., ::-1], axis=-1)[..., ::-1], 0, -2)
+    return columns_
+
+
+def _defect(products: Array) -> Array:
+    """Square of how far a matrix of products is from a multiple of 1, over that multiple."""
+    size = products.shape[-1]
+    mean = np.trace(products, axis1=-2, axis2=-1)[..., None, None] / size
+    defect: Array = np.sum((products / mean - np.eye(size)) ** 2, axis=(-2, -1))
+    return defect
+
+
+def _of_columns(arm: Arm, q: Array) -> Array:
+    jacobian = _planar_jacobian(arm, q)
+    return _defect(turn(jacobian) @ jacobian)
 
 
 @formula(
     "000.iso",
     source="note 000, section 6",
-    quantity="column_products",
-    robots=("planar2r", "planar2r_rods"),
-    latex=r"\text{columns orthogonal and equal: } \fixed{J^T J} = a I",
+    quantity="isotropy_defect",
+    robots=("planar2r", "planar2r_rods", "planar3r"),
+    latex=r"\fixed{\text{rows}} \text{ orthogonal and of equal length: } J J^T = a I",
     printed=Printed(
-        _rows_gram,
-        "columns orthogonal and of equal length is J^T J = a I; J J^T = a I speaks of the rows "
-        "(the same thing only for square J at the isotropic pose itself)",
-        r"\text{columns orthogonal and equal: } \wrong{J J^T} = a I",
+        _of_columns,
+        "J J^T = a I is right, its words are not: they speak of columns, which are orthogonal too "
+        "for a square J only (n columns of m < n entries never are: shown on the 3R arm in x, y)",
+        r"\wrong{\text{columns}} \text{ orthogonal and of equal length: } J J^T = a I",
+        robots=("planar3r",),
     ),
 )
-def column_products(arm: Arm, q: Array) -> Array:
-    """Scalar products of the columns of J."""
-    jacobian = tip_jacobian(arm, q)
-    return turn(jacobian) @ jacobian
+def isotropy_defect(arm: Arm, q: Array) -> Array:
+    """How far J is from isotropic: its rows orthogonal and equally long."""
+    jacobian = _planar_jacobian(arm, q)
+    return _defect(jacobian @ turn(jacobian))
 
 
 @formula(

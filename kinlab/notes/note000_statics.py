@@ -93,6 +93,7 @@ def _force_only(arm: Arm, q: Array, wrench: Array) -> Array:
         r"\tau = {}^0J^T\,{}^0F,\quad {}^0F = \wrong{{}^0_nR}\,{}^nF",
         robots=("spatial",),
     ),
+    remark="the columns of ^0_nR are (X_n Y_n Z_n); the note writes (X_4 Y_4 Z_4) beside ^0_nR",
 )
 def base_statics(arm: Arm, q: Array, wrench: Array) -> Array:
     """tau = J^T F in base axes, the wrench given in tool axes."""

@@ -121,6 +121,7 @@ _V2 = (
         "2 d1 d2 is printed 2 d1 + d2",
         _V2[0] + r"\wrong{2\dot\theta_1 + \dot\theta_2}" + _V2[1],
     ),
+    remark="the line before sets the square under the dot: x_2^2, y_2^2 and v_2^2 with a dot each",
 )
 def speed_squared(arm: Arm, q: Array, v: Array) -> Any:
     """Squared speed of the second mass."""

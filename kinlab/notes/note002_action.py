@@ -76,6 +76,7 @@ _INNER = (
         "note's result because delta q is zero there",
         _INNER + r"\wrong{\frac{\partial L}{\partial \dot q}\,(\delta q(t_1) - \delta q(t_2))}",
     ),
+    remark="the line before has d(delta q) dt under one integral: the dt is one too many",
 )
 def variation_with_boundary(arm: Arm, q: Array, v: Array, a: Array, dq: Array) -> Any:
     """First variation with the boundary term of the integration by parts."""

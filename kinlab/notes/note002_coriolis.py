@@ -69,6 +69,30 @@ def coriolis_matrix(arm: Arm, q: Array, v: Array) -> Array:
     return coriolis(arm, q, v)
 
 
+def _twice_coriolis(arm: Arm, q: Array, v: Array) -> Array:
+    return 2.0 * coriolis(arm, q, v)
+
+
+@formula(
+    "002.C",
+    part="symmetry",
+    source=_SECTION,
+    quantity="mass_matrix_dot",
+    robots=MOVING,
+    latex=r"(\dot M - 2C)^T = -(\dot M - 2C) \Rightarrow \fixed{C_{ij} + C_{ji} = \dot M_{ij}}",
+    printed=Printed(
+        _twice_coriolis,
+        "from Mdot - 2C skew follows C_ij + C_ji = Mdot_ij, not C_ji = C_ij (shown: "
+        "with C_ji = C_ij, Mdot would be 2C)",
+        r"(\dot M - 2C)^T = -(\dot M - 2C) \Rightarrow \wrong{C_{ji} = C_{ij}}",
+    ),
+)
+def mass_rate_by_symmetry(arm: Arm, q: Array, v: Array) -> Array:
+    """Mdot is twice the symmetric part of C."""
+    found = coriolis(arm, q, v)
+    return np.asarray(found + turn(found))
+
+
 def _printed_torques(arm: Arm, q: Array, v: Array) -> Array:
     return apply(printed_coriolis(arm, q, v), v)
 

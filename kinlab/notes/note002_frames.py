@@ -28,13 +28,15 @@ def _before_z(arm: Arm, q: Array) -> Array:
     source=_SECTION,
     quantity="link_transforms",
     robots="standard",
-    latex=r"a_i, \alpha_i \text{ along and about } \fixed{x_i}:\quad"
+    latex=r"a_i, \alpha_i \text{ along and about } \fixed{x_i},\ d_i, \theta_i"
+    r" \text{ along and about } \fixed{z_{i-1}}:\quad"
     r" T_i = R_z(\theta_i)\,T_z(d_i)\,T_x(a_i)\,R_x(\alpha_i)",
     printed=Printed(
         _before_z,
-        "a_i and alpha_i are said to be along and about x_{i-1} (that is Craig's table); the "
-        "product is standard DH, where they belong to x_i",
-        r"a_i, \alpha_i \text{ along and about } \wrong{x_{i-1}}:\quad"
+        "a, alpha are said to belong to x_{i-1} and d, theta to z_i: that is Craig's table; the "
+        "product is standard DH, where a, alpha belong to x_i and d, theta to z_{i-1}",
+        r"a_i, \alpha_i \text{ along and about } \wrong{x_{i-1}},\ d_i, \theta_i"
+        r" \text{ along and about } \wrong{z_i}:\quad"
         r" T_i = R_z(\theta_i)\,T_z(d_i)\,T_x(a_i)\,R_x(\alpha_i)",
     ),
 )

@@ -145,8 +145,9 @@ def power(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     robots=("fivebar",),
     latex=r"\dot\Theta = \max\sqrt{\boldsymbol J_i \boldsymbol J_i^T}\, v_{\max}, \quad"
     r" j = \frac{\pi N_{\max}}{30 \dot\Theta}",
-    remark="Printed with J_1 only, and the transpose outside the product. Both rows are needed: "
-    "they are equally bad only on a workspace that is symmetric about the y axis.",
+    remark="Printed with J_1 only; both rows are needed: they are equally bad only on a workspace "
+    "that is symmetric about the y axis. The transpose stands under the root, behind the product: "
+    "it belongs to the second factor.",
 )
 def rate_per_speed(loop: Loop, xy: Array, mode: Array) -> Any:
     """Worst crank rate per speed of the tool, over all directions."""
@@ -175,7 +176,9 @@ def load_inertia(loop: Loop, xy: Array, mode: Array) -> Any:
     quantity="fivebar_torque_per_acceleration_worst",
     robots=HEAVY,
     latex=r"T_{\max} = \max\sqrt{\boldsymbol G_i \boldsymbol G_i^T}\, a_{\max}",
-    remark="Leaves out f(v), gravity, rods and efficiency; FiveBar.size_servo gives both.",
+    remark="Printed with G_1 only; both rows are needed, and the transpose behind the product "
+    "belongs to the second factor. Leaves out f(v), gravity, rods and efficiency; "
+    "FiveBar.size_servo gives both.",
 )
 def torque_per_acceleration(loop: Loop, xy: Array, mode: Array) -> Any:
     """Worst crank torque per acceleration of the tool, over all directions."""
