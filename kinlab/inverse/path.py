@@ -135,7 +135,13 @@ def _step(answer: IKResult, here: Array) -> float:
 
 
 def _on_branch(
-    robot: Robot, target: Array, branch: str, here: Array, position: float, rotation: float, row: int
+    robot: Robot,
+    target: Array,
+    branch: str,
+    here: Array,
+    position: float,
+    rotation: float,
+    row: int,
 ) -> IKResult:
     """The answer on a named branch; where a later pose lacks it, a failure at the q before."""
     try:

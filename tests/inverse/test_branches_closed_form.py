@@ -5,12 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from arms import random_arm
 
 import kinlab as kl
 from kinlab.errors import StateError, StructureError
 from kinlab.inverse import equations
-
-from arms import random_arm
 
 HALF = math.pi / 2
 
