@@ -29,7 +29,7 @@ from kinlab.inverse.continuation import (
     factorise,
     follow_all,
 )
-from kinlab.inverse.kernel_parts import pose_error, wrap
+from kinlab.inverse.kernel import pose_error, wrap
 from kinlab.inverse.structures import (
     GENERAL,
     PLANE,

@@ -10,7 +10,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.chain import columns, frames
 from kinlab.inverse.branch_rows import miss
-from kinlab.inverse.kernel_parts import pose_error
+from kinlab.inverse.kernel import pose_error
 from kinlab.inverse.structures import POINTING, POSITION, Form
 from kinlab.robot import Robot
 
