@@ -71,10 +71,9 @@ if TYPE_CHECKING:
     from kinlab.analysis.redundancy import redundancy
     from kinlab.analysis.singularity import describe_singularity, find_singularities
     from kinlab.doctor.table_diagnosis import diagnose_table
-    from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
-    from kinlab.inverse.single import ik
+    from kinlab.inverse.search import ik, ik_batch
     from kinlab.sweeps.run import SweepResult, sweep
     from kinlab.workspace_map import WorkspaceMap, sample_workspace
 
@@ -93,8 +92,8 @@ _LATER = {
     "factored_determinant": "kinlab.analysis.determinant",
     "find_isotropic": "kinlab.analysis.isotropy",
     "find_singularities": "kinlab.analysis.singularity",
-    "ik": "kinlab.inverse.single",
-    "ik_batch": "kinlab.inverse.batch",
+    "ik": "kinlab.inverse.search",
+    "ik_batch": "kinlab.inverse.search",
     "ik_branches": "kinlab.inverse.branches",
     "ik_path": "kinlab.inverse.path",
     "manipulability": "kinlab.analysis.metrics",

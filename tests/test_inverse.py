@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import kinlab as kl
 from kinlab import chain_arrays
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError
-from kinlab.inverse import kernel_parts, methods
+from kinlab.inverse import kernel, methods
 from kinlab.inverse.result import IKStatus
 from tests.random_tables import random_table
 from tests.test_chain import random_model
@@ -294,7 +294,7 @@ def test_rotation_vector_up_to_half_a_turn():
     for angle in (0.0, 1e-9, 1e-5, 1.0, 3.0, np.pi - 1e-5, np.pi - 1e-8, np.pi):
         for axis in (*np.eye(3), *-np.eye(3), *rng.normal(size=(5, 3))):
             vector = angle * axis / np.linalg.norm(axis)
-            kernel_parts.rotation_vector(pin.exp3(vector).ravel(), out)
+            kernel.rotation_vector(pin.exp3(vector).ravel(), out)
             np.testing.assert_allclose(pin.exp3(out), pin.exp3(vector), atol=3e-8)
             assert np.linalg.norm(out) == pytest.approx(angle, abs=3e-8)
 
@@ -307,12 +307,12 @@ def test_turned_rows_are_the_derivative_of_the_rotation_vector():
     def error(rotation):
         pose = np.concatenate([rotation, np.zeros((3, 1))], axis=1).ravel()
         out, r = np.empty(6), np.empty(9)
-        kernel_parts.pose_error(pose, target, r, out)
+        kernel.pose_error(pose, target, r, out)
         return out
 
     jac = np.zeros((6, 1))
     jac[3:, 0] = omega
-    kernel_parts.turn_rows(jac, error(turn), 1)
+    kernel.turn_rows(jac, error(turn), 1)
     ahead, behind = error(pin.exp3(h * omega) @ turn), error(pin.exp3(-h * omega) @ turn)
     np.testing.assert_allclose(-(ahead - behind)[3:] / (2 * h), jac[3:, 0], atol=1e-8)
 

@@ -61,7 +61,7 @@ def ik(
         _print_branches(robot, pose)
         return
     from kinlab.chain_arrays import chain
-    from kinlab.inverse.single import ik as solve
+    from kinlab.inverse.search import ik as solve
 
     start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
     answer = solve(

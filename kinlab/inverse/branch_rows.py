@@ -29,7 +29,7 @@ from kinlab.inverse.continuation import (
     factorise,
     follow_all,
 )
-from kinlab.inverse.kernel_parts import pose_error, wrap
+from kinlab.inverse.kernel import pose_error, wrap
 from kinlab.inverse.structures import (
     GENERAL,
     PLANE,
@@ -171,7 +171,8 @@ def posture(form, axes, pose, q, target):  # type: ignore[no-untyped-def]
         point[i] = hand[i]
         if named:
             point[i] = pose[4 * i + 3] + (
-                pose[4 * i] * form.marker[0] + pose[4 * i + 1] * form.marker[1]
+                pose[4 * i] * form.marker[0]
+                + pose[4 * i + 1] * form.marker[1]
                 + pose[4 * i + 2] * form.marker[2]
             )
         if form.family != TRIPLE:
@@ -203,7 +204,8 @@ def posture(form, axes, pose, q, target):  # type: ignore[no-untyped-def]
     if n == 6:
         z4, z5, z6 = axes[3, :3], axes[4, :3], axes[5, :3]
         wrist = _side(
-            (z4[1] * z5[2] - z4[2] * z5[1]) * z6[0] + (z4[2] * z5[0] - z4[0] * z5[2]) * z6[1]
+            (z4[1] * z5[2] - z4[2] * z5[1]) * z6[0]
+            + (z4[2] * z5[0] - z4[0] * z5[2]) * z6[1]
             + (z4[0] * z5[1] - z4[1] * z5[0]) * z6[2]
         )
     return 9 * (shoulder + 1) + 3 * (elbow + 1) + wrist + 1

@@ -18,16 +18,13 @@ from kinlab.errors import NameUnknownError, OptionError, StateError, StructureEr
 from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of
 from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
-from kinlab.inverse.continuation import FOLLOWED
 from kinlab.inverse.families import IKFamily, families_at
 from kinlab.inverse.request import read_target, read_targets, require_robot, whole
-from kinlab.inverse.structures import GENERAL, POSE, Known, known_form
+from kinlab.inverse.structures import GENERAL, Known, known_form
 from kinlab.robot import Robot, scratch
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
-
-assert FOLLOWED == 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,8 +183,9 @@ def _answer(
     families: tuple[IKFamily, ...] = ()
     complete, why = state == 0, arm.known.evidence
     if len(errors) and errors.max() > TOLERANCE:
-        keep = errors.max(axis=1) <= TOLERANCE
-        q, within, errors, complete = q[keep], within[keep], errors[keep], False
+        keep = np.asarray(errors.max(axis=1) <= TOLERANCE)
+        q, errors, complete = q[keep], errors[keep], False
+        within = np.asarray(within)[keep]
         names = tuple(name for name, kept in zip(names, keep, strict=True) if kept)
         why = f"a solution of the compiled chain misses {TOLERANCE:g} by Pinocchio"
     elif state:
@@ -387,6 +385,3 @@ def _measure(robot: Robot, arm: _Arm, q: Array, goals: Array, rows: Any, errors:
         forward(model, data, values)
         poses[i] = place(model, data, tool).homogeneous
     _misses(arm.known.form.task, poses, rows, goals, errors)
-
-
-__all__ = ["POSE", "IKBranches", "IKBranchesBatch", "IKFamily", "ik_branches"]

@@ -50,9 +50,7 @@ def times(a, b, out):  # type: ignore[no-untyped-def]
     """Product of two transforms, rows of [R | p], (12,) each."""
     for i in range(3):
         for j in range(4):
-            value = (
-                a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j]
-            )
+            value = a[4 * i] * b[j] + a[4 * i + 1] * b[4 + j] + a[4 * i + 2] * b[8 + j]
             out[4 * i + j] = value + a[4 * i + 3] if j == 3 else value
 
 
@@ -90,6 +88,16 @@ def back(a, value, slides, out):  # type: ignore[no-untyped-def]
         for j in range(4):
             x, y = a[j], a[4 + j]
             out[j], out[4 + j] = x * c + y * s, y * c - x * s
+
+
+@kernel
+def angle_about_z(a, b):  # type: ignore[no-untyped-def]
+    """The turn about z that brings the rotation of a nearest to that of b."""
+    sine, cosine = 0.0, 0.0
+    for j in range(3):
+        sine += b[4 + j] * a[j] - b[j] * a[4 + j]
+        cosine += b[j] * a[j] + b[4 + j] * a[4 + j]
+    return math.atan2(sine, cosine)
 
 
 @kernel
@@ -238,8 +246,10 @@ def spherical_wrist(fixed, prismatic, centre, centre_tool, target, out):  # type
     goal, firsts = np.empty(3), np.empty((4, 3))
     for i in range(3):
         goal[i] = (
-            target[4 * i] * centre_tool[0] + target[4 * i + 1] * centre_tool[1]
-            + target[4 * i + 2] * centre_tool[2] + target[4 * i + 3]
+            target[4 * i] * centre_tool[0]
+            + target[4 * i + 1] * centre_tool[1]
+            + target[4 * i + 2] * centre_tool[2]
+            + target[4 * i + 3]
         )
     number, flags = place_point(fixed, prismatic[2], centre, goal, firsts)
     one, two, asked = np.empty(12), np.empty(12), np.empty((3, 3))
@@ -248,7 +258,8 @@ def spherical_wrist(fixed, prismatic, centre, centre_tool, target, out):  # type
     for i in range(3):  # the target's rotation before the tool's own
         for j in range(3):
             turn[i, j] = (
-                target[4 * i] * tool[4 * j] + target[4 * i + 1] * tool[4 * j + 1]
+                target[4 * i] * tool[4 * j]
+                + target[4 * i + 1] * tool[4 * j + 1]
                 + target[4 * i + 2] * tool[4 * j + 2]
             )
     ux, uy, uz = a5[8], a5[9], a5[10]
@@ -263,7 +274,9 @@ def spherical_wrist(fixed, prismatic, centre, centre_tool, target, out):  # type
             times(two, fixed[joint + 1], one)
         for i in range(3):
             for j in range(3):
-                asked[i, j] = one[i] * turn[0, j] + one[4 + i] * turn[1, j] + one[8 + i] * turn[2, j]
+                asked[i, j] = (
+                    one[i] * turn[0, j] + one[4 + i] * turn[1, j] + one[8 + i] * turn[2, j]
+                )
         right = asked[2, 2] - uz * vz
         below, above = size - right, size + right
         flat = asked[0, 2] ** 2 + asked[1, 2] ** 2
@@ -433,8 +446,18 @@ def in_the_plane(fixed, prismatic, target, whole, out):  # type: ignore[no-untyp
     times(one, fixed[n], two)
     height = two[11]
     angle = math.atan2(
-        g[4] * two[0] + g[5] * two[1] + g[6] * two[2] - g[0] * two[4] - g[1] * two[5] - g[2] * two[6],
-        g[0] * two[0] + g[1] * two[1] + g[2] * two[2] + g[4] * two[4] + g[5] * two[5] + g[6] * two[6],
+        g[4] * two[0]
+        + g[5] * two[1]
+        + g[6] * two[2]
+        - g[0] * two[4]
+        - g[1] * two[5]
+        - g[2] * two[6],
+        g[0] * two[0]
+        + g[1] * two[1]
+        + g[2] * two[2]
+        + g[4] * two[4]
+        + g[5] * two[5]
+        + g[6] * two[6],
     )
     # the first revolute axis is where a and the goal are counted from
     gx, gy = g[3] - points[0, 0], g[7] - points[0, 1]
@@ -447,8 +470,10 @@ def in_the_plane(fixed, prismatic, target, whole, out):  # type: ignore[no-untyp
     ax, ay = points[1, 0] - points[0, 0], points[1, 1] - points[0, 1]
     far, pair = gx * gx + gy * gy, np.empty(2)
     number = linear_trig(
-        2.0 * (ax * bx + ay * by), 2.0 * (ay * bx - ax * by),
-        far - ax * ax - ay * ay - bx * bx - by * by, pair,
+        2.0 * (ax * bx + ay * by),
+        2.0 * (ay * bx - ax * by),
+        far - ax * ax - ay * ay - bx * bx - by * by,
+        pair,
     )
     flags = FREE_SHOULDER if number and far < _ON_AXIS * _ON_AXIS else 0
     for k in range(number):
@@ -484,8 +509,18 @@ def onto_plane(fixed, height, target, out):  # type: ignore[no-untyped-def]
     if not height:
         g[11] = one[11]
     angle = math.atan2(
-        g[4] * one[0] + g[5] * one[1] + g[6] * one[2] - g[0] * one[4] - g[1] * one[5] - g[2] * one[6],
-        g[0] * one[0] + g[1] * one[1] + g[2] * one[2] + g[4] * one[4] + g[5] * one[5] + g[6] * one[6],
+        g[4] * one[0]
+        + g[5] * one[1]
+        + g[6] * one[2]
+        - g[0] * one[4]
+        - g[1] * one[5]
+        - g[2] * one[6],
+        g[0] * one[0]
+        + g[1] * one[1]
+        + g[2] * one[2]
+        + g[4] * one[4]
+        + g[5] * one[5]
+        + g[6] * one[6],
     )
     c, s = math.cos(angle), math.sin(angle)
     for j in range(3):

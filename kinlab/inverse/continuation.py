@@ -50,9 +50,13 @@ _QUIET_LOOPS = 24
 """Loops in a row that bring no new solution before the set counts as whole: a loop leaves a
 part of the sheets to itself with a chance of one half at most."""
 
-_FAR = 10.0
-"""Imaginary part of an angle (its sine is 1e4) beyond which rounding decides whether a solution
+_FAR = 11.0
+"""Imaginary part of an angle (its sine is 3e4) beyond which rounding decides whether a solution
 exists: such ones lie at infinity."""
+
+BOUNDS = {0: 16, 1: 16, 2: 8, 3: 2}
+"""Most solutions of a six-joint arm with so many sliding joints (Mavroidis and Roth, "Structural
+parameters which reduce the number of manipulator configurations", 1994)."""
 
 _RANK = 1e-9
 """sigma_min / sigma_max of J at random complex states below which the arm cannot move in all
@@ -315,8 +319,7 @@ def follow(fixed, prismatic, length, target, way, theta, trust, q):  # type: ign
             h01, h11 = t * t * (1.0 - 2.0 * r), t * t * r
             for i in range(n):
                 trial[i] = (
-                    h00 * old_q[i] + h01 * q[i]
-                    - before * (h10 * old_speed[i] + h11 * speed[i])
+                    h00 * old_q[i] + h01 * q[i] - before * (h10 * old_speed[i] + h11 * speed[i])
                 )
         else:
             for i in range(n):
@@ -450,16 +453,37 @@ def _carry(fixed, prismatic, length, poses, closed, q, ends, good):  # type: ign
                 good[i] = code == FOLLOWED
 
 
-def generic_solutions(fixed: Array, prismatic: Any, seed: int = 0) -> Starts | None:
-    """All complex solutions of one random complex pose.
+def generic_solutions(fixed: Array, prismatic: Any) -> Starts | None:
+    """All complex solutions of a random complex pose, and of others that they are carried to.
+
+    A solution may lie so far out at one pose that rounding hides it. Unless as many are found as
+    such an arm can have (:data:`BOUNDS`), other first poses are tried until an even number comes
+    up twice as the largest.
 
     Args:
         fixed: (7, 12). prismatic: (6,).
-        seed: of the poses.
 
     Returns:
         The solutions; ``None`` where J is singular everywhere, so that no pose has isolated ones.
     """
+    best: Starts | None = None
+    times, most = 0, BOUNDS.get(int(np.sum(prismatic)), 2)
+    for seed in range(8):
+        found = _from_one_home(fixed, prismatic, seed)
+        if found is None:
+            return None
+        count = found.q.shape[1]
+        if best is None or count > best.q.shape[1]:
+            best, times = found, 1
+        elif count == best.q.shape[1]:
+            times += 1
+        if best.q.shape[1] == most or (times == 2 and best.q.shape[1] % 2 == 0):
+            break
+    return best
+
+
+def _from_one_home(fixed: Array, prismatic: Any, seed: int) -> Starts | None:
+    """The solutions of one random complex pose, or ``None``."""
     rng = np.random.default_rng(seed)
     length = max(float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum()), 1e-3)
     scale = np.where(prismatic, length, 1.0)
@@ -486,16 +510,15 @@ def generic_solutions(fixed: Array, prismatic: Any, seed: int = 0) -> Starts | N
     home = at(best)[0]
     known = best.reshape(1, 6)
     loops = quiet = 0
-    while quiet < _QUIET_LOOPS and len(known) < 16 and loops < 400:
+    bound = BOUNDS.get(int(np.sum(prismatic)), 2)
+    while quiet < _QUIET_LOOPS and len(known) < bound and loops < 400:
         poses = np.array([home, at(some(0.8))[0], at(some(0.8))[0]])
         ends, good = np.empty_like(known), np.empty(len(known), dtype=np.bool_)
         _carry(fixed, prismatic, length, poses, True, known, ends, good)
         fresh: list[Any] = []
         for q in ends[good]:
             near = np.abs(np.where(prismatic, 0.0, q).imag).max() < _FAR
-            if near and all(
-                _gap(prismatic, length, q, k, False) > _TWIN for k in [*known, *fresh]
-            ):
+            if near and all(_gap(prismatic, length, q, k, False) > _TWIN for k in [*known, *fresh]):
                 fresh.append(q)
         loops += 1
         quiet = 0 if fresh else quiet + int(good.sum() >= 0.7 * len(good))
@@ -510,7 +533,8 @@ def generic_solutions(fixed: Array, prismatic: Any, seed: int = 0) -> Starts | N
         _carry(fixed, prismatic, length, np.array([home, pose]), False, known, ends, good)
         apart = all(
             _gap(prismatic, length, ends[i], ends[j], False) > _TWIN
-            for i in range(len(ends)) for j in range(i)
+            for i in range(len(ends))
+            for j in range(i)
         )
         if good.all() and apart:
             stations.append(pose)

@@ -10,7 +10,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.chain import columns, frames
 from kinlab.inverse.branch_rows import miss
-from kinlab.inverse.kernel_parts import pose_error
+from kinlab.inverse.kernel import pose_error
 from kinlab.inverse.structures import POINTING, POSITION, Form
 from kinlab.robot import Robot
 
@@ -68,9 +68,7 @@ def families_at(
             names = tuple(robot.joint_names[i] for i in moving)
             if linear:
                 rates = direction / direction[moving[0]]
-                terms = " ".join(
-                    f"{rates[i]:+.4g} {robot.joint_names[i]}" for i in moving[1:]
-                )
+                terms = " ".join(f"{rates[i]:+.4g} {robot.joint_names[i]}" for i in moving[1:])
                 text = f"branch {row}: {names[0]} is free" + (
                     f", with {terms} per unit of it" if terms else ""
                 )

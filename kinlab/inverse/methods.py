@@ -1,7 +1,9 @@
-"""One step of each method, and nothing else: J and e in, the change of q out.
+"""The readable search: one step of each method, and searches over Pinocchio calls on record.
 
-Each takes the Jacobian (r, m) of the r coordinates asked for and the m joints that may move,
-and the error e (r,) = x_d - f(q). Metres are divided by a length of the arm in both.
+Each step takes the Jacobian (r, m) of the r coordinates asked for and the m joints that may
+move, and the error e (r,) = x_d - f(q), and gives the change of q. Metres are divided by a length
+of the arm in both. :func:`search` follows :mod:`kinlab.inverse.kernel` line by line and is its
+oracle: with ``lm`` both visit the same states.
 """
 
 from __future__ import annotations
@@ -9,21 +11,21 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.inverse import kernel
+from kinlab.inverse.result import IKHistory
+from kinlab.inverse.setup import DAMPING, FLOOR, Setup, beyond_reach
+from kinlab.robot import Robot
+from kinlab.stacks import fk, jacobian
 
-DAMPING = 0.1
-"""mu = DAMPING * E + FLOOR; from 0.03 to 0.3 the number of iterations is flat."""
+_RUNAWAY = 1e6
+"""Radians (or lengths of the arm) in one step, beyond which q has lost its digits."""
 
-SETTLE = 100
-"""Iterations at most to bring a failed search to rest, for the closest pose."""
-
-FLOOR = 1e-9
-"""Keeps J^T J + mu 1 invertible at a singular solution; larger ones slow the last steps there."""
 
 Step = Callable[[Array, Array], Array]
 
@@ -81,12 +83,6 @@ def _solve(matrix: Array, right: Array) -> Array:
 METHODS: dict[str, Step] = {"newton": newton, "gradient": gradient_exact, "lm": lm}
 """Name to step; ``gradient`` with a fixed alpha is made by :func:`choose`."""
 
-ITERATIONS = {"newton": 60, "gradient": 5000, "lm": 60}
-"""Iterations of one search, where the caller sets none."""
-
-PATIENCE = {"newton": 10, "gradient": 1000, "lm": 5}
-"""A search whose squared error has not halved in so many iterations has stalled."""
-
 
 def choose(method: Any, alpha: Any) -> Step:
     """The step function of a method.
@@ -111,3 +107,165 @@ def choose(method: Any, alpha: Any) -> Step:
     if value.shape != () or not 0.0 < float(value) < math.inf:
         raise OptionError(f"alpha is {alpha!r}; give 'exact' or a positive number")
     return partial(gradient, alpha=float(value))
+
+
+class Limits(NamedTuple):
+    """When a search stops.
+
+    Attributes:
+        position, rotation: tolerances, metres and radians: ||x_d - f(q)|| < eps.
+        step: ||q_{k+1} - q_k|| < eps, the note's other rule.
+        iterations: of one search.
+        searches: how many.
+        patience: iterations in which the squared error must halve.
+    """
+
+    position: float
+    rotation: float
+    step: float
+    iterations: int
+    searches: int
+    patience: int
+
+
+class Outcome(NamedTuple):
+    """As the kernel's: q, how it ended (its codes), iterations, searches; and the record."""
+
+    q: Array
+    end: int
+    iterations: int
+    searches: int
+    history: IKHistory
+
+
+def search(
+    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: Limits
+) -> Outcome:
+    """Searches from q0 and then from the starts nearest to the target, until one succeeds.
+
+    Args:
+        robot: the robot.
+        arm: its arrays for this task.
+        target: (4, 4).
+        q0: (n,), where to start first, within the limits; ``None``: at the nearest start.
+        step: the method.
+        limits: when to stop.
+    """
+    record: list[tuple[Array, float, float, int]] = []
+    best, best_q, best_end = math.inf, arm.centre, kernel.STALLED
+    distance = np.empty(len(arm.starts))
+    kernel.nearest(arm.table, target[:3].ravel(), arm.weight, distance)
+    tries = 1 if beyond_reach(arm, target, limits.position) else limits.searches
+    tried = 0
+    while tried < tries:
+        if tried == 0 and q0 is not None:
+            q = q0.copy()
+        else:
+            choice = int(np.argmin(distance))
+            distance[choice] = math.inf
+            q = arm.starts[choice].copy()
+        end, q = _one_search(robot, arm, target, q, q0, step, limits, tried, record)
+        tried += 1
+        if end == kernel.CONVERGED:
+            best_q, best_end = q, end
+            break
+        if end == kernel.OUTSIDE:
+            if best_end != kernel.OUTSIDE:
+                best, best_q, best_end = 0.0, q, end
+        elif best_end != kernel.OUTSIDE:
+            _wrap(arm, q, q0)
+            q = np.clip(q, arm.lower, arm.upper)
+            energy = _energy(_weighted(arm, _error(robot, q, target)))
+            if energy < best:
+                best, best_q, best_end = energy, q, end
+    return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
+
+
+def _one_search(
+    robot: Robot,
+    arm: Setup,
+    target: Array,
+    q: Array,
+    q0: Array | None,
+    step: Step,
+    limits: Limits,
+    number: int,
+    record: list[tuple[Array, float, float, int]],
+) -> tuple[int, Array]:
+    """One search from one start: how it ended (the kernel's codes), and where."""
+    rows = list(arm.rows)
+    partly = 0 < len([i for i in rows if i > 2]) < 3
+    scale = np.sqrt(arm.weight[rows])
+    free = arm.wide.copy()
+    mark = math.inf
+    outside: Array | None = None
+    for count in range(limits.iterations):
+        error = _error(robot, q, target)
+        asked = np.where(arm.weight > 0.0, error, 0.0)
+        position, rotation = float(np.linalg.norm(asked[:3])), float(np.linalg.norm(asked[3:]))
+        record.append((q.copy(), position, rotation, number))
+        if position <= 0.99 * limits.position and rotation <= 0.99 * limits.rotation:
+            if _wrap(arm, q, q0):
+                return kernel.CONVERGED, q
+            if outside is not None:
+                break
+            outside = q.copy()  # put it back onto the limits and go on, once
+            free &= (q >= arm.lower) & (q <= arm.upper)
+            q = np.clip(q, arm.lower, arm.upper)
+            mark = math.inf
+            continue
+        energy = _energy(_weighted(arm, error))
+        if count % limits.patience == limits.patience - 1:
+            if energy > 0.5 * mark:
+                return (kernel.STALLED, q) if outside is None else (kernel.OUTSIDE, outside)
+            mark = energy
+        jac = jacobian(robot, q)
+        if partly:
+            kernel.turn_rows(jac, error, robot.n)
+        jac, e = scale[:, None] * jac[rows], scale * error[rows]
+        slope = jac.T @ e
+        held = ~free & (((q >= arm.upper) & (slope > 0)) | ((q <= arm.lower) & (slope < 0)))
+        change = np.zeros(robot.n)
+        try:
+            change[~held] = step(jac[:, ~held], e)
+        except np.linalg.LinAlgError:  # exactly singular: Newton has no step here
+            break
+        size = float(np.linalg.norm(change))
+        if not size <= _RUNAWAY:
+            break
+        q = q + change
+        q = np.where(free, q, np.clip(q, arm.lower, arm.upper))
+        if size < limits.step:
+            break
+    else:
+        return (kernel.RUNNING, q) if outside is None else (kernel.OUTSIDE, outside)
+    return (kernel.STALLED, q) if outside is None else (kernel.OUTSIDE, outside)
+
+
+def _error(robot: Robot, q: Array, target: Array) -> Array:
+    """(p_d - p, log(R_d R^T)) in the base's axes, (6,)."""
+    error, turned = np.empty(6), np.empty(9)
+    kernel.pose_error(fk(robot, q)[:3].ravel(), target[:3].ravel(), turned, error)
+    return error
+
+
+def _weighted(arm: Setup, error: Array) -> Array:
+    return np.asarray(np.sqrt(arm.weight) * error)
+
+
+def _energy(error: Array) -> float:
+    return 0.5 * float(error @ error)
+
+
+def _wrap(arm: Setup, q: Array, q0: Array | None) -> bool:
+    centre = arm.centre if q0 is None else q0
+    return bool(kernel.wrap(arm.prismatic, arm.lower, arm.upper, centre, q))
+
+
+def _history(record: list[tuple[Array, float, float, int]], n: int) -> IKHistory:
+    return IKHistory(
+        np.array([r[0] for r in record]).reshape(-1, n),
+        np.array([r[1] for r in record]),
+        np.array([r[2] for r in record]),
+        np.array([r[3] for r in record], dtype=np.int64),
+    )

@@ -12,9 +12,8 @@ from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError
 from kinlab.inverse.request import positive, read_guess, read_targets, require_robot
 from kinlab.inverse.result import IKResult, IKStatus
-from kinlab.inverse.setup import rows_of, setup
-from kinlab.inverse.single import ik
-from kinlab.inverse.verify import measure
+from kinlab.inverse.search import ik
+from kinlab.inverse.setup import setup
 from kinlab.robot import Robot
 from kinlab.stacks import jacobian
 
@@ -87,7 +86,7 @@ def ik_path(
     targets = read_targets(robot, Ts)
     here, remarks = read_guess(robot, q0)
     largest = positive(max_step, "max_step")
-    arm = setup(robot, rows_of(robot, task), seed)
+    arm = setup(robot, task, seed)
     answers: list[IKResult] = []
     jumps = []
     for row, target in enumerate(targets):
@@ -135,7 +134,13 @@ def _step(answer: IKResult, here: Array) -> float:
 
 
 def _on_branch(
-    robot: Robot, target: Array, branch: str, here: Array, position: float, rotation: float, row: int
+    robot: Robot,
+    target: Array,
+    branch: str,
+    here: Array,
+    position: float,
+    rotation: float,
+    row: int,
 ) -> IKResult:
     """The answer on a named branch; where a later pose lacks it, a failure at the q before."""
     try:
@@ -143,5 +148,7 @@ def _on_branch(
     except NameUnknownError:
         if row == 0:
             raise
-    errors = measure(robot, here, target, np.ones(6))
-    return IKResult(here.copy(), False, IKStatus.UNREACHABLE, *errors, 0, 0)
+    stay = ik(robot, target, here, "lm", position, rotation, restarts=0, max_iterations=1)
+    return IKResult(
+        here.copy(), False, IKStatus.UNREACHABLE, stay.position_error, stay.rotation_error, 0, 0
+    )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import operator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -46,6 +46,52 @@ def _first_unsound(poses, miss):  # type: ignore[no-untyped-def]
         if not _sound(poses[row], miss):
             return row
     return poses.shape[0]
+
+
+class Request(NamedTuple):
+    """What was asked of a search, read.
+
+    Attributes:
+        targets: (N, 4, 4). tolerances: metres, radians. seed: of the starts.
+        searches: how many at most. start: q0, (n,) or (N, n), or ``None``.
+        iterations: of one search, or ``None``. remarks: what was done to the input.
+    """
+
+    targets: Array
+    tolerances: tuple[float, float]
+    seed: int
+    searches: int
+    start: Array | None
+    iterations: int | None
+    remarks: tuple[str, ...]
+
+
+def read_request(
+    robot: Robot,
+    poses: ArrayLike,
+    many: bool,
+    q0: ArrayLike | None,
+    tol_position: Any,
+    tol_rotation: Any,
+    seed: Any,
+    restarts: Any,
+    max_iterations: Any,
+) -> Request:
+    """Reads and checks the arguments that :func:`kinlab.ik` and ``ik_batch`` share.
+
+    Raises:
+        StateError, OptionError, StructureError: as those.
+    """
+    require_robot(robot)
+    targets = read_targets(robot, poses) if many else read_target(robot, poses)[np.newaxis]
+    tolerances = positive(tol_position, "tol_position"), positive(tol_rotation, "tol_rotation")
+    searches, number = 1 + whole(restarts, "restarts", 0), whole(seed, "seed", 0)
+    start: Array | None = None
+    remarks: list[str] = []
+    if q0 is not None:
+        start, remarks = read_guess(robot, q0, len(targets) if many else None)
+    iterations = None if max_iterations is None else whole(max_iterations, "max_iterations", 1)
+    return Request(targets, tolerances, number, searches, start, iterations, tuple(remarks))
 
 
 def read_target(robot: Robot, pose: ArrayLike) -> Array:
@@ -105,15 +151,6 @@ def read_guess(robot: Robot, guess: ArrayLike, rows: int | None = None) -> tuple
     names = ", ".join(repr(robot.joint_names[i]) for i in np.flatnonzero(outside))
     remark = f"q0 is outside the limits of {names}; started on the limit instead"
     return np.clip(q0, robot.lower, robot.upper), [remark]
-
-
-def read_tolerances(position: Any, rotation: Any) -> tuple[float, float]:
-    """Both tolerances, positive and finite.
-
-    Raises:
-        OptionError: zero, negative, not a number; the message names which.
-    """
-    return positive(position, "tol_position"), positive(rotation, "tol_rotation")
 
 
 def positive(value: Any, name: str) -> float:

@@ -10,7 +10,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.chain_arrays import chain
-from kinlab.inverse import methods
+from kinlab.inverse.kernel import Search
 from kinlab.options import seed_of
 from kinlab.robot import Robot
 from kinlab.stacks import fk, jacobian
@@ -26,6 +26,21 @@ holding wider ones at their limits makes dead ends (Stanford needs twice the ite
 
 LENGTH = 0.35
 """Length that divides metres beside radians, as a share of the arm's; flat from 0.25 to 0.5."""
+
+DAMPING = 0.1
+"""mu = DAMPING * E + FLOOR; from 0.03 to 0.3 the number of iterations is flat."""
+
+SETTLE = 100
+"""Iterations at most to bring a failed search to rest, for the closest pose."""
+
+FLOOR = 1e-9
+"""Keeps J^T J + mu 1 invertible at a singular solution; larger ones slow the last steps there."""
+
+ITERATIONS = {"newton": 60, "gradient": 5000, "lm": 60}
+"""Iterations of one search, where the caller sets none."""
+
+PATIENCE = {"newton": 10, "gradient": 1000, "lm": 5}
+"""A search whose squared error has not halved in so many iterations has stalled."""
 
 _ENDLESS = 1e6
 """Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
@@ -64,29 +79,30 @@ class Setup(NamedTuple):
 _SETUPS: WeakKeyDictionary[Robot, dict[Any, Setup]] = WeakKeyDictionary()
 
 
-def setup(robot: Robot, rows: tuple[int, ...], seed: int, starts: int = STARTS) -> Setup:
+def setup(robot: Robot, task: Any, seed: int, starts: int = STARTS) -> Setup:
     """The arrays for one arm, task and seed.
 
     Args:
         robot: the arm.
-        rows: the task's rows.
+        task: as in :func:`kinlab.ik`.
         seed: of the table of starts.
         starts: how many at least.
 
     Raises:
+        NameUnknownError: no task of that name.
         OptionError: a task with coordinates that the arm cannot move independently. The full
             pose is exempt: it is the comparison with a whole T, and an arm with fewer joints
             meets those T that lie on its own way.
     """
-    key = (rows, seed, max(starts, STARTS))
     kept = _SETUPS.get(robot)
     if kept is None:
         kept = _SETUPS[robot] = {}
+    key = (task if isinstance(task, str) else rows_of(robot, task), seed, max(starts, STARTS))
     found = kept.get(key)
     if found is None:
         if len(kept) >= _KEPT:
             kept.clear()
-        found = kept[key] = _work_out(robot, *key)
+        found = kept[key] = _work_out(robot, rows_of(robot, task), *key[1:])
     return found
 
 
@@ -137,13 +153,26 @@ def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Arr
     return np.maximum(lower, middle - half), np.minimum(upper, middle + half)
 
 
-def lm_numbers(
-    reach: float, tolerances: tuple[float, float], iterations: int, searches: int
-) -> Array:
-    """The kernel's ``numbers``, in its order."""
-    return np.array(
-        (*tolerances, methods.DAMPING, methods.FLOOR, iterations, searches,
-         methods.PATIENCE["lm"], reach)
+def search_of(
+    arm: Setup,
+    tolerances: tuple[float, float],
+    iterations: int,
+    searches: int,
+    limited: bool = True,
+) -> Search:
+    """The compiled search of one arm and task.
+
+    Args:
+        arm: the arm. tolerances: metres, radians. iterations: of one search. searches: how many.
+        limited: whether the limits hold; without them every joint is free.
+    """
+    lower, upper, wide = arm.lower, arm.upper, arm.wide
+    if not limited:
+        lower, upper = np.full_like(lower, -np.inf), np.full_like(upper, np.inf)
+        wide = np.ones(len(lower), dtype=np.bool_)
+    return Search(
+        arm.fixed, arm.prismatic, lower, upper, wide, arm.weight, arm.table, arm.starts,
+        np.array(tolerances), DAMPING, FLOOR, iterations, searches, PATIENCE["lm"], arm.reach,
     )  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from kinlab.chain import columns, frames
 from kinlab.chain_arrays import Chain, chain
 from kinlab.errors import StructureError
 from kinlab.inverse.closed_forms import MEETS, PARALLEL, reversed_chain
-from kinlab.inverse.continuation import generic_solutions
+from kinlab.inverse.continuation import BOUNDS, generic_solutions
 from kinlab.robot import Robot
 
 WRIST, TRIPLE, POINT, PLANE, GENERAL = 0, 1, 2, 3, 4
@@ -72,7 +72,7 @@ class Known(NamedTuple):
     form: Form
     method: str
     evidence: str
-    count: int
+    solutions: int
 
 
 _FORMS: WeakKeyDictionary[Robot, dict[tuple[tuple[int, float], ...], Known]] = WeakKeyDictionary()
@@ -159,7 +159,8 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
             )
         poses, starts, length = generic.poses, generic.q, generic.length
         count = starts.shape[1]
-        why = "as many as an arm of six joints can have" if count == 16 else (
+        most = BOUNDS.get(int(np.sum(solved.prismatic)), 2)
+        why = "as many as such an arm can have" if count == most else (
             f"{generic.quiet} loops of the pose in a row brought no further one"
         )  # fmt: skip
         evidence = f"{count} solutions in complex joints at a generic pose ({why}), each followed"
@@ -203,7 +204,9 @@ def _holds(arm: Chain, rows: tuple[int, ...]) -> bool:
         frames(arm.fixed, arm.prismatic, q, axes, pose)
         columns(arm.prismatic, axes, pose, jac)
         values = np.linalg.svd(jac[list(rows)], compute_uv=False)
-        best = max(best, float(values[len(rows) - 1] / values[0]) if len(values) >= len(rows) else 0)
+        best = max(
+            best, float(values[len(rows) - 1] / values[0]) if len(values) >= len(rows) else 0
+        )
     return best > _REGULAR
 
 
@@ -251,7 +254,7 @@ def _six(arm: Chain) -> tuple[int, bool, Array, Array, Array] | None:
     for turned, each in ((False, arm), (True, Chain(back, kinds))):
         if each.prismatic.any():
             continue
-        third, fourth, fifth, sixth = each.fixed[2:6]
+        third, fourth, fifth = each.fixed[2:5]
         flat = max(np.hypot(third[2], third[6]), np.hypot(fourth[2], fourth[6])) < PARALLEL
         # neither axis 1 nor axis 5 along the three
         if flat and np.hypot(each.fixed[1, 2], each.fixed[1, 6]) > PARALLEL:
