@@ -53,7 +53,6 @@ from kinlab.mass_derivatives import (
 )
 from kinlab.robot import Robot
 from kinlab.urdf import to_urdf
-from kinlab.viewer import view
 
 if TYPE_CHECKING:
     from kinlab.analysis.boundary import planar_boundary
@@ -67,7 +66,6 @@ if TYPE_CHECKING:
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.redundancy import redundancy
     from kinlab.analysis.singularity import describe_singularity, find_singularities
-    from kinlab.doctor.table_diagnosis import diagnose_table
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
@@ -101,6 +99,7 @@ _LATER = {
     "sample_workspace": "kinlab.workspace_map",
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
+    "view": "kinlab.viewer.show",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""
