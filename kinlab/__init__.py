@@ -56,7 +56,6 @@ from kinlab.stacks import (
     statics,
 )
 from kinlab.urdf import to_urdf
-from kinlab.viewer import view
 
 if TYPE_CHECKING:
     from kinlab.analysis.boundary import planar_boundary
@@ -103,6 +102,7 @@ _LATER = {
     "sample_workspace": "kinlab.workspace_map",
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
+    "view": "kinlab.viewer.show",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""

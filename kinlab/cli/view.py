@@ -70,7 +70,7 @@ def view(
 
 def _open(
     name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool,
-    against: str | None,
+    against: str | None = None,
 ) -> Page:  # fmt: skip
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
