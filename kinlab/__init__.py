@@ -66,6 +66,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.metrics import dexterity, manipulability
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.redundancy import redundancy
+    from kinlab.analysis.sections import workspace_section
     from kinlab.analysis.singularity import describe_singularity, find_singularities
     from kinlab.inverse.batch import ik_batch
     from kinlab.inverse.branches import ik_branches
@@ -99,6 +100,7 @@ _LATER = {
     "sample_workspace": "kinlab.workspace_map",
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
+    "workspace_section": "kinlab.analysis.sections",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""
@@ -182,4 +184,5 @@ __all__ = [
     "to_dh",
     "to_urdf",
     "view",
+    "workspace_section",
 ]
