@@ -287,9 +287,8 @@ def _with_edges(
         size = np.linalg.norm(tangent, axis=1, keepdims=True)
         normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.maximum(size, 1e-300)
         side = _SIDE * reach.size
-        both = reach.reached(points[chosen] + side * normal) & reach.reached(
-            points[chosen] - side * normal
-        )
+        sides = (points[chosen] + side * normal, points[chosen] - side * normal)
+        both = np.logical_and(reach.reached(sides[0]), reach.reached(sides[1]))
         nearest = np.searchsorted(chosen, np.arange(len(points)), side="right") - 1
         edge = ~both[nearest]
         edge.setflags(write=False)
@@ -317,7 +316,7 @@ class _Reach:
         self.size = float(np.ptp(placed, axis=0).max())
         self.tree = cKDTree(placed)
 
-    def reached(self, targets: Array) -> Array:
+    def reached(self, targets: Array) -> Any:
         """(N,) of booleans for targets (N, 2): from a few samples near by, then from many."""
         found = np.zeros(len(targets), dtype=bool)
         for count, rounds in ((8, 20), (120, 60)):
@@ -326,7 +325,7 @@ class _Reach:
                 found[left] = self._solved(targets[left], count, rounds)
         return found
 
-    def _solved(self, targets: Array, count: int, rounds: int) -> Array:
+    def _solved(self, targets: Array, count: int, rounds: int) -> Any:
         _, near = self.tree.query(targets, k=count)
         q = self.samples[near].reshape(-1, self.robot.n)
         wanted = np.repeat(targets, count, axis=0)
