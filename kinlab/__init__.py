@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from kinlab.analysis.metrics import dexterity, manipulability
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.redundancy import redundancy
+    from kinlab.analysis.sections import workspace_section
     from kinlab.analysis.singularity import describe_singularity, find_singularities
     from kinlab.doctor.table_diagnosis import diagnose_table
     from kinlab.inverse.branches import ik_branches
@@ -103,6 +104,7 @@ _LATER = {
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
     "view": "kinlab.viewer.show",
+    "workspace_section": "kinlab.analysis.sections",
 }
 """Public names that few programs need, or whose modules import heavy packages (numba, sympy,
 scipy): imported at first use."""
@@ -187,4 +189,5 @@ __all__ = [
     "to_dh",
     "to_urdf",
     "view",
+    "workspace_section",
 ]

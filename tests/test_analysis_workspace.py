@@ -197,7 +197,7 @@ def test_a_map_on_workers_goes_on_where_it_was_stopped(tmp_path):
     [
         ({"metric": "fast"}, NameUnknownError, ["'fast'", "yoshikawa"]),
         ({"sampling": "sobol"}, NameUnknownError, ["'sobol'", "grid"]),
-        ({"samples": 0}, OptionError, ["samples 0"]),
+        ({"samples": 0}, OptionError, ["samples is 0"]),
         ({"length": -2}, OptionError, ["-2 m"]),
         ({"task": [True]}, OptionError, ["(6,)"]),
     ],

@@ -13,6 +13,7 @@ never gives a worse answer.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -148,7 +149,7 @@ def _descend_together(
     return x, value
 
 
-def _bfgs(inverse: Array, moved: Array, turned: Array, better: Array) -> Array:
+def _bfgs(inverse: Array, moved: Array, turned: Array, better: Any) -> Array:
     along = np.einsum("ni,ni->n", moved, turned)
     sound = better & (along > 1e-14)
     rho = np.where(sound, 1.0 / np.where(sound, along, 1.0), 0.0)[:, np.newaxis, np.newaxis]

@@ -9,7 +9,7 @@ method; Allgower & Georg, *Introduction to Numerical Continuation Methods*, chap
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -179,18 +179,34 @@ def _trace_all(system: sets.SingularSystem, step: float, seed: int) -> tuple[Loc
     """Every curve that some start lies on, each once."""
     starts = sets.seeds(system, np.random.default_rng(seed), points=_LINES)
     x, good = sets.project(system, starts)
-    curves: list[Locus] = []
-    traced: list[Array] = []
-    for point in x[good]:
-        if not any(_on(system, points, point, step) for points in traced):
-            points, closed = _trace(system, point, step)
-            curve = Locus(frozen(_continuous(system.space.robot, system.states(points))), closed)
-            if (
-                np.ptp(curve.q, axis=0).max() > step
-            ):  # where the rank drops by two, u may turn alone
-                curves.append(curve)
-                traced.append(points)
-    return tuple(curves)
+    return tuple(
+        Locus(frozen(_continuous(system.space.robot, system.states(points))), closed)
+        for points, closed in _traced(system, x[good], step)
+    )
+
+
+def trace_from(system: Any, x: Array, step: float) -> list[Array]:
+    """Every curve that some solution (N, k) of a system lies on, each once, as unknowns (K, k).
+
+    Args:
+        system: as :class:`kinlab.analysis.singular_set.SingularSystem`, with one equation less
+            than unknowns.
+        x: solutions.
+        step: length of a step.
+    """
+    return [points for points, _ in _traced(system, x, step)]
+
+
+def _traced(system: Any, x: Array, step: float) -> list[tuple[Array, bool]]:
+    found: list[tuple[Array, bool]] = []
+    for point in x:
+        if any(_on(system, points, point, step) for points, _ in found):
+            continue
+        points, closed = _trace(system, point, step)
+        # where the rank drops by two, u may turn alone
+        if np.ptp(points[:, : len(system.moving)], axis=0).max() > step:
+            found.append((points, closed))
+    return found
 
 
 def _all_singular(system: sets.SingularSystem) -> bool:
@@ -314,7 +330,7 @@ def _end_on_limit(
     held[system.moving[joint]] = limit
     rest = tuple(j for j in system.moving if j != system.moving[joint])
     guess = inside + float(shares[joint]) * (outside - inside)
-    reduced = sets.SingularSystem(system.space, rest, held)
+    reduced = replace(system, moving=rest, held=held)
     found, norm = solve(reduced, np.delete(guess, joint)[np.newaxis], iterations=20)
     if norm[0] > sets.CONVERGED:
         return None

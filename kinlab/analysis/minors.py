@@ -94,7 +94,7 @@ class Factor:
             before = int(np.prod(shape[1 : 1 + i], dtype=int))
             cut = local.reshape(count, before, shape[1 + i], -1)
             local = np.einsum("nbc,nxbr->nxcr", axis.shift, cut).reshape(shape)
-        origin = local[(slice(None), *([0] * d))]
+        origin: Array = local[_slices(d)]
         rest = np.abs(local)
         for axis in axes:
             rest = np.einsum("nb,nb...->n...", axis.bound, rest)
@@ -192,7 +192,7 @@ class _Axis:
     @property
     def straight(self) -> Array:
         """Bounds of the linear functions; zero for the others."""
-        return self.bound * self.linear
+        return np.where(self.linear, self.bound, 0.0)
 
     @property
     def square(self) -> Any:
@@ -323,15 +323,18 @@ def _split(
             moved = np.moveaxis(tensor, group, range(size))
             shape = moved.shape
             flat = moved.reshape(int(np.prod(shape[:size])), -1)
-            left, sizes, right = np.linalg.svd(flat, full_matrices=False)
+            columns, sizes, rows = np.linalg.svd(flat, full_matrices=False)
             if len(sizes) > 1 and sizes[1] > _ROUNDING * sizes[0]:
                 continue
-            one = left[:, 0].reshape(*shape[:size], 1)
-            two = right[0].reshape(shape[size:])
-            pick = lambda values, where: tuple(values[i] for i in where)  # noqa: E731
-            return _split(
-                pick(joints, group), pick(degrees, group), pick(turns, group), one, 1
-            ) + _split(pick(joints, rest), pick(degrees, rest), pick(turns, rest), two, codimension)
+            one = columns[:, 0].reshape(*shape[:size], 1)
+            two = rows[0].reshape(shape[size:])
+            parts: tuple[Factor, ...] = ()
+            for chosen, part, equations in ((list(group), one, 1), (rest, two, codimension)):
+                parts += _split(
+                    tuple(joints[k] for k in chosen), tuple(degrees[k] for k in chosen),
+                    tuple(turns[k] for k in chosen), part, equations,
+                )  # fmt: skip
+            return parts
     functions = np.moveaxis(tensor, -1, 0).reshape(tensor.shape[-1], -1)
     _, sizes, right = np.linalg.svd(functions, full_matrices=False)
     kept = right[sizes > _ROUNDING * sizes[0]]  # independent combinations, the strongest first
@@ -360,7 +363,7 @@ def _divide(tensor: Array, i: int) -> tuple[Array, Array] | None:
         line = np.array([np.cos(0.5 * (one - two)), -np.cos(middle), -np.sin(middle)])
         line[np.abs(line) < _ROUNDING] = 0.0
         times = _products(line, degree - 1)
-        quotient, *_ = np.linalg.lstsq(times, flat, rcond=None)
+        quotient = np.asarray(np.linalg.lstsq(times, flat, rcond=None)[0], dtype=np.float64)
         if np.abs(times @ quotient - flat).max() <= 1e3 * _ROUNDING * np.abs(flat).max():
             shaped = quotient.reshape(2 * degree - 1, *moved.shape[1:])
             return line[:, np.newaxis] / np.abs(line).max(), np.moveaxis(shaped, 0, i)
@@ -377,13 +380,13 @@ def _zeros(rows: Array, degree: int) -> list[float]:
         cosine, sine = rows[0, 2 * k - 1], rows[0, 2 * k]
         weights[degree + k] = 0.5 * (cosine - 1j * sine)
         weights[degree - k] = 0.5 * (cosine + 1j * sine)
+    orders = np.arange(1, degree + 1)
     for z in np.roots(weights[::-1]):
         if abs(abs(z) - 1.0) > 1e-5:
             continue
         q = float(np.angle(z))
-        k = np.arange(1, degree + 1)
         basis = np.ones(2 * degree + 1)
-        basis[1::2], basis[2::2] = np.cos(k * q), np.sin(k * q)
+        basis[1::2], basis[2::2] = np.cos(orders * q), np.sin(orders * q)
         if np.abs(rows @ basis).max() < 1e-8 and all(
             abs(np.sin(0.5 * (q - other))) > 1e-4 for other in out
         ):
@@ -400,5 +403,5 @@ def _products(line: Array, degree: int) -> Array:
     whole = np.ones((size, size))
     whole[:, 1::2], whole[:, 2::2] = np.cos(np.outer(q, k)), np.sin(np.outer(q, k))
     values = whole[:, :3] @ line
-    matrix: Array = np.linalg.solve(whole, values[:, np.newaxis] * whole[:, : 2 * degree + 1])
-    return matrix
+    right = values[:, np.newaxis] * whole[:, : 2 * degree + 1]
+    return np.asarray(np.linalg.solve(whole, right), dtype=np.float64)

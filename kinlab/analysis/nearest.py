@@ -150,7 +150,7 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
     for moving in tries:
         system = sets.SingularSystem(space, moving, guess)
         x, _ = solve(system, system.start(guess[np.newaxis]))
-        state = np.clip(system.states(x)[0], robot.lower, robot.upper)
+        state: Array = np.clip(system.states(x)[0], robot.lower, robot.upper)
         values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
         if values[-1] <= SINGULAR * values[0] and np.linalg.norm(state - guess) < 1e-4:
             return state

@@ -49,14 +49,17 @@ def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
 
 
 def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: Path) -> None:
-    """A map, with boundary and singular loci for planar arms, or a cloud."""
+    """A map, with boundary and singular loci for planar arms, the curves of the section for
+    spatial ones; or a cloud."""
     from kinlab.plots.canvas import save
     from kinlab.plots.maps import plot_cloud, plot_map
 
     if cloud:
         save(plot_cloud(chart), path)
         return
-    boundary, curves = None, []
+    boundary, curves, section = None, [], None
+    if not chart.planar and plane in ("", "rz"):
+        section = _section(robot)
     if chart.planar and robot.n <= 3:
         from kinlab.analysis.boundary import planar_boundary
         from kinlab.analysis.loci import singular_loci
@@ -67,7 +70,25 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
         if needed == robot.n:  # in a smaller slice the others would be held: not the whole set
             loci = singular_loci(robot, list(range(needed)), task=_mask(chart.rows))
             curves = [fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
-    save(plot_map(chart, boundary=boundary, curves=curves, plane=plane), path)
+    save(plot_map(chart, boundary=boundary, curves=curves, section=section, plane=plane), path)
+
+
+def _section(robot: Robot) -> Any:
+    """The section through the first axis where that is the base's z, else nothing."""
+    import numpy as np
+
+    from kinlab.analysis.sections import workspace_section
+    from kinlab.errors import OptionError
+
+    try:
+        section = workspace_section(robot)
+    except OptionError:  # a first joint that slides, or a tool on its axis: there is no section
+        return None
+    upright = abs(float(section.axis[2])) > 1.0 - 1e-9
+    centred = float(np.linalg.norm(section.origin[:2])) < 1e-9
+    if not (upright and centred):
+        return None
+    return section
 
 
 def _mask(rows: tuple[int, ...]) -> tuple[bool, ...]:

@@ -51,7 +51,7 @@ def rotated_length(_: None, rotation: Array, point: Array) -> Any:
     quantity="rotation_determinant",
     robots="identity",
     latex=r"\det R = 1",
-    remark="rows orthogonal and of unit length allow det R = -1 too: the three conditions are those "
+    remark="rows orthogonal and of unit length allow det R = -1 too: the three are those "
     "of a rotation, not of any orthogonal matrix",
 )
 def rotation_determinant(_: None, rotation: Array) -> Array:

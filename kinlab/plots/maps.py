@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.boundary import PlanarBoundary
+from kinlab.analysis.sections import WorkspaceSection
 from kinlab.arrays import Array
 from kinlab.plots.canvas import RED, new_axes
 from kinlab.workspace_map import BinnedMap, WorkspaceMap, binned
@@ -23,6 +24,7 @@ def plot_map(
     *,
     boundary: PlanarBoundary | None = None,
     curves: Sequence[Array] = (),
+    section: WorkspaceSection | None = None,
     plane: str = "",
     cells: int = 0,
     axes: Any = None,
@@ -33,6 +35,7 @@ def plot_map(
         chart: the map.
         boundary: drawn as lines, for planar arms.
         curves: tool positions of singular loci, each (K, 3); drawn in the same plane.
+        section: edges and internal boundaries, for the plane ``rz``.
         plane, cells: as in :func:`kinlab.workspace_map.binned`.
         axes: where to draw; a new figure if left out.
 
@@ -49,6 +52,8 @@ def plot_map(
     )  # fmt: skip
     axes.figure.colorbar(shown, ax=axes, label=f"best {_METRICS[chart.metric]}", shrink=0.85)
     _lines(axes, flat, boundary, curves)
+    if section is not None:
+        _section_lines(axes, section)
     axes.set_aspect("equal")
     axes.set_xlabel(_LABELS[flat.plane[0]])
     axes.set_ylabel(_LABELS[flat.plane[1]])
@@ -93,6 +98,23 @@ def _lines(
                       label=None if i else "boundary")  # fmt: skip
     if labelled or boundary is not None:
         axes.figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
+
+
+def _section_lines(axes: Any, section: WorkspaceSection) -> None:
+    """Edges in black, what lies inside in red; dashed where a joint stands at a limit."""
+    for curve in section.curves:
+        style = "--" if curve.locked else "-"
+        inside = np.where(curve.edge[:, np.newaxis], np.nan, curve.points)
+        # an edge reaches to the next point on both sides
+        near = curve.edge | np.roll(curve.edge, 1) | np.roll(curve.edge, -1)
+        edge = np.where(near[:, np.newaxis], curve.points, np.nan)
+        axes.plot(*inside.T, color=RED, lw=1.4, ls=style)
+        axes.plot(*edge.T, color="black", lw=1.4, ls=style)
+    named = (("edge", "black", "-"), ("inside: solutions change", RED, "-"),
+             ("with a joint at a limit", "0.4", "--"))  # fmt: skip
+    for label, colour, style in named:
+        axes.plot([], [], color=colour, ls=style, lw=1.4, label=label)
+    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
 
 
 def _in_plane(curve: Array, plane: str) -> tuple[Array, Array]:
