@@ -24,6 +24,7 @@ from kinlab.convention import Convention, read_convention
 from kinlab.dh_link import DHLink, check_name, same_value
 from kinlab.errors import StateError, TableError
 from kinlab.files import write_text
+from kinlab.options import shown
 
 __all__ = ["DHLink", "DHTable", "link_transform"]
 
@@ -65,6 +66,8 @@ class DHTable:
         check_name(self.tool_name, f"{place}: tool_name")
         if _LINK_NAME.fullmatch(self.tool_name):
             raise TableError(f"{place}: tool_name {self.tool_name!r} is the name of a link")
+        if not isinstance(self.source, str):
+            raise TableError(f"{place}: source is {shown(self.source)}; it must be text")
         object.__setattr__(self, "convention", read_convention(self.convention, place))
         links = tuple(self.links)
         if not links:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Iterable
 from typing import Any
@@ -69,6 +70,8 @@ def number(value: Any, what: str, *, above: float | None = None) -> float:
     Raises:
         OptionError: not one real number, not finite, or not above.
     """
+    if isinstance(value, float) and not math.isfinite(value):
+        raise OptionError(f"{what} is {value}; give a finite number")
     array = real_array(value, what, OptionError)
     if array.shape != ():
         raise OptionError(f"{what} has shape {array.shape}; give one number")

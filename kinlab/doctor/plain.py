@@ -21,7 +21,11 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
-    ast.Pow: np.power,
+    ast.Pow: lambda base, exponent: np.where(
+        np.isnan(base),
+        np.nan,
+        np.power(base, exponent),  # numpy has nan**0 = 1
+    ),
 }
 _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt, "abs": np.abs, "exp": np.exp,

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array, rigid_transform
 from kinlab.compiled import kernel
 from kinlab.errors import OptionError, StateError, StructureError
+from kinlab.options import shown
 from kinlab.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
@@ -177,10 +178,10 @@ def whole(value: Any, name: str, least: int) -> int:
     """
     try:
         number = operator.index(value)
-    except TypeError:
+    except Exception:  # noqa: BLE001  whatever an object's own __index__ raises
         number = least - 1
     if isinstance(value, bool) or number < least:
-        raise OptionError(f"{name} is {value!r}; give a whole number of at least {least}")
+        raise OptionError(f"{name} is {shown(value)}; give a whole number of at least {least}")
     return number
 
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from lxml import etree
 
 from kinlab.arrays import Array
 from kinlab.errors import StructureError, UrdfError
@@ -36,6 +35,8 @@ def document(tree: UrdfTree, chain: list[str]) -> str:
     Returns:
         URDF text; numbers as ``repr`` prints them, so that reading them gives the same bits.
     """
+    from lxml import etree
+
     root = etree.Element("robot", name=tree.name or "robot")
     for link in tree.links.values():
         element = etree.SubElement(root, "link", name=link.name)
@@ -91,6 +92,8 @@ def spatial_inertia(inertial: Inertial) -> Array:
 
 
 def _write_inertial(link: Any, inertial: Inertial) -> None:
+    from lxml import etree
+
     element = etree.SubElement(link, "inertial")
     etree.SubElement(element, "origin", xyz=_text(inertial.com), rpy=_text(inertial.rpy))
     etree.SubElement(element, "mass", value=_digits(inertial.mass))
@@ -103,6 +106,8 @@ def _write_inertial(link: Any, inertial: Inertial) -> None:
 
 
 def _write_joint(root: Any, joint: JointRecord, moves: bool) -> None:
+    from lxml import etree
+
     kind = "prismatic" if joint.kind == "prismatic" else "revolute"
     element = etree.SubElement(root, "joint", name=joint.name, type=kind if moves else "fixed")
     etree.SubElement(element, "parent", link=joint.parent)
