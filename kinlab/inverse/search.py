@@ -112,16 +112,18 @@ def ik(
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")
         return _on_branch(robot, asked, branch)
-    arm = setup(robot, task, asked.seed, max(asked.searches, STARTS))
+    arm, tolerance = setup(robot, task, asked.seed, max(asked.searches, STARTS)), asked.tolerances
     plain = method == "lm" and isinstance(alpha, str) and alpha == "exact"
     if plain and not history and tol_step is None:
         q, outcome, errors = _search(robot, arm, asked, 1)
         record = None
     else:
         q, outcome, errors, record = _readable(robot, arm, asked, method, alpha, tol_step)
-    status = _status(robot, arm, asked, 0, q, outcome, errors)
-    _, iterations, searches = outcome[0].tolist()
+    end, iterations, searches = outcome[0].tolist()
     position, rotation = errors[0].tolist()
+    status = IKStatus.CONVERGED
+    if end == kernel.OUTSIDE or position > tolerance[0] or rotation > tolerance[1]:
+        status = _why(robot, arm, asked, 0, q, outcome, errors)
     return IKResult(
         q[0], status is IKStatus.CONVERGED, status, position, rotation, iterations, searches - 1,
         asked.remarks, record if history else None,
@@ -169,7 +171,7 @@ def ik_batch(
     status = np.full(len(q), IKStatus.CONVERGED.value, dtype="<U24")
     success = (errors <= asked.tolerances).all(axis=1) & (outcome[:, 0] != kernel.OUTSIDE)
     for row in np.flatnonzero(~success):
-        status[row] = _status(robot, arm, asked, int(row), q, outcome, errors).value
+        status[row] = _why(robot, arm, asked, int(row), q, outcome, errors).value
     return IKBatch(
         q, success, status, errors[:, 0].copy(), errors[:, 1].copy(), outcome[:, 1].copy(),
         outcome[:, 2] - 1, asked.remarks,
@@ -187,7 +189,7 @@ def _search(
     count, n = len(asked.targets), robot.n
     iterations = ITERATIONS["lm"] if asked.iterations is None else asked.iterations
     problem = search_of(arm, asked.tolerances, iterations, asked.searches)
-    flat = np.ascontiguousarray(asked.targets[:, :3]).reshape(count, 12)
+    flat = asked.targets[:, :3].reshape(count, 12)
     guesses = (arm.centre if asked.start is None else asked.start).reshape(-1, n)
     q, outcome = np.empty((count, n)), np.empty((count, 3), dtype=np.int64)
     errors = np.empty((count, 2))
@@ -201,9 +203,11 @@ def _search(
             q[failed], outcome[failed, 0] = closest, codes
         _measure(robot, q[first:last], asked.targets[first:last], arm.weight, errors[first:last])
 
-    if count == 1:
+    if count == 1:  # the same without slices, which cost more than the search
         kernel.search_rows(*arguments, 0, 1)
-        verify(0, 1)
+        if outcome[0, 0] > kernel.OUTSIDE:
+            _look_again(arm, asked, flat, q, outcome[:, 0])
+        _measure(robot, q, asked.targets, arm.weight, errors)
     else:
         over_rows(kernel.search_rows, count, *arguments, threads=threads, grain=_GRAIN, then=verify)
     return q, outcome, errors
@@ -257,15 +261,12 @@ def _look_again(arm: Setup, asked: Request, targets: Array, q: Array, ends: Any)
         q[row], ends[row] = free[row], kernel.CONVERGED if inside else kernel.OUTSIDE
 
 
-def _status(
+def _why(
     robot: Robot, arm: Setup, asked: Request, row: int, q: Array, outcome: Any, errors: Array
 ) -> IKStatus:
-    """How the search of one row ended."""
+    """Why the search of one row did not succeed."""
     end = int(outcome[row, 0])
-    met = bool((errors[row] <= asked.tolerances).all())
-    if met and end != kernel.OUTSIDE:
-        return IKStatus.CONVERGED
-    if met:
+    if end == kernel.OUTSIDE and bool((errors[row] <= asked.tolerances).all()):
         return IKStatus.OUTSIDE_LIMITS
     if beyond_reach(arm, asked.targets[row], asked.tolerances[0]):
         return IKStatus.UNREACHABLE

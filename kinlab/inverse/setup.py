@@ -61,6 +61,7 @@ class Setup(NamedTuple):
         starts: states in general position within the limits, (S, n).
         reach: farthest that the tool gets from the first joint's frame, metres.
         rows: the task's rows.
+        kept: the searches made of it (:func:`search_of`).
     """
 
     fixed: Array
@@ -74,6 +75,7 @@ class Setup(NamedTuple):
     starts: Array
     reach: float
     rows: tuple[int, ...]
+    kept: dict[Any, Search]
 
 
 _SETUPS: WeakKeyDictionary[Robot, dict[Any, Setup]] = WeakKeyDictionary()
@@ -142,7 +144,7 @@ def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Set
     return Setup(
         fixed, prismatic, lower, upper, np.clip(0.0, lower, upper),
         ~slides & (upper - lower >= WIDE), weight, np.ascontiguousarray(poses.T), sample,
-        reach, rows,
+        reach, rows, {},
     )  # fmt: skip
 
 
@@ -166,14 +168,21 @@ def search_of(
         arm: the arm. tolerances: metres, radians. iterations: of one search. searches: how many.
         limited: whether the limits hold; without them every joint is free.
     """
+    key = (tolerances, iterations, searches, limited)
+    kept = arm.kept.get(key)
+    if kept is not None:
+        return kept
     lower, upper, wide = arm.lower, arm.upper, arm.wide
     if not limited:
         lower, upper = np.full_like(lower, -np.inf), np.full_like(upper, np.inf)
         wide = np.ones(len(lower), dtype=np.bool_)
-    return Search(
+    if len(arm.kept) >= _KEPT:
+        arm.kept.clear()
+    found = arm.kept[key] = Search(
         arm.fixed, arm.prismatic, lower, upper, wide, arm.weight, arm.table, arm.starts,
         np.array(tolerances), DAMPING, FLOOR, iterations, searches, PATIENCE["lm"], arm.reach,
     )  # fmt: skip
+    return found
 
 
 def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
