@@ -4,46 +4,35 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from kinlab.check.compare import Comparison, compare
-from kinlab.convention import Convention
-from kinlab.dh import DHLink, DHTable
-from kinlab.energies import (
+from kinlab.engine.kinematics import jacobian_dot
+from kinlab.engine.lagrange import (
     action,
-    lagrange_torques,
-    lagrangian,
-    lagrangian_gradient,
-    momentum,
-    momentum_rate,
-)
-from kinlab.errors import KinlabError
-from kinlab.extract import to_dh
-from kinlab.fivebar import FiveBar
-from kinlab.formula import hand_formula
-from kinlab.kinematics import jacobian_dot
-from kinlab.library import load
-from kinlab.link_forces import (
-    inertial_wrenches,
-    joint_wrenches,
-    link_kinetic_energies,
-    link_potential_energies,
-    static_wrenches,
-)
-from kinlab.links import (
-    com_accelerations,
-    com_jacobians,
-    com_positions,
-    link_accelerations,
-    link_poses,
-    link_velocities,
-)
-from kinlab.mass_derivatives import (
     centrifugal_coefficients,
     christoffel,
     coriolis_coefficients,
+    lagrange_torques,
+    lagrangian,
+    lagrangian_gradient,
     mass_matrix_derivatives,
     mass_matrix_dot,
+    momentum,
+    momentum_rate,
 )
-from kinlab.robot import Robot
-from kinlab.stacks import (
+from kinlab.engine.links import (
+    com_accelerations,
+    com_jacobians,
+    com_positions,
+    inertial_wrenches,
+    joint_wrenches,
+    link_accelerations,
+    link_kinetic_energies,
+    link_poses,
+    link_potential_energies,
+    link_velocities,
+    static_wrenches,
+)
+from kinlab.errors import KinlabError
+from kinlab.fast.stacks import (
     coriolis_matrix,
     fk,
     forward_dynamics,
@@ -55,7 +44,15 @@ from kinlab.stacks import (
     potential_energy,
     statics,
 )
-from kinlab.urdf import to_urdf
+from kinlab.fivebar import FiveBar
+from kinlab.formulas.record import hand_formula
+from kinlab.host.version import __version__
+from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.extract import to_dh
+from kinlab.model.library import load
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot
+from kinlab.model.urdf_write import to_urdf
 
 if TYPE_CHECKING:
     from kinlab.analysis.boundary import planar_boundary
@@ -70,24 +67,22 @@ if TYPE_CHECKING:
     from kinlab.analysis.redundancy import redundancy
     from kinlab.analysis.sections import workspace_section
     from kinlab.analysis.singularity import describe_singularity, find_singularities
-    from kinlab.doctor.table_diagnosis import diagnose_table
+    from kinlab.doctor.tables.diagnosis import diagnose_table
     from kinlab.inverse.branches import ik_branches
     from kinlab.inverse.path import ik_path
     from kinlab.inverse.search import ik, ik_batch
     from kinlab.sweeps.run import SweepResult, sweep
-    from kinlab.workspace_map import WorkspaceMap, sample_workspace
-
-__version__ = "0.1.0"
+    from kinlab.sweeps.workspace import WorkspaceMap, sample_workspace
 
 _LATER = {
     "SweepResult": "kinlab.sweeps.run",
-    "WorkspaceMap": "kinlab.workspace_map",
+    "WorkspaceMap": "kinlab.sweeps.workspace",
     "characteristic_length": "kinlab.analysis.lengths",
     "describe_singularity": "kinlab.analysis.singularity",
     "design_isotropic": "kinlab.analysis.design",
     "dexterity": "kinlab.analysis.metrics",
     "diagnose": "kinlab.doctor.examine",
-    "diagnose_table": "kinlab.doctor.table_diagnosis",
+    "diagnose_table": "kinlab.doctor.tables.diagnosis",
     "ellipsoid": "kinlab.analysis.ellipsoids",
     "factored_determinant": "kinlab.analysis.determinant",
     "find_isotropic": "kinlab.analysis.isotropy",
@@ -100,7 +95,7 @@ _LATER = {
     "nearest_singularity": "kinlab.analysis.nearest",
     "planar_boundary": "kinlab.analysis.boundary",
     "redundancy": "kinlab.analysis.redundancy",
-    "sample_workspace": "kinlab.workspace_map",
+    "sample_workspace": "kinlab.sweeps.workspace",
     "singular_loci": "kinlab.analysis.loci",
     "sweep": "kinlab.sweeps.run",
     "view": "kinlab.viewer.show",

@@ -3,7 +3,7 @@
 # run with pytest's counts. Arguments go to pytest.
 #
 #   scripts/any_machine.sh                      the whole suite under each setting
-#   scripts/any_machine.sh tests/test_doctor.py
+#   scripts/any_machine.sh tests/doctor
 #
 # PYTHON names the interpreter (default: .venv/bin/python); SETTINGS picks some by name.
 set -uo pipefail

@@ -20,7 +20,7 @@ from PIL import Image
 from playwright.sync_api import sync_playwright
 
 import kinlab as kl
-from kinlab.files import write_bytes
+from kinlab.host.files import write_bytes
 from kinlab.viewer import motions
 from kinlab.viewer.page import Page
 

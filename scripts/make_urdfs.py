@@ -6,11 +6,10 @@ no difference. Run it after changing a table: ``python scripts/make_urdfs.py``.
 
 from __future__ import annotations
 
-from kinlab.dh import DHTable
-from kinlab.files import write_text
-from kinlab.library import shipped
-from kinlab.resources import robots_dir
-from kinlab.urdf import to_urdf
+from kinlab.host.files import write_text
+from kinlab.model.dh import DHTable
+from kinlab.model.library import robots_dir, shipped
+from kinlab.model.urdf_write import to_urdf
 
 
 def main() -> None:

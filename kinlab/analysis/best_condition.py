@@ -20,7 +20,7 @@ import numpy as np
 from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.arrays import Array
-from kinlab.stacks import jacobian
+from kinlab.fast.stacks import jacobian
 from kinlab.structure.task_space import TaskSpace, search_box
 
 _TOGETHER = (1.0, 8.0, 64.0, 512.0)

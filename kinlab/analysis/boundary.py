@@ -14,11 +14,11 @@ from itertools import pairwise, product
 
 import numpy as np
 
+from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.robot import Robot, require_robot
-from kinlab.stacks import fk
+from kinlab.fast.stacks import fk
+from kinlab.model.robot import Robot, require_robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import search_box
 

@@ -10,23 +10,17 @@ import numpy as np
 
 from kinlab.analysis.design_model import open_chain
 from kinlab.analysis.design_system import DesignSystem
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy import ISOTROPIC, IsotropicConfiguration, isotropic_families
 from kinlab.analysis.isotropy_system import IsotropySystem
 from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
-from kinlab.arrays import Array
-from kinlab.dh import DHTable
+from kinlab.arrays import Array, seed_of, whole
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.options import seed_of, whole
-from kinlab.robot import Robot
-from kinlab.structure.task_space import (
-    TaskSpace,
-    read_reachable_task,
-    search_box,
-    wrap,
-)
+from kinlab.model.dh import DHTable
+from kinlab.model.robot import Robot
+from kinlab.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 
 _SAME = 1e-5
 """Relative difference of open numbers below which two designs are one."""

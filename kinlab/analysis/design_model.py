@@ -14,10 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import Array
-from kinlab.dh import DHTable
+from kinlab.arrays import Array, shown
 from kinlab.errors import OptionError
-from kinlab.options import shown
+from kinlab.model.dh import DHTable
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _LENGTHS = ("a", "d")

@@ -11,15 +11,14 @@ import sympy
 from numpy.typing import ArrayLike
 
 from kinlab import symbolic
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
-from kinlab.arrays import Array
+from kinlab.arrays import Array, seed_of
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.extract import to_dh
-from kinlab.options import seed_of
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.extract import to_dh
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
 
 _ZERO = 1e-12

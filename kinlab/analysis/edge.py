@@ -17,9 +17,9 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.analysis.derivatives import jacobian_derivative
+from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array
-from kinlab.evidence import Evidence
-from kinlab.kinematics import fk, jacobian
+from kinlab.engine.kinematics import fk, jacobian
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
 _STEPS = (1e-3, 1e-2)

@@ -17,10 +17,10 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.arrays import Array, frozen
+from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.robot import Robot, require_inertia
-from kinlab.stacks import mass_matrix
-from kinlab.states import joint_vector
+from kinlab.fast.stacks import mass_matrix
+from kinlab.model.robot import Robot, require_inertia
 from kinlab.structure.task_space import read_length, read_task
 
 ELLIPSOIDS = ("velocity", "force", "dynamic")

@@ -14,20 +14,14 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.best_condition import ENOUGH, LeastCondition, least_condition
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy_system import IsotropySystem
 from kinlab.analysis.lengths import OPTIMAL, read_length_choice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
-from kinlab.arrays import Array, frozen
-from kinlab.evidence import Evidence
-from kinlab.options import seed_of, whole
-from kinlab.robot import Robot
-from kinlab.structure.task_space import (
-    read_reachable_task,
-    revolute,
-    search_box,
-    wrap,
-)
+from kinlab.arrays import Array, frozen, seed_of, whole
+from kinlab.model.robot import Robot
+from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
 
 ISOTROPIC = 1e-8
 """Condition number - 1 at and below which a configuration is isotropic."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.arrays import Array
-from kinlab.stacks import jacobian
+from kinlab.fast.stacks import jacobian
 from kinlab.structure.task_space import TaskSpace
 
 

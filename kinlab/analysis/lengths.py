@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import singular_values
 from kinlab.arrays import Array
+from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 OPTIMAL = "optimal"

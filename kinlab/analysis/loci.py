@@ -16,14 +16,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
+from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.evidence import Evidence
-from kinlab.options import number, seed_of, shown, whole
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
 
 _LINES = 64

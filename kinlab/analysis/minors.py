@@ -18,7 +18,7 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.robot import Robot
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, revolute, search_box
 
 _SAMPLES = 17

@@ -17,16 +17,15 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.certified import GOAL, nearest_zero
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.minors import Factor, factors
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.arrays import Array
+from kinlab.arrays import Array, seed_of, whole
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.options import seed_of, whole
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
 
 _SLIDERS = 96

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.arrays import Array, frozen
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.structure.task_space import read_task
 
 

@@ -20,13 +20,13 @@ import numpy as np
 
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.derivatives import jacobian_derivative
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen
+from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.kinematics import fk, jacobian
-from kinlab.robot import Robot
+from kinlab.model.robot import Robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 

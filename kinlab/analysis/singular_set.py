@@ -19,7 +19,7 @@ import numpy as np
 from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.solver import solve
 from kinlab.arrays import Array
-from kinlab.stacks import jacobian
+from kinlab.fast.stacks import jacobian
 from kinlab.structure.task_space import TaskSpace, search_box, wrap
 
 CONVERGED = 1e-12

@@ -11,23 +11,16 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.edge import edge
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.minors import factors
 from kinlab.analysis.supports import holds, pinned, pinned_pairs, supports
-from kinlab.arrays import Array, frozen, largest_first
+from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.evidence import Evidence
-from kinlab.options import seed_of, whole
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.structure.axes import name_singularity, structure
-from kinlab.structure.task_space import (
-    TaskSpace,
-    read_reachable_task,
-    revolute,
-    search_box,
-    wrap,
-)
+from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 from kinlab.structure.tasks import COORDINATES
 
 _SAME_ANGLE = 1e-6

@@ -1,1 +1,17 @@
-"""Hand formulas beside the engine: quantities, comparison, catalogue, reports."""
+"""Hand formulas beside the engine: comparison, catalogue, targets.
+
+===============  =================================================================================
+module           what it holds
+===============  =================================================================================
+``catalogue``    The catalogue: every formula of the notes, run on its robots
+``compare``      The comparison of a hand formula with the engine over seeded random states
+``finding``      What a report shows of a formula that was taken apart: plain words, LaTeX and
+                 numbers
+``guest``        A user's file of marked functions, in a process of its own with a limit of time
+``table_check``  Checks of one arm: its DH table by hand beside Pinocchio and yourdfpy
+``targets``      What the arguments of ``kinlab check`` mean: robots, files, notes, ids, a user's
+                 formulas
+``quantities/``  The engine's quantities by name: what a hand formula can be compared with
+``report/``      A check written down: summary, one self-contained HTML page, or Markdown
+===============  =================================================================================
+"""

@@ -12,25 +12,19 @@ import numpy as np
 
 from kinlab.check.compare import Comparison, compare_stacked
 from kinlab.check.finding import Finding
-from kinlab.check.quantities import quantity as find_quantity
-from kinlab.formula import Formula, formulas_in, function_name
+from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.formulas.record import Formula, formulas_in, function_name
 from kinlab.tolerances import TOLERANCES
 
 NOTES = (
-    "kinlab.notes.note000_transforms",
-    "kinlab.notes.note000_jacobian",
-    "kinlab.notes.note000_singularity",
+    "kinlab.notes.note000_kinematics",
     "kinlab.notes.note000_inverse",
-    "kinlab.notes.note000_statics",
-    "kinlab.notes.note000_newton_euler",
-    "kinlab.notes.note000_lagrange",
+    "kinlab.notes.note000_dynamics",
     "kinlab.notes.note001_energies",
     "kinlab.notes.note001_torques",
-    "kinlab.notes.note001_coefficients",
-    "kinlab.notes.note002_action",
+    "kinlab.notes.note002_dynamics",
     "kinlab.notes.note002_frames",
     "kinlab.notes.note002_mass",
-    "kinlab.notes.note002_equations",
     "kinlab.notes.note002_coriolis",
     "kinlab.notes.note003_kinematics",
     "kinlab.notes.note003_dynamics",

@@ -17,12 +17,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from kinlab.arrays import Array, first_largest
-from kinlab.check.quantities import quantity as find_quantity
-from kinlab.check.quantity import Quantity
+from kinlab.arrays import Array, first_largest, seed_of, whole
+from kinlab.check.quantities.quantity import Quantity
+from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
-from kinlab.formula import AnswerShapeError, FormulaError, function_name, state_by_state
-from kinlab.options import seed_of, whole
+from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
 from kinlab.tolerances import TOLERANCES
 
 VANISHES = 1e-12

@@ -20,8 +20,8 @@ from typing import Any
 from kinlab import errors
 from kinlab.arrays import Array
 from kinlab.errors import FileError, KinlabError, OptionError
-from kinlab.formula import AnswerShapeError, Formula, FormulaError, formulas_in
-from kinlab.parent import end_with_parent
+from kinlab.formulas.record import AnswerShapeError, Formula, FormulaError, formulas_in
+from kinlab.host.processes import end_with_parent
 
 VARIABLE = "KINLAB_CHECK_SECONDS"
 """Environment variable: seconds that a file may take to load, and a function for all states."""

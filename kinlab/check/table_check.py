@@ -10,12 +10,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.catalogue import Row, run_one
-from kinlab.formula import Formula, Function
-from kinlab.notes import mass
-from kinlab.notes.arm import Arm
-from kinlab.notes.frames import tool_pose
-from kinlab.notes.note000_newton_euler import torques
-from kinlab.robot import Robot
+from kinlab.formulas.record import Formula, Function
+from kinlab.model.robot import Robot
+from kinlab.notes import arm as mass
+from kinlab.notes.arm import Arm, tool_pose
+from kinlab.notes.note000_dynamics import torques
 
 _STEP = 2e-2
 _STENCIL = ((1, 3.0 / 4.0), (2, -3.0 / 20.0), (3, 1.0 / 60.0))

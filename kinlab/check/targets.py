@@ -8,11 +8,11 @@ from typing import Any
 
 from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
 from kinlab.check.guest import FunctionLostError, Guest
-from kinlab.check.serial import SERIAL
+from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.table_check import checks_of
 from kinlab.errors import FileError, NameUnknownError, near
-from kinlab.formula import Formula
-from kinlab.library import shipped
+from kinlab.formulas.record import Formula
+from kinlab.model.library import shipped
 
 
 @dataclass(frozen=True)

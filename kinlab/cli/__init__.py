@@ -1,5 +1,22 @@
 """The command line: each command parses, calls the API, prints.
 
+=====================  ===========================================================================
+module                 what it holds
+=====================  ===========================================================================
+``against``            ``kinlab check mine.toml --against other``: which cell of a DH table is
+                       wrong?
+``analysis``           Commands about dexterity: singular, isotropy, workspace
+``analysis_pictures``  Pictures of the commands about dexterity
+``analysis_tables``    What the commands about dexterity print
+``check``              The command check: hand formulas beside the engine
+``derive``             The command derive: an arm's formulas, derived from its DH table
+``fivebar``            Commands about five-bars: list, analyse, size, export
+``ik``                 Command ``ik``: one pose from the command line
+``robots``             Commands about robots: list, info, urdf, dh
+``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
+``view``               Command view: a robot or five-bar in the browser, or as one HTML file
+=====================  ===========================================================================
+
 One file per group of commands; a new command is a new file and one line in ``_GROUPS``. A
 :class:`kinlab.errors.KinlabError` becomes one line on stderr and exit code 2.
 """

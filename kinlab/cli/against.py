@@ -17,9 +17,9 @@ def check_against(
     Raises:
         KinlabError: what cannot be compared, with its remedy.
     """
-    from kinlab.check.report import check_report_path
-    from kinlab.doctor.table_diagnosis import diagnose_table
-    from kinlab.doctor.table_report import write_table_report
+    from kinlab.check.report.write import check_report_path
+    from kinlab.doctor.tables.diagnosis import diagnose_table
+    from kinlab.doctor.tables.report import write_table_report
     from kinlab.errors import OptionError
 
     if not tables:

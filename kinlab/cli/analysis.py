@@ -49,7 +49,7 @@ def singular(
     """Singular configurations by family, det J in factors, and a picture of the singular curves."""
     from kinlab.analysis.nearest import nearest_singularity
     from kinlab.analysis.singularity import find_singularities
-    from kinlab.library import load
+    from kinlab.model.library import load
 
     robot, console = load(name, tip), screen()
     chosen = _task(task)
@@ -90,7 +90,7 @@ def isotropy(
 ) -> None:
     """Isotropic configurations, or the best condition number; with --free, isotropic designs."""
     from kinlab.analysis.isotropy import find_isotropic
-    from kinlab.library import load
+    from kinlab.model.library import load
 
     robot, console = load(name, tip), screen()
     chosen, size = _task(task), _length(length)
@@ -130,8 +130,8 @@ def workspace(
     """Sample the workspace with a measure of dexterity; Ctrl-C keeps what was computed."""
     from rich.progress import Progress
 
-    from kinlab.library import load
-    from kinlab.workspace_map import sample_workspace
+    from kinlab.model.library import load
+    from kinlab.sweeps.workspace import sample_workspace
 
     robot, console = load(name, tip), screen()
     with Progress(console=screen(stderr=True), transient=True) as bar:
@@ -173,7 +173,7 @@ def _length(text: str) -> float | str:
 
 def _numbers(text: str, count: int, option: str) -> list[float]:
     from kinlab.errors import OptionError
-    from kinlab.expressions import parse_number
+    from kinlab.formulas.numbers import parse_number
 
     values = [parse_number(part) for part in text.split(",")]
     if len(values) != count:

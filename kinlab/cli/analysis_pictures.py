@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
-    from kinlab.robot import Robot
-    from kinlab.workspace_map import WorkspaceMap
+    from kinlab.model.robot import Robot
+    from kinlab.sweeps.workspace import WorkspaceMap
 
 
 def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path) -> None:
@@ -37,7 +37,7 @@ def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
     from kinlab.plots.canvas import save
     from kinlab.plots.maps import plot_map
     from kinlab.structure.task_space import TaskSpace
-    from kinlab.workspace_map import sample_workspace, stays_in_plane
+    from kinlab.sweeps.workspace import sample_workspace, stays_in_plane
 
     if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
         save(plot_ellipse(robot, search.best_q), path)
@@ -63,7 +63,7 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
     if chart.planar and robot.n <= 3:
         from kinlab.analysis.boundary import planar_boundary
         from kinlab.analysis.loci import singular_loci
-        from kinlab.stacks import fk
+        from kinlab.fast.stacks import fk
 
         boundary = planar_boundary(robot)
         needed = abs(len(chart.rows) - robot.n) + 2

@@ -10,8 +10,8 @@ if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
     from kinlab.analysis.nearest import NearestSingularity
     from kinlab.analysis.singularity import SingularitySearch
-    from kinlab.robot import Robot
-    from kinlab.workspace_map import WorkspaceMap
+    from kinlab.model.robot import Robot
+    from kinlab.sweeps.workspace import WorkspaceMap
 
 
 def headline(robot: Robot, task: str, suggested: bool) -> Any:
@@ -71,8 +71,8 @@ def print_designs(
     from rich.table import Table
 
     from kinlab.analysis.design import design_isotropic
-    from kinlab.extract import to_dh
-    from kinlab.robot import Robot
+    from kinlab.model.extract import to_dh
+    from kinlab.model.robot import Robot
 
     names = [part.strip() for part in free.split(",")]
     source = robot.table if robot.table is not None else to_dh(robot)

@@ -80,7 +80,7 @@ def check(
     if tip is not None:
         raise OptionError(f"check: --tip {tip!r} names the tool of a URDF given by --against")
     from kinlab.check.catalogue import Row
-    from kinlab.check.report import check_report_path, write_report
+    from kinlab.check.report.write import check_report_path, write_report
     from kinlab.check.targets import tasks
 
     if quantities:
@@ -152,7 +152,7 @@ def _one(task: Task, samples: int, seed: int) -> Row | Finding:
 def _print_json(done: Sequence[Row], findings: Sequence[Finding]) -> None:
     import json
 
-    from kinlab.check.summary import as_data
+    from kinlab.check.report.summary import as_data
 
     data = as_data(done, findings)
     echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
@@ -168,7 +168,7 @@ def _print_all(done: Sequence[Row], findings: Sequence[Finding], each: bool) -> 
 def _print_table(done: Sequence[Row], each: bool) -> None:
     from rich.table import Table
 
-    from kinlab.check.summary import Group, grouped, size
+    from kinlab.check.report.summary import Group, grouped, size
 
     console = screen()
     if not console.is_terminal:
@@ -202,7 +202,7 @@ def _print_failures(console: Screen, done: Sequence[Row]) -> None:
 
 
 def _print_finding(console: Screen, finding: Finding) -> None:
-    from kinlab.check.summary import size
+    from kinlab.check.report.summary import size
 
     def line(text: str) -> None:
         console.print(text, style="bold" if finding.known else "", highlight=False,
@@ -219,7 +219,7 @@ def _print_finding(console: Screen, finding: Finding) -> None:
 
 
 def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
-    from kinlab.check.headings import several
+    from kinlab.check.report.words import several
 
     wrong = sum(not row.ok for row in done)
     misprints = len({id(row.formula) for row in done if row.printed is not None})
@@ -233,7 +233,7 @@ def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
 def _list_quantities() -> None:
     from rich.table import Table
 
-    from kinlab.check.quantities import quantities
+    from kinlab.check.quantities.registry import quantities
 
     table = Table(box=None, header_style="bold", pad_edge=False)
     for name in ("quantity", "arguments", "about"):

@@ -29,7 +29,7 @@ def derive(
     output: OUTPUT = None,
 ) -> None:
     """Derive FK, J, det J, M, C, g or tau of an arm from its DH table."""
-    from kinlab.files import write_text
+    from kinlab.host.files import write_text
     from kinlab.symbolic.derive import derived_text
 
     text = derived_text(robot, what, format, numbers)

@@ -52,9 +52,9 @@ def register(app: typer.Typer) -> None:
 
 def list_fivebars() -> None:
     """List the shipped five-bars and servomotors."""
+    from kinlab.drives.motors import catalogue
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.files import presets
-    from kinlab.fivebar.motors import catalogue
 
     console = screen(highlight=False)
     table = _table("five-bar", "l1, m", "l2, m", "e, m", "payload, kg", left=(0,))

@@ -48,9 +48,9 @@ def ik(
     """
     import numpy as np
 
-    from kinlab.expressions import parse_angle
-    from kinlab.library import load
-    from kinlab.rotations import rpy_matrix
+    from kinlab.formulas.numbers import parse_angle
+    from kinlab.model.library import load
+    from kinlab.model.rotations import rpy_matrix
 
     _announce_compilation()
     robot = load(name, tip)
@@ -60,7 +60,7 @@ def ik(
     if branches:
         _print_branches(robot, pose)
         return
-    from kinlab.chain_arrays import chain
+    from kinlab.fast.arrays import chain
     from kinlab.inverse.search import ik as solve
 
     start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
@@ -122,6 +122,6 @@ def _announce_compilation() -> None:
     """Lets the message about compiling through to stderr: the first run takes some seconds."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(logging.Formatter("kinlab: %(message)s"))
-    logger = logging.getLogger("kinlab.compiled")
+    logger = logging.getLogger("kinlab.fast.compiled")
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)

@@ -13,8 +13,8 @@ from kinlab.cli.screen import echo, screen, styled
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from kinlab.dh import DHTable
-    from kinlab.robot import Robot
+    from kinlab.model.dh import DHTable
+    from kinlab.model.robot import Robot
 
 NAME = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv/.urdf file.")]
 TIP = Annotated[str | None, typer.Option("--tip", help="Link that is the tool (URDF only).")]
@@ -34,7 +34,7 @@ def list_robots() -> None:
     from rich.table import Table
 
     from kinlab.errors import KinlabError
-    from kinlab.library import DATA_PREFIX, example_robots, load, shipped
+    from kinlab.model.library import DATA_PREFIX, example_robots, load, shipped
 
     width = max(len(name) for name in [*shipped(), *example_robots()])
     table = Table(box=None, header_style="bold", pad_edge=False)
@@ -58,8 +58,8 @@ def list_robots() -> None:
 
 def info(name: NAME, tip: TIP = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
-    from kinlab.extract import to_dh
-    from kinlab.library import load
+    from kinlab.model.extract import to_dh
+    from kinlab.model.library import load
 
     robot = load(name, tip)
     console = screen()
@@ -84,15 +84,15 @@ def info(name: NAME, tip: TIP = None) -> None:
 
 def urdf(name: NAME, output: OUTPUT = None, tip: TIP = None) -> None:
     """Print the URDF of a robot, or write it to a file."""
-    from kinlab.library import load
+    from kinlab.model.library import load
 
     _give(load(name, tip).urdf, output)
 
 
 def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
     """Print the modified DH table of a robot, or write it as TOML with -o."""
-    from kinlab.extract import to_dh
-    from kinlab.library import load
+    from kinlab.model.extract import to_dh
+    from kinlab.model.library import load
 
     table = to_dh(load(name, tip))
     if output is not None:
@@ -107,7 +107,7 @@ def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
 
 
 def _give(text: str, output: Path | None) -> None:
-    from kinlab.files import write_text
+    from kinlab.host.files import write_text
 
     if output is None:
         echo(text, nl=False)
@@ -117,7 +117,7 @@ def _give(text: str, output: Path | None) -> None:
 
 
 def _missing_meshes(robot: Robot) -> list[str]:
-    from kinlab import library, urdf_read
+    from kinlab.model import library, urdf_read
 
     folders = library.mesh_folders(robot)
     root = urdf_read.parse(robot.urdf, robot.name)

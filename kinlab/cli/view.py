@@ -74,7 +74,7 @@ def _open(
 ) -> Page:  # fmt: skip
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
-    from kinlab.library import load
+    from kinlab.model.library import load
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
@@ -96,7 +96,7 @@ def _open(
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
     if animate is not None:
-        from kinlab.viewer import motions  # brings the compiled inverse kinematics
+        from kinlab.viewer import motions
 
         shown = motions.motion(robot, animate, scene.q)
         scene.animate(shown.q, shown.duration, shown.name)
@@ -119,7 +119,7 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 def _holds_five_bar(name: str) -> bool:
     """Whether a TOML file is a five-bar: those have crank lengths, arms have links."""
     from kinlab.errors import FileError
-    from kinlab.files import read_text, read_toml
+    from kinlab.host.files import read_text, read_toml
 
     if not name.lower().endswith(".toml"):
         return False
@@ -133,7 +133,7 @@ def _holds_five_bar(name: str) -> bool:
 def _numbers(text: str) -> Array:
     import numpy as np
 
-    from kinlab.expressions import parse_number
+    from kinlab.formulas.numbers import parse_number
 
     return np.array([parse_number(word.strip()) for word in text.split(",")])
 

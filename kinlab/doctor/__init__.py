@@ -1,1 +1,32 @@
-"""The formula doctor: not only that a formula differs from the engine, but what is wrong in it."""
+"""The formula doctor: not only that a formula differs, but what is wrong in it.
+
+==================  ==============================================================================
+module              what it holds
+==================  ==============================================================================
+``changes``         A reading: one thing that people take differently, and what the engine says if
+                    one does
+``derived``         The engine's quantities as derived formulas, entry by entry, for arms with a
+                    DH table
+``diagnosis``       What the doctor answers: a verdict, ranked causes with their evidence, the
+                    corrected formula
+``edits``           Every slip of the pen at one place of a formula: sign, factor, power, index,
+                    function,
+``examine``         The examination: compare, try the readings, look for slips in the entries,
+                    rank what explains
+``file``            A file of formulas as text: what its names claim to be, each examined entry by
+                    entry
+``findings``        Diagnoses as findings: with the formulas typeset and the differences marked,
+                    for a report
+``readings``        The table of known confusions: every reading that makes sense for a quantity
+``regression``      The difference of a function from the derived formula as a short sum of known
+                    terms
+``robot_readings``  Readings of the robot itself: convention, offsets, base and tool, gravity,
+                    inertias
+``search``          Finds the one or two edits that turn one formula into another, by their effect
+                    on values
+``terms``           Slips within single entries: the derived formula beside a user's text or
+                    function
+``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
+                    table is wrong?
+==================  ==============================================================================
+"""

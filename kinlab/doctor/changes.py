@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from kinlab.arrays import Array
-from kinlab.check.quantity import Quantity
-from kinlab.robot import Robot
+from kinlab.check.quantities.quantity import Quantity
+from kinlab.model.robot import Robot
 
 Stage = Literal["robot", "arguments", "engine", "answer"]
 Arguments = dict[str, Array]

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from itertools import combinations
 
-from kinlab.doctor import tree
-from kinlab.doctor.tree import Node, Path
+from kinlab.formulas import tree
+from kinlab.formulas.tree import Node, Path
 
 _INDEXED = re.compile(r"([A-Za-z_]+?)(\d+)")
 _FACTORS = tuple(

@@ -13,21 +13,19 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import Array, first_largest
+from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import relative_errors
-from kinlab.check.quantities import quantity as find_quantity
-from kinlab.check.serial import SERIAL
+from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor import terms
 from kinlab.doctor.changes import Case, Reading
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.diagnosis import Cause, Diagnosis
-from kinlab.doctor.entries import Entry, entries, split_name
 from kinlab.doctor.readings import readings
-from kinlab.doctor.terms import Slip
-from kinlab.doctor.tree import Node
+from kinlab.doctor.terms import Entry, Slip, entries, split_name
 from kinlab.errors import KinlabError, OptionError
-from kinlab.formula import function_name, state_by_state
-from kinlab.options import seed_of, whole
+from kinlab.formulas.record import function_name, state_by_state
+from kinlab.formulas.tree import Node
 from kinlab.tolerances import TOLERANCES
 
 _SCREEN = 3

@@ -1,7 +1,8 @@
-"""A file of formulas as text, examined entry by entry."""
+"""A file of formulas as text: what its names claim to be, each examined entry by entry."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -9,21 +10,75 @@ from pathlib import Path
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor import tree
+from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.diagnosis import Diagnosis
-from kinlab.doctor.entries import split_name
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.input import MOST_NODES, FormulaFile, canonical, read_file
-from kinlab.doctor.labels import quantity_of
-from kinlab.doctor.plain import plain_values
-from kinlab.doctor.tree import Node
+from kinlab.doctor.terms import split_name
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
-from kinlab.files import read_text, read_toml
-from kinlab.library import load
-from kinlab.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.formulas import tree
+from kinlab.formulas.evaluate import plain_values
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, read_file
+from kinlab.formulas.tree import Node
+from kinlab.host.files import read_text, read_toml
+from kinlab.model.dh import DHTable
+from kinlab.model.library import load
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import is_planar, vocabulary
+
+# -------- What the names in a formula file claim to be: tau1, g2, M12, C11, J11, x, T, V
+
+_VECTORS = {
+    "tau": "inverse_dynamics", "Q": "inverse_dynamics", "torque": "inverse_dynamics",
+    "g": "gravity_torques", "G": "gravity_torques", "D": "gravity_torques",
+    "c": "coriolis_torques", "h": "coriolis_torques", "V": "coriolis_torques",
+    "b": "coriolis_torques",
+}  # fmt: skip
+_MATRICES = {
+    "M": "mass_matrix", "D": "mass_matrix", "H": "mass_matrix", "B": "mass_matrix",
+    "C": "coriolis_matrix", "J": "jacobian", "T": "fk", "R": "fk", "r": "fk",
+}  # fmt: skip
+_NUMBERS = {
+    "x": "fk[0,3]", "y": "fk[1,3]", "z": "fk[2,3]",
+    "px": "fk[0,3]", "py": "fk[1,3]", "pz": "fk[2,3]",
+    "T": "kinetic_energy", "K": "kinetic_energy", "kinetic": "kinetic_energy",
+    "V": "potential_energy", "U": "potential_energy", "P": "potential_energy",
+    "potential": "potential_energy",
+}  # fmt: skip
+_VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
+_MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
+
+
+def quantity_of(entry: str, table: DHTable | None) -> str:
+    """The quantity that an entry's name stands for, such as ``"inverse_dynamics[0]"``.
+
+    Args:
+        entry: ``tau1``, ``M12``, ... (rows and columns from 1), or the quantity itself.
+        table: the robot's table; of a planar arm ``J11`` ... are the rows vx, vy, wz.
+
+    Raises:
+        ExpressionError: a name that says nothing.
+    """
+    plain = entry.split("[")[0].strip()
+    if plain in quantities():
+        return entry.strip()
+    if entry in _NUMBERS:
+        return _NUMBERS[entry]
+    matrix = _MATRIX.fullmatch(entry)
+    if matrix and matrix.group(1) in _MATRICES:
+        name = _MATRICES[matrix.group(1)]
+        if name == "jacobian" and table is not None and is_planar(table):
+            name = "planar_jacobian"
+        return f"{name}[{int(matrix.group(2)) - 1},{int(matrix.group(3)) - 1}]"
+    vector = _VECTOR.fullmatch(entry)
+    if vector and vector.group(1) in _VECTORS:
+        return f"{_VECTORS[vector.group(1)]}[{int(vector.group(2)) - 1}]"
+    choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
+    raise ExpressionError(f"{entry!r} names no quantity; {choices}")
+
+
+# -------- A file of formulas as text, examined entry by entry
 
 _SAME = 1e-9
 _MIRRORED = ("mass_matrix",)
@@ -46,7 +101,7 @@ def is_formula_file(path: str | Path) -> bool:
 
 
 def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
-    """Judges every formula of a file (:func:`kinlab.doctor.input.read_file` has the format).
+    """Judges every formula of a file (:func:`kinlab.formulas.text.read_file` has the format).
 
     Entries that make up a whole quantity are judged together, so that a confusion of the whole
     (a frame, gravity's sign) is seen; others each for itself.

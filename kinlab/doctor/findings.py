@@ -9,21 +9,20 @@ import numpy as np
 
 from kinlab.check.catalogue import Row
 from kinlab.check.finding import Finding, Typeset
-from kinlab.check.quantities import quantity as find_quantity
-from kinlab.check.serial import SERIAL
+from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import Task
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.diagnosis import Diagnosis
-from kinlab.doctor.entries import split_name
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_file, meant, robot_of
-from kinlab.doctor.input import FormulaFile, parse, read_file
-from kinlab.doctor.labels import quantity_of
-from kinlab.doctor.marks import differences
-from kinlab.doctor.tree import Node, Path, names, sym
-from kinlab.doctor.typeset import Marks, equation
-from kinlab.formula import AnswerShapeError
-from kinlab.robot import Robot
+from kinlab.doctor.file import examine_file, meant, quantity_of, robot_of
+from kinlab.doctor.terms import split_name
+from kinlab.formulas.marks import differences
+from kinlab.formulas.record import AnswerShapeError
+from kinlab.formulas.text import FormulaFile, parse, read_file
+from kinlab.formulas.tree import Node, Path, names, sym
+from kinlab.formulas.typeset import Marks, equation
+from kinlab.model.robot import Robot
 
 FEWEST = 10
 """States that a diagnosis needs at least."""

@@ -9,12 +9,12 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.convention import Convention
 from kinlab.doctor.changes import Arguments, Case, Engine, Reading
 from kinlab.doctor.robot_readings import gravity_readings, inertia_readings, table_readings
-from kinlab.dynamics import coriolis_matrix
-from kinlab.kinematics import fk, jacobian, statics
-from kinlab.robot import Robot, scratch
+from kinlab.engine.dynamics import coriolis_matrix
+from kinlab.engine.kinematics import fk, jacobian, statics
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot, scratch
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}

@@ -15,9 +15,9 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, largest_first
-from kinlab.doctor import tree
 from kinlab.doctor.edits import Names
-from kinlab.doctor.tree import Node
+from kinlab.formulas import tree
+from kinlab.formulas.tree import Node
 
 _SMALL = 1e-8
 _SHORT = 6
@@ -43,7 +43,7 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
 
     Returns:
         Their own joint functions; their waves with every product of speeds; all waves. Each
-        product once, its factors in the order of :func:`kinlab.doctor.tree.ordered`.
+        product once, its factors in the order of :func:`kinlab.formulas.tree.ordered`.
     """
     own = [_joint_part(term, names) for entry in derived for term in _terms(entry)]
     met = [wave for part in own for wave in _waves(part)]

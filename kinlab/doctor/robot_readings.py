@@ -10,10 +10,10 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.convention import Convention
-from kinlab.dh import DHLink, DHTable
 from kinlab.doctor.changes import Reading
-from kinlab.robot import Robot
+from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot
 
 _DIRECTIONS = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0),
                "+z": (0, 0, 1), "-z": (0, 0, -1)}  # fmt: skip

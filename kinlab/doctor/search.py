@@ -14,9 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor import tree
 from kinlab.doctor.edits import Edit, Names, edits
-from kinlab.doctor.tree import Node, Path
+from kinlab.formulas import tree
+from kinlab.formulas.tree import Node, Path
 
 MATCH = 1e-9
 _CANDIDATES = 40

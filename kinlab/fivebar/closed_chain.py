@@ -1,17 +1,8 @@
-"""The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint.
-
-Nothing of the closed form is used here, so each is an oracle for the other. The tree is cut at
-the tool: base - crank 1 - rod 1 (carries the payload and the tool frame) and base - crank 2 -
-rod 2; q = (theta_1, psi_1, theta_2, psi_2) with psi_i the rod's angle from its crank. A point
-anchor holds the two rod ends together. In the plane it has rank 2 of 3, so only its x and y
-rows are used.
-
-Pinocchio has no inverse dynamics for loops: tau = G^T rnea(q, v, a), where G maps the cranks'
-rates to all four joints through the loop.
-"""
+"""The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,13 +10,77 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shaped
+from kinlab.arrays import Array, shaped, shown, whole
 from kinlab.errors import OptionError, SingularError, UnreachableError
-from kinlab.fivebar.continuation import lead_to_zero
-from kinlab.fivebar.linkage import Linkage
+from kinlab.fivebar.linkage import JOINTS, Linkage
 from kinlab.fivebar.pose import HANGING, Mode, read_mode
-from kinlab.options import shown, whole
 from kinlab.tolerances import TOLERANCES
+
+# -------- Newton's method that stays on one branch of solutions
+
+Residual = Callable[[Array], tuple[Array, Array]]
+_STEPS = 30
+_LEAST_STRIDE = 1e-6
+
+
+def lead_to_zero(
+    residual: Residual, start: Array, inside: Callable[[Array], bool], tolerance: float
+) -> tuple[Array, float]:
+    """Leads a residual to zero along a straight line, in one go where Newton manages that.
+
+    Where the Jacobian is regular on the whole branch, the residual can follow any line that the
+    branch can reach; a step that Newton cannot make, or that leaves the branch, is halved.
+
+    Args:
+        residual: x (n,) to the residual (n,) and its Jacobian (n, n).
+        start: a point of the branch, (n,).
+        inside: whether a point is on the branch.
+        tolerance: norm of the residual that is wanted.
+
+    Returns:
+        The point, and the norm of the residual that is left there: above the tolerance where
+        the line leaves the branch.
+    """
+    x, (first, _) = start, residual(start)
+    done, stride = 0.0, 1.0
+    while done < 1.0 and stride > _LEAST_STRIDE:
+        goal = min(1.0, done + stride)
+        found = _newton(residual, x, (1.0 - goal) * first, inside, tolerance)
+        if found is None:
+            stride *= 0.5
+        else:
+            x, done, stride = found, goal, 2.0 * stride
+    return x, float(np.linalg.norm(residual(x)[0]))
+
+
+def _newton(
+    residual: Residual, x: Array, goal: Array, inside: Callable[[Array], bool], tolerance: float
+) -> Array | None:
+    """Newton until the residual is ``goal``; None if it leaves the branch or does not get there."""
+    before = np.inf
+    for _ in range(_STEPS):
+        value, slope = residual(x)
+        left = float(np.linalg.norm(value - goal))
+        if left <= 1e-3 * tolerance:
+            return x
+        if left > 0.5 * before:  # not converging, or as near as rounding lets it
+            return x if left <= tolerance else None
+        before = left
+        x = x - np.linalg.solve(slope, value - goal)
+        if not inside(x):
+            return None
+    return None
+
+
+# -------- The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint
+# Nothing of the closed form is used here, so each is an oracle for the other. The tree is cut at
+# the tool: base - crank 1 - rod 1 (carries the payload and the tool frame) and base - crank 2 -
+# rod 2; q = (theta_1, psi_1, theta_2, psi_2) with psi_i the rod's angle from its crank. A point
+# anchor holds the two rod ends together. In the plane it has rank 2 of 3, so only its x and y
+# rows are used.
+#
+# Pinocchio has no inverse dynamics for loops: tau = G^T rnea(q, v, a), where G maps the cranks'
+# rates to all four joints through the loop.
 
 CRANKS, PASSIVE = (0, 2), (1, 3)
 
@@ -52,7 +107,7 @@ class ClosedChain:
         """Closes the loop for given crank angles by Newton, staying in one assembly mode.
 
         Inside a branch the closure's Jacobian is regular, so the gap can be led straight to
-        zero without a change of the sign of w_1 x w_2; see :mod:`kinlab.fivebar.continuation`.
+        zero without a change of the sign of w_1 x w_2; see :mod:`kinlab.fivebar.closed_chain`.
 
         Args:
             theta: (2,), rad.
@@ -306,3 +361,36 @@ def _joined(cranks: Array, passive: Array) -> Array:
     q = np.empty(4)
     q[[*CRANKS]], q[[*PASSIVE]] = cranks, passive
     return q
+
+
+# -------- Builds the Pinocchio tree of a five-bar, with payload, rotors and the anchor of
+#          its loop
+
+
+def build(linkage: Linkage) -> ClosedChain:
+    """Builds the tree, the payload and the anchor."""
+    model = pin.Model()
+    model.name = linkage.name
+    model.gravity.linear = np.array([*np.asarray(linkage.gravity), 0.0])
+    l1, l2 = np.asarray(linkage.l1), np.asarray(linkage.l2)
+    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    ends = []
+    for leg in range(2):
+        base = pin.SE3(np.eye(3), np.array([linkage.base_x[leg], 0.0, 0.0]))
+        elbow = pin.SE3(np.eye(3), np.array([l1[leg], 0.0, 0.0]))
+        crank = model.addJoint(0, pin.JointModelRZ(), base, JOINTS[2 * leg])
+        rod = model.addJoint(crank, pin.JointModelRZ(), elbow, JOINTS[2 * leg + 1])
+        for joint, part in ((crank, "crank"), (rod, "rod")):
+            mass, com, spin = (
+                float(getattr(linkage, f"{part}_{what}")[leg])
+                for what in ("mass", "com", "inertia")
+            )
+            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
+            model.appendBodyToJoint(joint, body, pin.SE3.Identity())
+        model.armature[model.joints[crank].idx_v] = rotor[leg]
+        ends.append((rod, pin.SE3(np.eye(3), np.array([l2[leg], 0.0, 0.0]))))
+    load = pin.Inertia(linkage.payload, ends[0][1].translation, np.zeros((3, 3)))
+    model.appendBodyToJoint(ends[0][0], load, pin.SE3.Identity())
+    tool = model.addFrame(pin.Frame("tool", ends[0][0], *ends[0][1:], pin.FrameType.OP_FRAME))
+    anchor = pin.PointAnchorConstraintModel(model, *ends[0], *ends[1])
+    return ClosedChain(linkage, model, anchor, tool)

@@ -16,12 +16,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import SingularError
-from kinlab.fivebar.dynamics import torques
+from kinlab.fivebar.dynamics import RodModel, torques
 from kinlab.fivebar.geometry import rate_bias, rate_matrix
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import Mode, Pose, solve_pose
-from kinlab.fivebar.rods import RodModel
-from kinlab.fivebar.room import Rectangle, room
+from kinlab.fivebar.workspace import Rectangle, room
 
 _GRID, _ZOOM, _ZOOMS = 33, 9, 14
 """Points a side of the first grid and of each zoom, and how often the best cell is zoomed in."""

@@ -1,32 +1,105 @@
-"""Dynamics of a five-bar in closed form, with rods of mass.
-
-What the rods' mass does is one row of coefficients, :mod:`kinlab.fivebar.rods`; the formulas
-are the same for all of them.
-
-Sources: note 003 (003.vw, 003.G, 003.P); Huang et al. 2005, doi 10.1115/1.1898343, whose rods
-have no mass; the exact form is derived by virtual work and tested against a Lagrangian.
-"""
+"""Dynamics of a five-bar in closed form: rods of mass, torque, mass matrix, energy and power."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
-from kinlab.errors import InertiaError
+from kinlab.arrays import Array, shown
+from kinlab.errors import InertiaError, OptionError, near
 from kinlab.fivebar.geometry import rate_bias, rate_matrix
 from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.pose import (
-    HANGING,
-    Mode,
-    OnUnreachable,
-    Pose,
-    read_vectors,
-    solve_pose,
-    turned,
-)
-from kinlab.fivebar.rods import RodModel, rod_model
+from kinlab.fivebar.pose import HANGING, Mode, OnUnreachable, Pose, read_vectors, solve_pose, turned
 from kinlab.tolerances import TOLERANCES
+
+# -------- What the mass of a rod does at its two ends: exact, left out, or lumped
+# A rod moves as the straight line between its elbow B and the tool P, so its kinetic energy is
+# ½ (alpha_B |v_B|² + 2 kappa v_B·v_P + alpha_C |v_P|²) with the three coefficients below, and its
+# weight acts as (1 - rho) of the rod at B and rho at P. Every rod model is one such row of
+# coefficients; only the exact one keeps kappa, the coupling that two point masses cannot have.
+#
+# Source: derived here by the kinetic energy of a rigid bar; ``massless`` is Huang et al. 2005.
+
+
+@dataclass(frozen=True)
+class RodModel:
+    """What a rod's mass does at its two ends; each entry is a pair over the legs, kg.
+
+    Attributes:
+        elbow: alpha_B, inertia of the elbow's motion.
+        coupling: kappa, inertia shared by elbow and tool.
+        tool: alpha_C, inertia of the tool's motion.
+        elbow_weight: mass whose weight acts at the elbow.
+        tool_weight: mass whose weight acts at the tool.
+    """
+
+    elbow: Array
+    coupling: Array
+    tool: Array
+    elbow_weight: Array
+    tool_weight: Array
+
+
+def exact_rods(linkage: Linkage) -> RodModel:
+    """alpha_B = m(1-rho)² + I/l2², alpha_C = m rho² + I/l2², kappa = m rho(1-rho) - I/l2²."""
+    mass, rho = np.asarray(linkage.rod_mass), _fraction(linkage)
+    spin = np.asarray(linkage.rod_inertia) / np.asarray(linkage.l2) ** 2
+    return RodModel(
+        elbow=mass * (1.0 - rho) ** 2 + spin,
+        coupling=mass * rho * (1.0 - rho) - spin,
+        tool=mass * rho**2 + spin,
+        elbow_weight=mass * (1.0 - rho),
+        tool_weight=mass * rho,
+    )
+
+
+def _fraction(linkage: Linkage) -> Array:
+    rho: Array = np.asarray(linkage.rod_com) / np.asarray(linkage.l2)
+    return rho
+
+
+def _two_masses(linkage: Linkage, at_tool: ArrayLike) -> RodModel:
+    mass = np.asarray(linkage.rod_mass)
+    tool = mass * np.asarray(at_tool)
+    return RodModel(mass - tool, np.zeros(2), tool, mass - tool, tool)
+
+
+ROD_MODELS: dict[str, Callable[[Linkage], RodModel]] = {
+    "exact": exact_rods,
+    "massless": lambda linkage: RodModel(*np.zeros((5, 2))),
+    "half": lambda linkage: _two_masses(linkage, 0.5),
+    "third": lambda linkage: _two_masses(linkage, 1.0 / 3.0),
+    "static": lambda linkage: _two_masses(linkage, _fraction(linkage)),
+}
+"""Models of the rods by name.
+
+``exact``: rigid rods. ``massless``: Huang's form, rods left out. The lumpings put two point
+masses in the rod's place: ``half`` ½ at the elbow and ½ at the tool, ``third`` ⅔ and ⅓ (usual
+for Delta robots), ``static`` so that weight and centre are right and only inertia is not.
+"""
+
+
+def rod_model(linkage: Linkage, model: str) -> RodModel:
+    """The coefficients of a named model.
+
+    Raises:
+        OptionError: no model of that name.
+    """
+    if not isinstance(model, str) or model not in ROD_MODELS:
+        choices = near(model if isinstance(model, str) else "", ROD_MODELS)
+        raise OptionError(f"rod model {shown(model)} does not exist; {choices}")
+    return ROD_MODELS[model](linkage)
+
+
+# -------- Dynamics of a five-bar in closed form, with rods of mass
+# What the rods' mass does is one row of coefficients, :mod:`kinlab.fivebar.dynamics`; the formulas
+# are the same for all of them.
+#
+# Sources: note 003 (003.vw, 003.G, 003.P); Huang et al. 2005, doi 10.1115/1.1898343, whose rods
+# have no mass; the exact form is derived by virtual work and tested against a Lagrangian.
 
 
 def crank_inertia(linkage: Linkage, rods: RodModel) -> Array:
@@ -268,3 +341,58 @@ def forward_dynamics(
         )
     force = torque - _bias(linkage, pose, velocity, rods)
     return pose.give(np.asarray(np.linalg.solve(mass, force[..., None])[..., 0], np.float64))
+
+
+# -------- Energy and power of a five-bar in closed form
+# Source: note 003 (003.P) for the power; the energies are those of :mod:`kinlab.fivebar.dynamics`.
+
+
+def kinetic_energy(
+    linkage: Linkage, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+) -> Array:
+    """Rotors included, () or (N,), J; arguments and errors as :func:`inverse_dynamics`."""
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="I II")
+    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    rate = np.einsum("nij,nj->ni", rate_matrix(linkage, pose), velocity)
+    mass = joint_mass(linkage, pose, rods)
+    return pose.give(0.5 * np.einsum("ni,nij,nj->n", rate, mass, rate))
+
+
+def potential_energy(
+    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+) -> Array:
+    """Zero where all mass would lie at the origin, between the base pins; () or (N,), J.
+
+    Arguments as :func:`mass_matrix`; exists at every reachable pose.
+
+    Raises:
+        UnreachableError: a point out of reach.
+    """
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode)
+    moment = np.asarray(linkage.crank_mass) * np.asarray(linkage.crank_com)
+    moment = moment + rods.elbow_weight * np.asarray(linkage.l1)
+    base = np.stack([linkage.base_x, np.zeros(2)], axis=1)
+    anchored = (np.asarray(linkage.crank_mass) + rods.elbow_weight) @ base
+    first: Array = np.einsum("i,nij->nj", moment, pose.u) + anchored
+    first = first + (linkage.payload + rods.tool_weight.sum()) * pose.xy
+    energy: Array = -np.einsum("nj,j->n", first, np.asarray(linkage.gravity))
+    return pose.give(energy)
+
+
+def joint_power(
+    linkage: Linkage,
+    xy: ArrayLike,
+    v: ArrayLike,
+    a: ArrayLike,
+    mode: Mode = HANGING,
+    model: str = "exact",
+) -> Array:
+    """P_i = tau_i theta_dot_i, (2,) or (N, 2), W; as :func:`inverse_dynamics` (003.P)."""
+    rods = rod_model(linkage, model)
+    pose = solve_pose(linkage, xy, mode, regular="I II")
+    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    acceleration = read_vectors(a, pose, f"{linkage.name}: a")
+    rate = np.einsum("nij,nj->ni", rate_matrix(linkage, pose), velocity)
+    return pose.give(rate * torques(linkage, pose, velocity, acceleration, rods))

@@ -23,9 +23,9 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.errors import FileError, InertiaError, StateError
-from kinlab.files import write_text
 from kinlab.fivebar.linkage import JOINTS, Linkage
 from kinlab.fivebar.pose import HANGING, Mode, solve_pose
+from kinlab.host.files import write_text
 
 _EFFORT, _VELOCITY, _TURN = "1000", "100", repr(2.0 * np.pi)
 """URDF demands limits; these do not bind."""

@@ -14,10 +14,10 @@ from typing import Any
 import tomli_w
 
 from kinlab.errors import ExpressionError, MechanismError, NameUnknownError, near
-from kinlab.expressions import parse_number
-from kinlab.files import read_text, read_toml, write_text
 from kinlab.fivebar.linkage import Linkage
-from kinlab.resources import robots_dir
+from kinlab.formulas.numbers import parse_number
+from kinlab.host.files import read_text, read_toml, write_text
+from kinlab.model.library import robots_dir
 
 _TEXT = ("name", "source")
 _KEYS = tuple(f.name for f in fields(Linkage))

@@ -11,13 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.drives.motors import Motor
 from kinlab.fivebar.demand import grid_of, torque_forms, turn_forms, worst
+from kinlab.fivebar.dynamics import rod_model
 from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.motors import Motor
 from kinlab.fivebar.pose import Mode, Pose, solve_pose
-from kinlab.fivebar.rods import rod_model
-from kinlab.fivebar.room import Rectangle
 from kinlab.fivebar.trajectory import Cycle, mean_square, motor_torques
+from kinlab.fivebar.workspace import Rectangle
 
 _RATIO_SPAN = 1e-3
 """Gear ratios are tried from this part of the bound up to the bound."""

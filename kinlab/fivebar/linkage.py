@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, real_array, shaped
+from kinlab.arrays import Array, frozen, real_array, shaped, shown
 from kinlab.errors import MechanismError
-from kinlab.options import shown
 
 JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
 """Names of the four joints of the tree that the loop is cut into."""

@@ -14,8 +14,8 @@ from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import HANGING, Mask, Mode, OnUnreachable
 
 if TYPE_CHECKING:
+    from kinlab.drives.motors import Motor
     from kinlab.fivebar.closed_chain import ClosedChain
-    from kinlab.fivebar.motors import Motor
     from kinlab.fivebar.servo import ServoSizing
 
 
@@ -116,7 +116,7 @@ class FiveBar(Linkage):
 
     def closed_chain(self) -> ClosedChain:
         """The same linkage in Pinocchio; see :mod:`kinlab.fivebar.closed_chain`."""
-        from kinlab.fivebar.tree import build
+        from kinlab.fivebar.closed_chain import build
 
         return build(self)
 

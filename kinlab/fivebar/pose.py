@@ -14,10 +14,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import Array, real_array, shown
 from kinlab.errors import OptionError, SingularError, StateError, UnreachableError
 from kinlab.fivebar.linkage import Linkage
-from kinlab.options import shown
 from kinlab.tolerances import TOLERANCES
 
 Mode = Sequence[int] | Array

@@ -13,19 +13,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, number
+from kinlab.drives.motors import Motor, catalogue, find_motor
 from kinlab.errors import InertiaError, OptionError
 from kinlab.fivebar.demand import Worst, refuse_singular, row_norms, torque_forms, worst
-from kinlab.fivebar.dynamics import crank_inertia, joint_mass
+from kinlab.fivebar.dynamics import crank_inertia, joint_mass, rod_model
 from kinlab.fivebar.fitting import MotorFit, Task, fit_motor
 from kinlab.fivebar.geometry import rate_matrix
 from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.motors import Motor, catalogue, find_motor
 from kinlab.fivebar.pose import HANGING, Mode, Pose
-from kinlab.fivebar.rods import rod_model
-from kinlab.fivebar.room import Rectangle, read_rectangle
 from kinlab.fivebar.trajectory import LIFT, TRAVEL, Cycle, Path, follow, pick_and_place
-from kinlab.options import number
+from kinlab.fivebar.workspace import Rectangle, read_rectangle
 
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 

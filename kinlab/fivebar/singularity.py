@@ -17,7 +17,7 @@ from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import HANGING, Mode, read_points, solve_pose
-from kinlab.fivebar.room import room
+from kinlab.fivebar.workspace import room
 
 
 @dataclass(frozen=True)

@@ -16,13 +16,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped
+from kinlab.drives.motors import Motor
 from kinlab.errors import MotorError, OptionError, SingularError, UnreachableError
-from kinlab.fivebar.dynamics import torques
+from kinlab.fivebar.dynamics import rod_model, torques
 from kinlab.fivebar.geometry import ik, rate_bias, rate_matrix
 from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.motors import Motor
 from kinlab.fivebar.pose import HANGING, Mode, Pose, solve_pose
-from kinlab.fivebar.rods import rod_model
 
 LIFT, TRAVEL = 0.025, 0.305
 """The Adept cycle, m."""

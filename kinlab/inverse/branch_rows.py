@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.chain import columns, frames
-from kinlab.compiled import kernel, over_rows
+from kinlab.fast.compiled import kernel, over_rows
+from kinlab.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.closed_forms import (
     in_the_plane,
     inverse,
@@ -22,13 +22,7 @@ from kinlab.inverse.closed_forms import (
     spherical_wrist,
     three_parallel,
 )
-from kinlab.inverse.continuation import (
-    LOST,
-    SINGULAR_END,
-    back_substitute,
-    factorise,
-    follow_all,
-)
+from kinlab.inverse.continuation import LOST, SINGULAR_END, back_substitute, factorise, follow_all
 from kinlab.inverse.kernel import pose_error, wrap
 from kinlab.inverse.structures import (
     GENERAL,

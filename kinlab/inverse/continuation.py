@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.compiled import kernel
+from kinlab.fast.compiled import kernel
 
 FOLLOWED, SINGULAR_END, LOST = 0, 1, 2
 """How a path ended: at a regular solution; where solutions run together; not at all."""

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.chain import columns, frames
+from kinlab.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.branch_rows import miss
 from kinlab.inverse.kernel import pose_error
 from kinlab.inverse.structures import POINTING, POSITION, Form
-from kinlab.robot import Robot
+from kinlab.model.robot import Robot
 
 _LOST = 1e-6
 """sigma_min / sigma_max of J below which a direction may be free."""

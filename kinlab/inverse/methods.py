@@ -17,11 +17,11 @@ import numpy as np
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse import kernel
 from kinlab.inverse.result import IKHistory
 from kinlab.inverse.setup import DAMPING, FLOOR, Setup, beyond_reach
-from kinlab.robot import Robot
-from kinlab.stacks import fk, jacobian
+from kinlab.model.robot import Robot
 
 _RUNAWAY = 1e6
 """Radians (or lengths of the arm) in one step, beyond which q has lost its digits."""

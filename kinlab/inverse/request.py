@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array, rigid_transform
-from kinlab.compiled import kernel
+from kinlab.arrays import Array, real_array, rigid_transform, shown
 from kinlab.errors import OptionError, StateError, StructureError
-from kinlab.options import shown
-from kinlab.robot import Robot
+from kinlab.fast.compiled import kernel
+from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 RESTARTS = 40
@@ -186,7 +185,7 @@ def whole(value: Any, name: str, least: int) -> int:
 
 
 def require_robot(robot: Any) -> None:
-    """Says what to do with something that is no :class:`~kinlab.robot.Robot`.
+    """Says what to do with something that is no :class:`~kinlab.model.robot.Robot`.
 
     Raises:
         StructureError: also for a ``pin.Model``, whose floating base or loops are not a chain.

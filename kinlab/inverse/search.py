@@ -15,9 +15,10 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
-from kinlab.compiled import kernel as compiled
-from kinlab.compiled import over_rows
 from kinlab.errors import OptionError
+from kinlab.fast.compiled import kernel as compiled
+from kinlab.fast.compiled import over_rows
+from kinlab.fast.stacks import jacobian
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.branch_names import matching
 from kinlab.inverse.branches import IKBranches, ik_branches
@@ -33,8 +34,7 @@ from kinlab.inverse.setup import (
     search_of,
     setup,
 )
-from kinlab.robot import Robot, scratch
-from kinlab.stacks import jacobian
+from kinlab.model.robot import Robot, scratch
 
 TOL_STEP = 1e-13
 """||q_{k+1} - q_k|| below which the readable search stops, where the caller gives none."""

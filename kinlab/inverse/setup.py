@@ -8,12 +8,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from kinlab.arrays import Array
-from kinlab.chain_arrays import chain
+from kinlab.arrays import Array, seed_of
+from kinlab.fast.arrays import chain
+from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse.kernel import Search
-from kinlab.options import seed_of
-from kinlab.robot import Robot
-from kinlab.stacks import fk, jacobian
+from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, require_task, task_rows
 
 STARTS = 256

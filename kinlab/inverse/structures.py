@@ -8,12 +8,12 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.chain import columns, frames
-from kinlab.chain_arrays import Chain, chain
 from kinlab.errors import StructureError
+from kinlab.fast.arrays import Chain, chain
+from kinlab.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.closed_forms import MEETS, PARALLEL, reversed_chain
 from kinlab.inverse.continuation import BOUNDS, generic_solutions
-from kinlab.robot import Robot
+from kinlab.model.robot import Robot
 
 WRIST, TRIPLE, POINT, PLANE, GENERAL = 0, 1, 2, 3, 4
 """Families: spherical wrist, three parallel axes, a point carried by three joints, all axes

@@ -16,9 +16,9 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import UrdfError, near
-from kinlab.inertia import check_inertia
+from kinlab.model.link import check_inertia
+from kinlab.model.rotations import rpy_matrix
 from kinlab.model.strict_numbers import strict_numbers
-from kinlab.rotations import rpy_matrix
 
 MOVING = ("revolute", "continuous", "prismatic")
 _MULTI = ("floating", "planar", "spherical")

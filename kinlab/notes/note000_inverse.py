@@ -1,8 +1,4 @@
-"""Note 000, inverse kinematics: Newton's step, pseudo-inverses, gradient descent.
-
-Newton and gradient are shown on the planar 3R arm with x = (x, y, theta); the step length alpha
-of the gradient is 0.1.
-"""
+"""Note 000, sections 5, 6 and IK: singular and isotropic poses, Newton, gradient."""
 
 from __future__ import annotations
 
@@ -10,10 +6,173 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
-from kinlab.notes.arm import Arm, Array, apply, columns, lengths, turn, vector
-from kinlab.notes.frames import geometric_jacobian, tool_pose
-from kinlab.notes.note000_jacobian import planar_3r_jacobian
+from kinlab.formulas.record import Printed, formula
+from kinlab.notes.arm import (
+    Arm,
+    Array,
+    apply,
+    columns,
+    geometric_jacobian,
+    lengths,
+    matrix,
+    tool_pose,
+    turn,
+    vector,
+)
+from kinlab.notes.note000_kinematics import planar_3r_jacobian
+
+# -------- Note 000, sections 5 and 6: singular and isotropic poses of planar arms
+
+
+@formula(
+    "000.sing",
+    part="3R",
+    source="note 000, section 5",
+    quantity="planar_determinant",
+    robots="planar3r",
+    latex=r"\det J = l_1 l_2 s_2",
+    remark="a determinant needs a square J; rank and the smallest singular value serve any shape",
+)
+def planar_3r_determinant(arm: Arm, q: Array) -> Any:
+    """det J of the planar 3R arm: singular where it is stretched or folded."""
+    l1, l2, _ = lengths(arm)
+    return l1 * l2 * np.sin(columns(q)[1])
+
+
+@formula(
+    "000.sing",
+    part="2R",
+    source="note 000, section 5",
+    quantity="planar_position_determinant",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"\det J_{xy} = l_1 l_2 s_2",
+)
+def planar_2r_determinant(arm: Arm, q: Array) -> Any:
+    """det J of the planar 2R arm, the tool's angle left out."""
+    l1, l2 = lengths(arm)
+    return l1 * l2 * np.sin(columns(q)[1])
+
+
+def tip_jacobian(arm: Arm, q: Array) -> Array:
+    """^3J of the planar 2R arm, (..., 2, 2)."""
+    l1, l2 = lengths(arm)
+    q2 = columns(q)[1]
+    return matrix([l1 * np.sin(q2), 0.0], [l1 * np.cos(q2) + l2, l2])
+
+
+def _planar_jacobian(arm: Arm, q: Array) -> Array:
+    """Rows vx, vy of a planar arm of any number of links, (..., 2, n)."""
+    angles = np.cumsum(q, axis=-1)
+    steps = np.stack(lengths(arm)) * np.stack([-np.sin(angles), np.cos(angles)])
+    columns_: Array = np.moveaxis(np.cumsum(steps[..., ::-1], axis=-1)[..., ::-1], 0, -2)
+    return columns_
+
+
+def _defect(products: Array) -> Array:
+    """Square of how far a matrix of products is from a multiple of 1, over that multiple."""
+    size = products.shape[-1]
+    mean = np.trace(products, axis1=-2, axis2=-1)[..., None, None] / size
+    defect: Array = np.sum((products / mean - np.eye(size)) ** 2, axis=(-2, -1))
+    return defect
+
+
+def _of_columns(arm: Arm, q: Array) -> Array:
+    jacobian = _planar_jacobian(arm, q)
+    return _defect(turn(jacobian) @ jacobian)
+
+
+@formula(
+    "000.iso",
+    source="note 000, section 6",
+    quantity="isotropy_defect",
+    robots=("planar2r", "planar2r_rods", "planar3r"),
+    latex=r"\fixed{\text{rows}} \text{ orthogonal and of equal length: } J J^T = a I",
+    printed=Printed(
+        _of_columns,
+        "J J^T = a I is right, its words are not: they speak of columns, which are orthogonal too "
+        "for a square J only (n columns of m < n entries never are: shown on the 3R arm in x, y)",
+        r"\wrong{\text{columns}} \text{ orthogonal and of equal length: } J J^T = a I",
+        robots=("planar3r",),
+    ),
+)
+def isotropy_defect(arm: Arm, q: Array) -> Array:
+    """How far J is from isotropic: its rows orthogonal and equally long."""
+    jacobian = _planar_jacobian(arm, q)
+    return _defect(jacobian @ turn(jacobian))
+
+
+@formula(
+    "000.iso2r",
+    part="3J",
+    source="note 000, section 6",
+    quantity="jacobian_tool[:2]",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"{}^3J = \begin{pmatrix} l_1 s_2 & 0 \\ l_1 c_2 + l_2 & l_2 \end{pmatrix}",
+)
+def planar_2r_tip_jacobian(arm: Arm, q: Array) -> Array:
+    """Jacobian of the planar 2R arm in the tip's axes."""
+    return tip_jacobian(arm, q)
+
+
+@formula(
+    "000.iso2r",
+    part="orthogonal",
+    source="note 000, section 6.1",
+    quantity="orthogonal_columns_cosine",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"c_2 = -\frac{l_2}{l_1}",
+)
+def orthogonal_cosine(arm: Arm, q: Array) -> Array:
+    """cos theta2 where the columns are orthogonal."""
+    l1, l2 = lengths(arm)
+    return np.full(np.shape(q)[:-1], -l2 / l1)
+
+
+@formula(
+    "000.iso2r",
+    part="equal",
+    source="note 000, section 6.2",
+    quantity="equal_columns_cosine",
+    robots=("planar2r", "planar2r_rods"),
+    latex=r"c_2 = -\frac{l_1}{2 l_2}",
+)
+def equal_cosine(arm: Arm, q: Array) -> Array:
+    """cos theta2 where the columns are equally long."""
+    l1, l2 = lengths(arm)
+    return np.full(np.shape(q)[:-1], -l1 / (2.0 * l2))
+
+
+def _one_angle(arm: Arm, q: Array) -> Array:
+    _, l2 = lengths(arm)
+    known = np.sin(columns(q)[1]) > 0.0
+    return np.where(known[..., None, None], l2 * np.eye(2), np.nan)
+
+
+@formula(
+    "000.iso2r",
+    part="135 degrees",
+    source="note 000, section 6",
+    quantity="isotropic_jacobian",
+    robots="planar2r_isotropic",
+    latex=r"l_1 = \sqrt2\, l_2,\ \theta_2 = \fixed{\pm} 135^\circ \Rightarrow"
+    r" {}^3J = \begin{pmatrix} \fixed{\pm} l_2 & 0 \\ 0 & l_2 \end{pmatrix}",
+    printed=Printed(
+        _one_angle,
+        "theta2 = -135° is isotropic too and not mentioned (there the printed form gives nothing)",
+        r"l_1 = \sqrt2\, l_2,\ \theta_2 = \wrong{135^\circ} \Rightarrow"
+        r" {}^3J = \begin{pmatrix} l_2 & 0 \\ 0 & l_2 \end{pmatrix}",
+    ),
+)
+def isotropic_jacobian(arm: Arm, q: Array) -> Array:
+    """The isotropic 2R arm: l1 = √2 l2 and theta2 = ±135°."""
+    _, l2 = lengths(arm)
+    side = np.sign(np.sin(columns(q)[1]))
+    return matrix([side * l2, 0.0], [0.0, l2])
+
+
+# -------- Note 000, inverse kinematics: Newton's step, pseudo-inverses, gradient descent
+# Newton and gradient are shown on the planar 3R arm with x = (x, y, theta); the step length alpha
+# of the gradient is 0.1.
 
 
 def _miss(arm: Arm, q: Array, target: Array) -> Array:

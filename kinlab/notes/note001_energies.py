@@ -10,11 +10,20 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
-from kinlab.notes import mass
-from kinlab.notes.arm import Arm, Array, apply, columns, lengths, turn, vector
-from kinlab.notes.frames import geometric_jacobian, tool_pose
-from kinlab.notes.note000_newton_euler import torques
+from kinlab.formulas.record import Printed, formula
+from kinlab.notes import arm as mass
+from kinlab.notes.arm import (
+    Arm,
+    Array,
+    apply,
+    columns,
+    geometric_jacobian,
+    lengths,
+    tool_pose,
+    turn,
+    vector,
+)
+from kinlab.notes.note000_dynamics import torques
 
 ARM = "planar2r"
 SECTION = "note 001, section 2"

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
-from kinlab.notes import mass
-from kinlab.notes.arm import Arm, Array, apply, turn
-from kinlab.notes.frames import geometric_jacobian, tool_pose
+from kinlab.formulas.record import Printed, formula
+from kinlab.notes import arm as mass
+from kinlab.notes.arm import Arm, Array, apply, geometric_jacobian, tool_pose, turn
 
 _SECTION = "note 002, section 4.6"
 MOVING = ("planar2r", "planar2r_rods", "planar3r", "spatial3r", "scara", "stanford", "puma560",

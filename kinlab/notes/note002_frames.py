@@ -4,15 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
-from kinlab.notes import mass
-from kinlab.notes.arm import Arm, Array, columns, lengths, matrix, vector
-from kinlab.notes.frames import (
+from kinlab.formulas.record import Printed, formula
+from kinlab.notes import arm as mass
+from kinlab.notes.arm import (
+    Arm,
+    Array,
+    columns,
     frames,
     joint_columns,
+    lengths,
     link_transforms,
+    matrix,
     modified_transform,
     standard_transform,
+    vector,
 )
 
 _SECTION = "note 002, section 1"

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
-from kinlab.notes import mass
+from kinlab.formulas.record import Printed, formula
+from kinlab.notes import arm as mass
 from kinlab.notes.arm import Arm, Array, apply, columns, dot, lengths
 
 _TURNING = "note 002, section 2.1"

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import formula
+from kinlab.formulas.record import formula
 from kinlab.notes.loop import E2, Array, Loop, dot, inverse_transpose, legs, times
 from kinlab.notes.note003_kinematics import bars, bias, jacobian, turn
 

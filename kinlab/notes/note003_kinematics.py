@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.formula import Printed, formula
+from kinlab.formulas.record import Printed, formula
 from kinlab.notes.loop import E1, Array, Loop, S, dot, legs, times, triple
 
 ROBOTS = ("fivebar",)

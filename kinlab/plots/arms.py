@@ -9,14 +9,14 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.ellipsoids import ellipsoid
 from kinlab.arrays import Array
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.fast.stacks import fk
+from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
-from kinlab.robot import Robot
-from kinlab.stacks import fk
-from kinlab.states import joint_vector
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import TaskSpace
-from kinlab.workspace_map import stays_in_plane
+from kinlab.sweeps.workspace import stays_in_plane
 
 _STYLES = {"velocity": (GREEN, "-"), "force": (RED, "--"), "dynamic": (GREY, "-.")}
 

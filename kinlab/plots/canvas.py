@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.errors import FileError, MissingExtraError
-from kinlab.files import write_bytes
+from kinlab.host.files import write_bytes
 
 BLUE, RED, GREEN, GREY = "#1f5fa8", "#c2352b", "#2e8540", "#6b7280"
 """The colours that every figure shares: arm, singular, isotropic, background."""

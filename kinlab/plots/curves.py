@@ -9,10 +9,10 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.loci import Loci
 from kinlab.analysis.metrics import singular_values
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, RED, new_axes
-from kinlab.robot import Robot
-from kinlab.states import joint_vector
 from kinlab.structure.task_space import read_length, read_task
 
 

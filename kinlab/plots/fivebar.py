@@ -7,15 +7,13 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fivebar.dynamics import crank_inertia
+from kinlab.fivebar.dynamics import crank_inertia, rod_model
 from kinlab.fivebar.isotropy import isotropic_poses
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.loci import type_one, type_two, type_two_contour
 from kinlab.fivebar.pose import HANGING, Mode, solve_pose
-from kinlab.fivebar.rods import rod_model
-from kinlab.fivebar.room import Rectangle
 from kinlab.fivebar.servo import ServoSizing
-from kinlab.fivebar.workspace import largest_circle, largest_rectangle, workspace_map
+from kinlab.fivebar.workspace import Rectangle, largest_circle, largest_rectangle, workspace_map
 from kinlab.plots.canvas import new_axes, new_figure
 
 _LEGS = ("tab:blue", "tab:orange")

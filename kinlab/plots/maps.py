@@ -11,7 +11,7 @@ from kinlab.analysis.boundary import PlanarBoundary
 from kinlab.analysis.sections import WorkspaceSection
 from kinlab.arrays import Array
 from kinlab.plots.canvas import RED, new_axes
-from kinlab.workspace_map import BinnedMap, WorkspaceMap, binned
+from kinlab.sweeps.workspace import BinnedMap, WorkspaceMap, binned
 
 _LABELS = {"x": "x [m]", "y": "y [m]", "z": "z [m]", "r": "distance from the z axis [m]"}
 _METRICS = {"inverse_condition": "inverse condition number 1/κ", "yoshikawa": "Yoshikawa's measure",
@@ -36,7 +36,7 @@ def plot_map(
         boundary: drawn as lines, for planar arms.
         curves: tool positions of singular loci, each (K, 3); drawn in the same plane.
         section: edges and internal boundaries, for the plane ``rz``.
-        plane, cells: as in :func:`kinlab.workspace_map.binned`.
+        plane, cells: as in :func:`kinlab.sweeps.workspace.binned`.
         axes: where to draw; a new figure if left out.
 
     Returns:

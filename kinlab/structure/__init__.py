@@ -1,10 +1,11 @@
 """What kind of arm it is: its tasks, its joints' ranges, and the geometry of its axes.
 
-==============  ===============================================================================
+==============  ==================================================================================
 module          what it holds
-==============  ===============================================================================
-``tasks``       names and masks of task coordinates; which of them an arm can have
-``task_space``  the task's rows of one arm's J in one length unit; the box that searches draw from
-``axes``        joint axes as screws: parallel, meeting, wrist and shoulder centre, structure
-==============  ===============================================================================
+==============  ==================================================================================
+``axes``        Wrist, shoulder, elbow: what the geometry of the joint axes calls a singularity
+``task_space``  The rows of J that a task asks for, in dimensionless form, and the box searches
+                draw from
+``tasks``       Task spaces: which of the six coordinates of the tool are asked for
+==============  ==================================================================================
 """

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.robot import Robot
-from kinlab.stacks import fk, jacobian
+from kinlab.fast.stacks import fk, jacobian
+from kinlab.model.robot import Robot
 
 _MEET = 1e-9
 """Metres or sine below which axes meet or are parallel, on tables with ten digits."""

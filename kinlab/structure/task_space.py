@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError
-from kinlab.robot import Robot, require_robot
-from kinlab.stacks import jacobian
+from kinlab.fast.stacks import jacobian
+from kinlab.model.robot import Robot, require_robot
 from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
 AUTO = "auto"

@@ -12,9 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, shown
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.options import shown
 from kinlab.tolerances import TOLERANCES
 
 TASKS: dict[str, tuple[int, ...]] = {

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, shown
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.options import shown
-from kinlab.stacks import fk, jacobian
+from kinlab.fast.stacks import fk, jacobian
 
 Measure = Callable[[Any, Array], Any]
 """f(robot, q (m, n)) -> an array with m rows, or a dict of such arrays."""

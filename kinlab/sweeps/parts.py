@@ -13,7 +13,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import FileError, OptionError
-from kinlab.files import read_text, write_bytes, write_text
+from kinlab.host.files import read_text, write_bytes, write_text
 from kinlab.sweeps.samples import BLOCK
 
 Columns = dict[str, Array]
@@ -23,7 +23,7 @@ Run = tuple[int, int]
 MANIFEST = "sweep.json"
 _PART = re.compile(r"part-(\d{8})-(\d{8})\.npz")
 _HALF = ".part-*.npz.*"
-"""What a run that was killed while it wrote leaves behind (see :mod:`kinlab.files`)."""
+"""What a run that was killed while it wrote leaves behind (see :mod:`kinlab.host.files`)."""
 
 
 class Parts(Protocol):

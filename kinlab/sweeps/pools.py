@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.errors import OptionError, SweepError
-from kinlab.parent import end_with_parent
+from kinlab.fast.threads import one_thread
+from kinlab.host.processes import end_with_parent
 from kinlab.sweeps.measures import Measure, evaluate
 from kinlab.sweeps.parts import Columns, Run
 from kinlab.sweeps.samples import Samples
-from kinlab.threads import one_thread
 
 _TRIES = 3
 """Times in a row that the workers may die before a chunk is finished."""

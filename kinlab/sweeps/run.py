@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.robot import Robot
+from kinlab.fast.threads import available
+from kinlab.model.robot import Robot
 from kinlab.sweeps.measures import Measure, describe, read_measure
 from kinlab.sweeps.parts import Columns, Folder, Memory, Parts, Run
 from kinlab.sweeps.pools import Pool, run_chunk, same_columns, serial, spread
 from kinlab.sweeps.samples import BLOCK, Samples, read_samples
-from kinlab.threads import available
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,9 +10,9 @@ from typing import Literal
 
 import sympy
 
-from kinlab.convention import Convention
-from kinlab.dh import DHTable
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
 from kinlab.symbolic.trig import Poly, TrigRing, symbol
 from kinlab.symbolic.vocabulary import Vocabulary, exact, vocabulary
 

@@ -8,7 +8,7 @@ from typing import Any
 import sympy
 
 from kinlab.errors import NameUnknownError, OptionError, StructureError, near
-from kinlab.library import load
+from kinlab.model.library import load
 from kinlab.symbolic import dynamics, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
 from kinlab.symbolic.determinant import det_jacobian

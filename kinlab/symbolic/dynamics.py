@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 import sympy
 
-from kinlab.convention import Convention
+from kinlab.model.link import Convention
 from kinlab.symbolic import kinematics
 from kinlab.symbolic.arm import SymbolicArm
 from kinlab.symbolic.kinematics import Grid, as_matrix, product

@@ -11,8 +11,8 @@ import numpy as np
 import sympy
 
 from kinlab.arrays import Array
-from kinlab.convention import Convention
 from kinlab.errors import NameUnknownError, near
+from kinlab.model.link import Convention
 from kinlab.symbolic.arm import SymbolicArm, cos_sin, snapped
 from kinlab.symbolic.trig import Poly
 from kinlab.symbolic.vocabulary import exact
@@ -147,7 +147,7 @@ def _placed(arm: SymbolicArm, transform: Array, which: str) -> Grid:
 
 
 def link_step(arm: SymbolicArm, i: int) -> Grid:
-    """^{i-1}T_i of row i (from 0), as :func:`kinlab.dh.link_transform` writes it."""
+    """^{i-1}T_i of row i (from 0), as :func:`kinlab.model.dh.link_transform` writes it."""
     link, trig = arm.table.links[i], arm.trig
     zero, one = trig.ring.zero, trig.ring.one
     c0, s0 = (trig.number(x) for x in cos_sin(link.theta))

@@ -13,8 +13,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from kinlab.convention import Convention
-from kinlab.dh import DHLink, DHTable
+from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.link import Convention
 
 Linear = tuple[tuple[Fraction, str], ...]
 """A sum of multiples of names; the empty name is the number 1."""

@@ -14,8 +14,8 @@ import pinocchio as pin
 from pinocchio.visualize import MeshcatVisualizer
 
 from kinlab.arrays import Array
-from kinlab.library import example_robots
-from kinlab.robot import Robot
+from kinlab.model.library import example_robots
+from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.bodies import Bodies
 

@@ -9,14 +9,13 @@ import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.errors import StructureError
-from kinlab.extract import to_dh
-from kinlab.robot import Robot
-from kinlab.stacks import fk, jacobian
+from kinlab.fast.stacks import fk, jacobian
+from kinlab.model.extract import to_dh
+from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, generic_rank
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
-from kinlab.viewer.framing import look_at
-from kinlab.viewer.stage import add_ellipsoids, empty_spec, set_stage
+from kinlab.viewer.shapes import add_ellipsoids, empty_spec, look_at, set_stage
 
 _ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
 _STILL = 1e-9

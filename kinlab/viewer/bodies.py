@@ -12,13 +12,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab import urdf_read
 from kinlab.arrays import Array
 from kinlab.errors import UrdfError
+from kinlab.model import urdf_read
+from kinlab.model.robot import Robot
 from kinlab.model.strict_numbers import strict_numbers
 from kinlab.model.urdf_engine import document
 from kinlab.model.urdf_records import read_numbers, read_origin, read_tree
-from kinlab.robot import Robot
 
 _FORMATS = (".dae", ".obj", ".stl")
 _SIZES = {"box": ("size", 3), "sphere": ("radius", 1)}

@@ -13,12 +13,12 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.convention import Convention
-from kinlab.dh import DHTable
-from kinlab.robot import Robot
+from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import joint_paths, reach
-from kinlab.viewer.labels import Label
+from kinlab.viewer.shapes import Label
 
 
 @dataclass

@@ -17,9 +17,7 @@ from kinlab.fivebar.metrics import condition_number
 from kinlab.fivebar.pose import HANGING, Mode, solve_pose
 from kinlab.fivebar.workspace import workspace_map
 from kinlab.viewer import shapes
-from kinlab.viewer.framing import look_at
-from kinlab.viewer.labels import Label
-from kinlab.viewer.stage import add_ellipsoids, empty_spec, set_stage
+from kinlab.viewer.shapes import Label, add_ellipsoids, empty_spec, look_at, set_stage
 
 HOME = "/meshcat/fivebar"
 """Its frame is the mechanism's plane: x to the right, y up, z towards the viewer."""

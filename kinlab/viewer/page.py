@@ -12,12 +12,11 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, rigid_transform, shaped
 from kinlab.errors import OptionError, StateError
-from kinlab.files import write_text
+from kinlab.host.files import write_text
 from kinlab.viewer import shapes
-from kinlab.viewer.labels import Label
-from kinlab.viewer.motion import motion_json
-from kinlab.viewer.recorder import Recorder
-from kinlab.viewer.static_page import page_html
+from kinlab.viewer.motions import motion_json
+from kinlab.viewer.shapes import Label
+from kinlab.viewer.static_page import Recorder, page_html
 
 if TYPE_CHECKING:
     from kinlab.viewer.live import LiveServer
@@ -145,7 +144,7 @@ class Page:
             name: heading in the page.
 
         Raises:
-            StateError, OptionError: as :func:`kinlab.viewer.motion.motion_json`.
+            StateError, OptionError: as :func:`kinlab.viewer.motions.motion_json`.
         """
         rows = self._read(q)
         self._spec["animation"] = motion_json(rows, duration, name)

@@ -6,21 +6,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, shaped
+from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar.geometry import fk as fivebar_fk
 from kinlab.fivebar.geometry import ik, mode_of
 from kinlab.fivebar.linkage import Linkage
 from kinlab.fivebar.pose import solve_pose
-from kinlab.robot import Robot
-from kinlab.stacks import fk, jacobian
-from kinlab.states import joint_vector
+from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import draw_page
 from kinlab.viewer.fivebar_page import best_start, size_of
 from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
 from kinlab.viewer.page import COLORS, Page, one_pose
-from kinlab.viewer.recorder import new_scene
+from kinlab.viewer.static_page import new_scene
 
 
 class Scene(Page):

@@ -1,14 +1,91 @@
-"""The few shapes that the pictures are made of, as meshcat objects; metres, colours 0xRRGGBB."""
+"""What pages are drawn with: shapes, labels, camera and framing, background and floor."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import meshcat.geometry as g
 import numpy as np
 
 from kinlab.arrays import Array
+
+# -------- Texts that the page hangs beside points of the scene
+
+
+@dataclass(frozen=True)
+class Label:
+    """One text.
+
+    Attributes:
+        path: the node it moves with.
+        at: where in that node's frame, metres, (3,).
+        html: what it says; callers escape what a user wrote.
+        group: groups of which any one shows it, separated by blanks.
+    """
+
+    path: str
+    at: Sequence[float] | Array
+    html: str
+    group: str
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values for the page."""
+        return {
+            "path": self.path,
+            "at": [float(x) for x in self.at],
+            "html": self.html,
+            "group": self.group,
+        }
+
+
+# -------- Where to look from, and how large to draw, so that the mechanism fills the
+#          picture
+
+_FIELD_OF_VIEW = 35.0
+"""Vertical, degrees. meshcat's own 75 bends everything near the edge."""
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Position and target in the world, metres, (3,) each."""
+
+    position: Array
+    target: Array
+
+    def as_json(self) -> dict[str, Any]:
+        """Plain values for the page."""
+        return {
+            "position": [float(x) for x in self.position],
+            "target": [float(x) for x in self.target],
+            "fov": _FIELD_OF_VIEW,
+        }
+
+
+def look_at(points: Array, direction: Array, margin: float) -> Camera:
+    """A camera that sees all points.
+
+    Args:
+        points: (N, 3), metres.
+        direction: from the target towards the camera, (3,).
+        margin: what must be visible around them, metres.
+    """
+    low, high = points.min(axis=0), points.max(axis=0)
+    target = 0.5 * (low + high)
+    radius = 0.5 * float(np.linalg.norm(high - low)) + margin
+    distance = radius / np.sin(np.radians(_FIELD_OF_VIEW / 2))
+    return Camera(target + distance * direction / np.linalg.norm(direction), target)
+
+
+def round_step(size: float) -> float:
+    """A step 1, 2 or 5 times a power of ten, about a fifth of ``size``."""
+    power = 10.0 ** np.floor(np.log10(size / 5))
+    return float(power * max(k for k in (1, 2, 5) if k * power <= size / 5 * (1 + 1e-9)))
+
+
+# -------- The few shapes that the pictures are made of, as meshcat objects; metres, colours
+#          0xRRGGBB
 
 RED, GREEN, BLUE = 0xC62828, 0x2E7D32, 0x1565C0
 """Axes x, y and z; in the DH picture red is what lies along x (a, alpha), blue along z."""
@@ -181,3 +258,69 @@ def turn_to(direction: Array, axis: int) -> Array:
     columns[axis], columns[(axis + 1) % 3] = direction, side
     columns[(axis + 2) % 3] = np.cross(direction, side)
     return np.column_stack(columns)
+
+
+# -------- What every page starts from: background, floor, camera, and the keys that the
+#          script reads
+
+
+def set_stage(vis: Any, size: float) -> None:
+    """Replaces meshcat's dark sky, huge grid and axes by a light stage of the right size."""
+    vis["/Grid"].delete()
+    vis["/Axes"].delete()
+    vis["/Background"].set_property("top_color", [1.0, 1.0, 1.0])
+    vis["/Background"].set_property("bottom_color", [0.86, 0.9, 0.94])
+    floor(vis["/meshcat/floor"], 1.2 * size, round_step(size))
+
+
+def empty_spec(
+    title: str, subtitle: str, camera: Camera, root: str = "/meshcat"
+) -> dict[str, Any]:  # fmt: skip
+    """A page of nothing but its title; the mechanisms fill in the rest.
+
+    Args:
+        title: the mechanism's name.
+        subtitle: where it comes from.
+        camera: where to look from.
+        root: the node in whose frame the tool's position, and what is added, are given.
+    """
+    trace = f"{root}/trace"
+    return {
+        "root": root,
+        "title": title,
+        "subtitle": subtitle,
+        "notes": [],
+        "camera": camera.as_json(),
+        "planar": False,
+        "body": "",
+        "dh": [],
+        "dh_convention": "",
+        "dh_columns": [],
+        "groups": {"trace": [trace]},
+        "labels": [],
+        "shown": ["added"],
+        "checks": [["trace", "tool trace"]],
+        "ellipsoids": [],
+        "legend": [],
+        "trace": trace,
+        "animation": None,
+        "live": "",
+    }
+
+
+def add_ellipsoids(vis: Any, spec: dict[str, Any], size: float, rank: int) -> None:
+    """The velocity and force ellipsoids at the tool, which the page shapes and shows.
+
+    Args:
+        vis: the scene.
+        spec: the page's spec, filled in.
+        size: of the mechanism, metres.
+        rank: number of directions in which the tool can move.
+    """
+    for kind, color in ELLIPSOIDS.items():
+        path = f"{spec['root']}/ellipsoids/{kind}"
+        ball(vis[path], 1.0, paint(color, 0.4))
+        entry = {"kind": kind, "path": path, "size": ELLIPSOID_SIZE * size, "rank": rank}
+        spec["ellipsoids"].append(entry)
+        spec["groups"][kind] = [path]
+        spec["checks"].append([kind, f"{kind} ellipsoid"])

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from kinlab.dh import DHTable
-from kinlab.library import load
-from kinlab.robot import Robot
+from kinlab.model.dh import DHTable
+from kinlab.model.library import load
+from kinlab.model.robot import Robot
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import Linkage

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.doctor.table_poses import is_poses_file, read_poses
-from kinlab.rotations import matrix_rpy, rpy_matrix
+from kinlab.doctor.tables.poses import is_poses_file, read_poses
+from kinlab.model.rotations import matrix_rpy, rpy_matrix
 
 PUMA = kl.load("puma560").table
 

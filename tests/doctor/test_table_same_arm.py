@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from random_tables import random_pose, random_table, tables
 
 import kinlab as kl
-from kinlab.library import shipped
+from kinlab.model.library import shipped
 
 
 @settings(max_examples=40, deadline=None)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from kinlab.doctor import tree
 from kinlab.doctor.file import examine_file
-from kinlab.doctor.input import parse
 from kinlab.errors import ExpressionError
+from kinlab.formulas import tree
+from kinlab.formulas.text import parse
 
 
 def agrees(folder, text, table="formulas"):

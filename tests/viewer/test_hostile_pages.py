@@ -7,7 +7,7 @@ import re
 import pytest
 
 import kinlab as kl
-from kinlab.check.typeset import mathml
+from kinlab.formulas.typeset import mathml
 from kinlab.viewer.scene import Scene
 
 HOSTILE = [

@@ -1,0 +1,247 @@
+"""Five-bars as a domain, and the engine's quantities of their closed chain."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab.arrays import Array
+from kinlab.check.quantities.quantity import Domain, Quantity
+from kinlab.errors import MechanismError, NameUnknownError, UnreachableError, near
+from kinlab.fivebar import FiveBar
+from kinlab.fivebar.closed_chain import CRANKS, PASSIVE, ClosedChain
+from kinlab.fivebar.files import presets
+from kinlab.notes.loop import Loop
+
+# -------- Five-bars as a domain: names and groups, the plain numbers, random closed poses
+
+_CLEAR = 0.15
+"""Least sine between two bars in a drawn pose: what is compared is the formula, not rounding."""
+
+_TRIES = 200
+"""Poses tried for each one drawn."""
+
+DRAWS = ("theta", "xy", "mode", "v", "a")
+
+
+def numbers(fivebar: FiveBar) -> Loop:
+    """The plain numbers of a five-bar.
+
+    Raises:
+        MechanismError: gravity is not along -y, as the note has it.
+    """
+    gravity = np.asarray(fivebar.gravity)
+    if gravity[0] != 0.0:
+        raise MechanismError(f"{fivebar.name}: the note's formulas need gravity along -y")
+    return Loop(
+        name=fivebar.name,
+        l1=np.asarray(fivebar.l1),
+        l2=np.asarray(fivebar.l2),
+        e=fivebar.e,
+        crank=np.asarray(fivebar.crank_mass),
+        crank_com=np.asarray(fivebar.crank_com),
+        crank_inertia=np.asarray(fivebar.crank_inertia),
+        rotor=np.square(fivebar.gear_ratio) * np.asarray(fivebar.rotor_inertia),
+        rod=np.asarray(fivebar.rod_mass),
+        rod_com=np.asarray(fivebar.rod_com),
+        rod_inertia=np.asarray(fivebar.rod_inertia),
+        payload=fivebar.payload,
+        g=-float(gravity[1]),
+    )
+
+
+def load(fivebar: Any) -> FiveBar:
+    """A five-bar from itself, a preset's name or a path."""
+    if isinstance(fivebar, FiveBar):
+        return fivebar
+    if isinstance(fivebar, (str, Path)):
+        name = str(fivebar)
+        return _preset(name) if name in presets() else FiveBar.load(name)
+    raise NameUnknownError(f"five-bar: {type(fivebar).__name__} is no FiveBar, name or path of one")
+
+
+@cache
+def _preset(name: str) -> FiveBar:
+    return FiveBar.load(name)
+
+
+def members(name: str) -> tuple[str, ...]:
+    """``"fivebar"`` is every preset; another name stands for itself."""
+    return tuple(presets()) if name == "fivebar" else (name,)
+
+
+def sample(
+    fivebar: FiveBar, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+) -> tuple[Array, ...]:
+    """Random closed poses away from singularities, with motions of the tool.
+
+    Crank angles and the assembly are drawn, and Pinocchio closes the loop; so the states do not
+    come from the formulas that they are to test.
+
+    Raises:
+        NameUnknownError: an argument that cannot be drawn.
+        MechanismError: hardly any pose is that far from a singularity.
+    """
+    for name in arguments:
+        if name not in DRAWS:
+            raise NameUnknownError(f"argument {name!r} cannot be drawn; {near(name, DRAWS)}")
+    chain = fivebar.closed_chain()
+    drawn: dict[str, list[Array]] = {name: [] for name in DRAWS}
+    for _ in range(_TRIES * count):
+        theta = rng.uniform(-np.pi, np.pi, 2)
+        try:
+            q = chain.assemble(theta, int(rng.choice([-1, 1])))
+        except UnreachableError:
+            continue
+        sines = np.sin([q[1], q[3], q[2] + q[3] - q[0] - q[1]])
+        if np.abs(sines).min() < _CLEAR:
+            continue
+        state = (theta, chain.fk(q), np.sign(sines[:2]), *rng.standard_normal((2, 2)))
+        for name, value in zip(DRAWS, state, strict=True):
+            drawn[name].append(value * (5.0 if name == "a" else 1.0))
+        if len(drawn["theta"]) == count:
+            return tuple(np.array(drawn[name]) for name in arguments)
+    raise MechanismError(f"{fivebar.name}: hardly any pose is clear of singularities")
+
+
+def _label(fivebar: FiveBar) -> str:
+    return fivebar.name
+
+
+FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample)
+
+
+# -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
+
+Answer = Callable[..., Any]
+
+
+def _engine(answer: Answer, *, rods: bool) -> Answer:
+    """Runs ``answer(chain, *one state)`` over the states; without the rods' mass if asked."""
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        light = fivebar if rods else replace(fivebar, rod_mass=0.0, rod_inertia=0.0)
+        chain = light.closed_chain()
+        return np.array([answer(chain, *state) for state in zip(*stacks, strict=True)])
+
+    return engine
+
+
+def _bars(chain: ClosedChain, q: Array, joints: tuple[int, ...]) -> Array:
+    """Directions of the x axes of two joints, (2, 2)."""
+    data = chain.model.createData()
+    pin.forwardKinematics(chain.model, data, q)
+    return np.array([data.oMi[joint + 1].rotation[:2, 0] for joint in joints])
+
+
+def _pins(chain: ClosedChain, theta: Array) -> tuple[Array, Array]:
+    """Base pins and elbows, each (2, 2), m."""
+    q = np.zeros(4)
+    q[[*CRANKS]] = theta
+    data = chain.model.createData()
+    pin.forwardKinematics(chain.model, data, q)
+    places = np.array([placement.translation[:2] for placement in data.oMi])
+    return places[[1, 3]], places[[2, 4]]
+
+
+def _rod_length(chain: ClosedChain, theta: Array, xy: Array) -> Any:
+    return np.linalg.norm(xy - _pins(chain, theta)[1], axis=1)
+
+
+def _projection(chain: ClosedChain, theta: Array, xy: Array) -> Any:
+    base, elbow = _pins(chain, theta)
+    return 2.0 * np.sum((base - xy) * (elbow - base), axis=1)
+
+
+def _torque(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Array:
+    q = chain.at(xy, mode)
+    qd = chain.joint_rates(q, v)
+    return chain.inverse_dynamics(q, qd, chain.joint_accelerations(q, qd, a))
+
+
+def _turn(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
+    q = chain.at(xy, mode)
+    return chain.joint_accelerations(q, chain.joint_rates(q, v), a)[[*CRANKS]]
+
+
+def _power(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
+    rate = chain.joint_rates(chain.at(xy, mode), v)[[*CRANKS]]
+    return _torque(chain, xy, v, a, mode) * rate
+
+
+def _per_acceleration(chain: ClosedChain, xy: Array, mode: Array) -> Any:
+    still = np.zeros(2)
+    held = _torque(chain, xy, still, still, mode)
+    columns = [_torque(chain, xy, still, unit, mode) - held for unit in np.eye(2)]
+    return np.stack(columns, axis=1)
+
+
+def _load(chain: ClosedChain, xy: Array, mode: Array) -> Any:
+    return np.diag(chain.mass_matrix(chain.at(xy, mode)))
+
+
+def _quantity(
+    name: str, arguments: str, answer: Answer, about: str, *, rods: bool = True
+) -> Quantity:
+    return Quantity(name, tuple(arguments.split()), _engine(answer, rods=rods), about, FIVEBAR)
+
+
+QUANTITIES = (
+    _quantity("fivebar_rod_length", "theta xy", _rod_length, "elbow to tool, m, (2,)"),
+    _quantity(
+        "fivebar_projection", "theta xy",
+        _projection, "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
+    ),
+    _quantity(
+        "fivebar_cranks", "xy mode",
+        lambda c, xy, mode: _bars(c, c.at(xy, mode), CRANKS), "u_1, u_2, (2, 2)",
+    ),
+    _quantity(
+        "fivebar_rods", "xy mode",
+        lambda c, xy, mode: _bars(c, c.at(xy, mode), PASSIVE), "w_1, w_2, (2, 2)",
+    ),
+    _quantity(
+        "fivebar_jacobian", "xy mode",
+        lambda c, xy, mode: c.jacobian(c.at(xy, mode)), "J of theta_dot = J v, rad/m, (2, 2)",
+    ),
+    _quantity("fivebar_turn", "xy v a mode", _turn, "theta_ddot, rad/s², (2,)"),
+    _quantity("fivebar_torque", "xy v a mode", _torque, "crank torques, N m, (2,)"),
+    _quantity(
+        "fivebar_torque_massless", "xy v a mode",
+        _torque, "crank torques with massless rods, N m, (2,)", rods=False,
+    ),
+    _quantity(
+        "fivebar_torque_per_acceleration", "xy mode",
+        _per_acceleration, "G with massless rods, kg m, (2, 2)", rods=False,
+    ),
+    _quantity(
+        "fivebar_torque_gains", "xy mode",
+        lambda c, xy, mode: np.linalg.svd(_per_acceleration(c, xy, mode), compute_uv=False),
+        "singular values of G with massless rods, largest first, kg m, (2,)", rods=False,
+    ),
+    _quantity(
+        "fivebar_power_massless", "xy v a mode",
+        _power, "power of each crank with massless rods, W, (2,)", rods=False,
+    ),
+    _quantity(
+        "fivebar_rate_per_speed", "xy mode",
+        lambda c, xy, mode: np.linalg.norm(c.jacobian(c.at(xy, mode)), axis=1),
+        "worst theta_dot per |v|, rad/m, (2,)",
+    ),
+    _quantity(
+        "fivebar_load_inertia_massless", "xy mode",
+        _load, "diagonal of the crank-side mass matrix with massless rods, kg m², (2,)",
+        rods=False,
+    ),
+    _quantity(
+        "fivebar_torque_per_acceleration_worst", "xy mode",
+        lambda c, xy, mode: np.linalg.norm(_per_acceleration(c, xy, mode), axis=1),
+        "worst torque per |a| with massless rods, kg m, (2,)", rods=False,
+    ),
+)  # fmt: skip

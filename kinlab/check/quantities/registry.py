@@ -1,0 +1,105 @@
+"""The engine's quantities by name, with an index where only some entries are meant."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from kinlab.arrays import shown
+from kinlab.check.quantities import (
+    action as action_quantities,
+)
+from kinlab.check.quantities import (
+    fivebar as fivebar_quantities,
+)
+from kinlab.check.quantities import (
+    identity,
+)
+from kinlab.check.quantities import (
+    links as link_quantities,
+)
+from kinlab.check.quantities import (
+    serial as serial_quantities,
+)
+from kinlab.check.quantities import (
+    special as special_quantities,
+)
+from kinlab.check.quantities import (
+    table as table_quantities,
+)
+from kinlab.check.quantities.quantity import Quantity
+from kinlab.errors import NameUnknownError, near
+
+_MODULES = (
+    serial_quantities,
+    link_quantities,
+    special_quantities,
+    action_quantities,
+    table_quantities,
+    identity,
+    fivebar_quantities,
+)
+"""Modules whose ``QUANTITIES`` belong to the list."""
+
+_INDEXED = re.compile(r"(\w+)\[([\d:,\s-]+)\]")
+_ENTRY = re.compile(r"(-?\d+)|(-?\d+)?:(-?\d+)?")
+
+
+@cache
+def quantities() -> dict[str, Quantity]:
+    """Every quantity by name."""
+    found: dict[str, Quantity] = {}
+    for module in _MODULES:
+        for one in module.QUANTITIES:
+            if one.name in found:
+                raise AssertionError(f"two quantities are named {one.name!r}")
+            found[one.name] = one
+    return found
+
+
+def quantity(name: str) -> Quantity:
+    """The quantity of a name such as ``"fk"``, ``"inverse_dynamics[0]"`` or ``"fk[:3,3]"``.
+
+    Raises:
+        NameUnknownError: no such quantity, or an index that cannot be read.
+    """
+    if not isinstance(name, str):
+        raise NameUnknownError(f"quantity {shown(name)} is unknown; give a name, as text")
+    return _quantity(name)
+
+
+@cache
+def _quantity(name: str) -> Quantity:
+    known = quantities()
+    if name in known:
+        return known[name]
+    indexed = _INDEXED.fullmatch(name.strip())
+    if indexed is None or indexed.group(1) not in known:
+        plain = indexed.group(1) if indexed else name
+        raise NameUnknownError(f"quantity {name!r} is unknown; {near(plain, known)}")
+    whole = known[indexed.group(1)]
+    index = tuple(_entry(text.strip(), name) for text in indexed.group(2).split(","))
+
+    def engine(mechanism: Any, *stacks: Any) -> Any:
+        answer = whole.engine(mechanism, *stacks)
+        try:
+            return answer[(slice(None), *index)]
+        except IndexError:
+            raise NameUnknownError(
+                f"quantity {name!r}: the index does not fit the shape {answer.shape[1:]} of "
+                f"{whole.name!r}"
+            ) from None
+
+    return replace(whole, name=name, engine=engine)
+
+
+def _entry(text: str, name: str) -> int | slice:
+    read = _ENTRY.fullmatch(text)
+    if read is None:
+        raise NameUnknownError(f"quantity {name!r}: index {text!r} is no number or range")
+    if read.group(1) is not None:
+        return int(read.group(1))
+    start, stop = (None if part is None else int(part) for part in read.groups()[1:])
+    return slice(start, stop)

@@ -1,0 +1,254 @@
+"""Engine quantities of note 000 beyond the usual ones: frames, singular and isotropic poses, IK.
+
+Each is computed from Pinocchio's placements and Jacobians by another road than the note's.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.quantities.quantity import Quantity
+from kinlab.check.quantities.serial import SERIAL, planar_jacobian, planar_pose, positions
+from kinlab.engine import kinematics, links
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot, frame_id, scratch
+
+
+def dh_poses(robot: Robot, q: Any) -> Array:
+    """Poses of the DH frames of the robot's table, as Pinocchio places them."""
+    if robot.table is not None and robot.table.convention is Convention.STANDARD:
+        return np.stack([_dh_frames(robot, one) for one in q])
+    return links.link_poses(robot, q)
+
+
+def link_transforms(robot: Robot, q: Any) -> Array:
+    """^{i-1}T_i between the DH frames."""
+    base = np.eye(4) if robot.table is None else np.asarray(robot.table.base)
+    poses = dh_poses(robot, q)
+    first = np.broadcast_to(base, (len(poses), 1, 4, 4))
+    before = np.concatenate([first, poses[:, :-1]], axis=1)
+    steps: Array = np.linalg.solve(before, poses)
+    return steps
+
+
+def _dh_frames(robot: Robot, q: Array) -> Array:
+    import pinocchio as pin
+
+    data = scratch(robot)
+    pin.framesForwardKinematics(robot.model, data, q)
+    names = [f"dh_{i}" for i in range(1, robot.n + 1)]
+    return np.stack([data.oMf[frame_id(robot, name)].homogeneous for name in names])
+
+
+def common_normals(robot: Robot, q: Any) -> Array:
+    """Projectors on x_{i-1}, zero where z_{i-1} and z_i are parallel."""
+    base = np.eye(4) if robot.table is None else np.asarray(robot.table.base)
+    poses = links.link_poses(robot, q)
+    all_poses = np.concatenate([np.broadcast_to(base, (len(poses), 1, 4, 4)), poses], axis=1)
+    x, z = all_poses[..., :-1, :3, 0], all_poses[..., :3, 2]
+    along = np.abs(np.einsum("aij,aij->ai", z[:, :-1], z[:, 1:]))
+    x = np.where((along < 1.0 - 1e-12)[..., None], x, 0.0)
+    projectors: Array = x[..., :, None] * x[..., None, :]
+    return projectors
+
+
+def angular_jacobian_last(robot: Robot, q: Any) -> Array:
+    """Angular rows of the last joint's Jacobian in its own axes."""
+    poses = links.link_poses(robot, q)[:, -1, :3, :3]
+    rows: Array = np.swapaxes(poses, -1, -2) @ kinematics.jacobian(robot, q)[:, 3:]
+    return rows
+
+
+def planar_determinant(robot: Robot, q: Any) -> Array:
+    """det of the rows vx, vy, wz."""
+    value: Array = np.linalg.det(planar_jacobian(robot, q))
+    return value
+
+
+def planar_position_determinant(robot: Robot, q: Any) -> Array:
+    """det of the rows vx, vy."""
+    value: Array = np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
+    return value
+
+
+def isotropy_defect(robot: Robot, q: Any) -> Array:
+    """Sum of (sigma_i^2 / mean - 1)^2 over the singular values of the rows vx, vy."""
+    squares = np.linalg.svd(kinematics.jacobian(robot, q)[:, :2], compute_uv=False) ** 2
+    defect: Array = np.sum((squares / squares.mean(axis=1, keepdims=True) - 1.0) ** 2, axis=1)
+    return defect
+
+
+def orthogonal_columns_cosine(robot: Robot, q: Any) -> Array:
+    """cos theta2 in (0, pi) where the two columns of vx, vy become orthogonal, by bisection."""
+    return _root(robot, q, lambda j: np.einsum("ai,ai->a", j[..., 0], j[..., 1]))
+
+
+def equal_columns_cosine(robot: Robot, q: Any) -> Array:
+    """cos theta2 in (0, pi) where the two columns of vx, vy become equally long, by bisection."""
+    return _root(
+        robot,
+        q,
+        lambda j: (
+            np.einsum("ai,ai->a", j[..., 0], j[..., 0])
+            - np.einsum("ai,ai->a", j[..., 1], j[..., 1])
+        ),
+    )
+
+
+def _root(robot: Robot, q: Any, miss: Any) -> Array:
+    low, high = np.zeros(len(q)), np.full(len(q), np.pi)
+
+    def at(theta: Array) -> Array:
+        states = np.stack([q[:, 0], theta], axis=-1)
+        value: Array = miss(kinematics.jacobian(robot, states)[:, :2])
+        return value
+
+    sign = np.sign(at(low))
+    for _ in range(54):
+        middle = 0.5 * (low + high)
+        same = np.sign(at(middle)) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    cosine: Array = np.cos(0.5 * (low + high))
+    return cosine
+
+
+def newton_step(robot: Robot, q: Any, target: Any) -> Array:
+    """q + J^-1 (x_d - f(q)) for x = (x, y, phi)."""
+    step: Array = (
+        q + np.linalg.solve(planar_jacobian(robot, q), _miss(robot, q, target)[..., None])[..., 0]
+    )
+    return step
+
+
+def newton_stops(robot: Robot, q: Any, target: Any) -> Array:
+    """|x_d - f(q)| and |q_{k+1} - q_k|, what the stopping rules look at."""
+    move = newton_step(robot, q, target) - q
+    return np.stack(
+        [np.linalg.norm(_miss(robot, q, target), axis=1), np.linalg.norm(move, axis=1)], axis=1
+    )
+
+
+def loss_gradient(robot: Robot, q: Any, target: Any) -> Array:
+    """Gradient of ½|x_d - f|², each entry from its own column of J."""
+    miss, jacobian = _miss(robot, q, target), planar_jacobian(robot, q)
+    return np.stack([-np.sum(miss * jacobian[..., k], axis=1) for k in range(robot.n)], axis=1)
+
+
+def gradient_step(robot: Robot, q: Any, target: Any) -> Array:
+    """q - 0.1 times the gradient."""
+    step: Array = q - 0.1 * loss_gradient(robot, q, target)
+    return step
+
+
+def loss(robot: Robot, q: Any, target: Any) -> Array:
+    """½|x_d - f|²."""
+    value: Array = 0.5 * np.linalg.norm(_miss(robot, q, target), axis=1) ** 2
+    return value
+
+
+def least_rates(robot: Robot, q: Any, twist: Any) -> Array:
+    """Shortest qdot of least |J qdot - twist|, from singular values."""
+    jacobian = kinematics.jacobian(robot, q)
+    return np.stack(
+        [np.linalg.lstsq(j, t, rcond=1e-12)[0] for j, t in zip(jacobian, twist, strict=True)]
+    )
+
+
+def _miss(robot: Robot, q: Any, target: Any) -> Array:
+    pose = planar_pose(robot, q)
+    here = np.stack([pose[:, 0], pose[:, 1], np.sum(q, axis=1)], axis=1)
+    miss: Array = target - here
+    return miss
+
+
+def _with_second_joint(*choices: float) -> Any:
+    """Draws states with theta2 taken from ``choices``."""
+
+    def draw(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
+        del arguments
+        q = positions(robot, count, rng)
+        q[:, 1] = np.resize(np.array(choices), count)
+        return (q,)
+
+    return draw
+
+
+def _with_target(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
+    """Draws states away from the stretched and folded poses, and random targets."""
+    del arguments
+    q = positions(robot, count, rng)
+    q[:, 1] = rng.uniform(0.2, 2.9, count) * rng.choice([-1.0, 1.0], count)
+    return q, rng.uniform(-1.0, 1.0, (count, 3))
+
+
+def _well_conditioned(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
+    """Draws states where J keeps its rank plainly, and random twists."""
+    del arguments
+    kept = np.empty((0, robot.n))
+    while len(kept) < count:
+        q = positions(robot, count, rng)
+        values = np.linalg.svd(kinematics.jacobian(robot, q), compute_uv=False)
+        kept = np.concatenate([kept, q[values[:, -1] > 0.02 * values[:, 0]]])
+    return kept[:count], rng.standard_normal((count, 6))
+
+
+_ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
+    (
+        "link_transforms", "q", link_transforms,
+        "^{i-1}T_i of every DH row in the table's own convention, (n, 4, 4)", None,
+    ),
+    ("dh_poses", "q", dh_poses, "poses of the DH frames in the base, (n, 4, 4)", None),
+    ("common_normals", "q", common_normals, "projectors on x_{i-1}, (n, 3, 3)", None),
+    (
+        "angular_jacobian_last", "q", angular_jacobian_last,
+        "angular rows of J in the last link's axes, (3, n)", None,
+    ),
+    (
+        "singular_jacobian", "q", kinematics.jacobian,
+        "Jacobian at poses with theta2 = 0 or pi, (6, n)", _with_second_joint(0.0, np.pi),
+    ),
+    ("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz", None),
+    ("planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy", None),
+    (
+        "isotropy_defect", "q", isotropy_defect,
+        "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy", None,
+    ),
+    ("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number", None),
+    ("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number", None),
+    (
+        "isotropic_jacobian", "q",
+        lambda robot, q: kinematics.jacobian(robot, q, "tool")[:, :2],
+        "rows vx, vy in tool axes at theta2 = ±135°, (2, 2)",
+        _with_second_joint(0.75 * np.pi, -0.75 * np.pi),
+    ),
+    ("newton_step", "q target", newton_step, "next q of a planar 3R arm, (3,)", _with_target),
+    ("newton_stops", "q target", newton_stops, "|x_d - f| and |step|, (2,)", _with_target),
+    ("loss", "q target", loss, "½|x_d - f|², a number", _with_target),
+    ("loss_gradient", "q target", loss_gradient, "its gradient, (3,)", _with_target),
+    ("gradient_step", "q target", gradient_step, "q - 0.1 gradient, (3,)", _with_target),
+    ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", _well_conditioned),
+)  # fmt: skip
+
+_JOINTS = {
+    "singular_jacobian": 3,
+    "planar_determinant": 3,
+    "newton_step": 3,
+    "newton_stops": 3,
+    "loss": 3,
+    "loss_gradient": 3,
+    "gradient_step": 3,
+    "planar_position_determinant": 2,
+    "orthogonal_columns_cosine": 2,
+    "equal_columns_cosine": 2,
+    "isotropic_jacobian": 2,
+}
+
+QUANTITIES = tuple(
+    Quantity(
+        name, tuple(arguments.split()), engine, about, SERIAL, sample, joints=_JOINTS.get(name)
+    )
+    for name, arguments, engine, about, sample in _ROWS
+)

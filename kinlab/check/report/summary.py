@@ -1,0 +1,128 @@
+"""Rows put together by formula, and as plain data for machines."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.catalogue import Row
+from kinlab.check.finding import Finding
+from kinlab.formulas.record import Formula
+
+
+@dataclass(frozen=True)
+class Group:
+    """All rows of one formula.
+
+    Attributes:
+        formula: the record.
+        rows: one per robot, at least one.
+    """
+
+    formula: Formula
+    rows: tuple[Row, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Whether every row is as it should be."""
+        return all(row.ok for row in self.rows)
+
+    @property
+    def robots(self) -> str:
+        """The robots in a few words."""
+        names = [row.robot for row in self.rows]
+        if names == ["identity"]:
+            return "-"
+        return ", ".join(names) if len(names) <= 2 else f"{len(names)} robots"
+
+    @property
+    def worst(self) -> Row:
+        """The row with the largest error of the corrected form."""
+        return max(self.rows, key=lambda row: row.corrected.max_error)
+
+    @property
+    def printed_error(self) -> float | None:
+        """The smallest of the printed form's largest errors, or None without a printed form."""
+        errors = [row.printed.max_error for row in self.rows if row.printed is not None]
+        return min(errors) if errors else None
+
+    @property
+    def verdict(self) -> str:
+        """One line for all robots: the first that is not as it should be, or the misprint."""
+        for row in self.rows:
+            if not row.ok:
+                return f"{row.robot}: {row.verdict}" if len(self.rows) > 1 else row.verdict
+        shown = [row for row in self.rows if row.printed is not None]
+        return (shown or list(self.rows))[0].verdict
+
+    @property
+    def errors(self) -> Array:
+        """Errors of the corrected form over all robots and states."""
+        return np.concatenate([row.corrected.errors for row in self.rows])
+
+    @property
+    def printed_errors(self) -> Array | None:
+        """The same for the printed form."""
+        shown = [row.printed.errors for row in self.rows if row.printed is not None]
+        return np.concatenate(shown) if shown else None
+
+
+def grouped(rows: Iterable[Row]) -> list[Group]:
+    """Rows by formula, in the order in which the formulas first appear."""
+    found: dict[int, list[Row]] = {}
+    for row in rows:
+        found.setdefault(id(row.formula), []).append(row)
+    return [Group(several[0].formula, tuple(several)) for several in found.values()]
+
+
+def as_data(rows: Iterable[Row], findings: Iterable[Finding] = ()) -> dict[str, Any]:
+    """The rows and findings as plain data; an infinite error is null.
+
+    Returns:
+        ``{"ok": bool, "rows": [...], "formulas": [...]}``.
+    """
+    listed, judged = list(rows), list(findings)
+    return {
+        "ok": all(row.ok for row in listed) and all(one.agrees for one in judged),
+        "rows": [_row(row) for row in listed],
+        "formulas": [one.data for one in judged],
+    }
+
+
+def _row(row: Row) -> dict[str, Any]:
+    record = row.formula
+    return {
+        "id": record.id,
+        "part": record.part,
+        "note": record.note,
+        "title": record.title,
+        "source": record.source,
+        "quantity": record.quantity,
+        "robot": row.robot,
+        "samples": row.corrected.samples,
+        "seed": row.corrected.seed,
+        "max_error": _number(row.corrected.max_error),
+        "agrees": row.corrected.agrees,
+        "printed_error": None if row.printed is None else _number(row.printed.max_error),
+        "misprint": record.printed.misprint if record.printed and row.printed else None,
+        "remark": record.remark,
+        "verdict": row.verdict,
+        "diagnosis": None if row.finding is None else row.finding.data,
+        "ok": row.ok,
+    }
+
+
+def _number(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def size(value: float | None) -> str:
+    """An error in two digits; "no value" where the formula gave none, empty for None."""
+    if value is None:
+        return ""
+    return f"{value:.1e}" if math.isfinite(value) else "no value"

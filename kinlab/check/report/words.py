@@ -1,0 +1,149 @@
+"""What the page and the Markdown report share: headings, words, small pictures of errors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.finding import Finding
+from kinlab.check.report.summary import Group, size
+from kinlab.tolerances import TOLERANCES
+
+# -------- Words that the page and the Markdown report share
+
+NOTES = {
+    "000": "Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics",
+    "001": "Note 001: Lagrange, the planar 2R arm with point masses",
+    "002": "Note 002: Lagrange in general, standard DH",
+    "003": "Note 003: the two-degree-of-freedom parallel robot",
+    "table": "Arms: the DH table by hand beside the engines",
+}
+"""Section titles by note number; ``table`` for the checks of single arms."""
+
+HOW = (
+    "Each formula is evaluated by hand and by the engine (Pinocchio) at random states. The error "
+    "of a state is the largest difference of an entry over the largest entry of the engine's "
+    "answer. A corrected form must stay below 1e-9; a misprint must show above 1e-3."
+)
+
+
+TAKEN_APART = (
+    "Where a formula of yours differs, the doctor looks for what is wrong in it. It names a cause "
+    "only if repairing it leaves less than 1e-9 at every state."
+)
+
+
+def lead(groups: Sequence[Group], findings: Sequence[Finding]) -> str:
+    """What was found, in a sentence or two."""
+    parts = [counts(groups)] if groups or not findings else []
+    if findings:
+        right = sum(one.agrees for one in findings)
+        named = sum(one.known and not one.agrees for one in findings)
+        told = f"Formulas in files: {right} of {len(findings)} right"
+        told += f", what is wrong is known of {named}" if named else ""
+        unknown = len(findings) - right - named
+        parts.append(told + (f", unknown of {unknown}." if unknown else "."))
+    return " ".join(parts)
+
+
+def errors(finding: Finding) -> str:
+    """How far off a formula is, and how far once it is repaired."""
+    if not math.isfinite(finding.error_before):
+        text = "The answer has another shape, or is no number"
+    else:
+        text = f"Largest relative error {size(finding.error_before)}"
+    if finding.error_after is None:
+        return text
+    return f"{text}; {size(finding.error_after)} once repaired"
+
+
+def counts(groups: Sequence[Group]) -> str:
+    """How many formulas, rows, misprints and failures, in one sentence."""
+    rows = [row for group in groups for row in group.rows]
+    states = sum(row.corrected.samples for row in rows)
+    misprints = sum(group.printed_error is not None for group in groups)
+    wrong = sum(not group.ok for group in groups)
+    text = (
+        f"{several(len(groups), 'formula')} on "
+        f"{several(len({row.robot for row in rows}), 'mechanism')}, {several(len(rows), 'row')}, "
+        f"{several(states, 'random state')}; {several(misprints, 'misprint')} shown; "
+    )
+    return text + (f"{several(wrong, 'formula')} WRONG." if wrong else "every correct form agrees.")
+
+
+def several(count: int, word: str) -> str:
+    """A number with its noun."""
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def origin(groups: Sequence[Group]) -> str:
+    """What it takes to get the same report again."""
+    from kinlab.host.version import __version__
+
+    first = groups[0].rows[0].corrected if groups else None
+    seed = f", seed {first.seed}" if first is not None else ""
+    return f"Made by kinlab {__version__}{seed}: the same seed gives the same states."
+
+
+def sentence(text: str) -> str:
+    """A line as a sentence: capital at the front, full stop at the end."""
+    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+
+
+# -------- A small picture of how errors are spread over the states, as SVG text
+
+LOW, HIGH = -17, 2
+"""Decades shown; what lies outside falls into the first or last bar."""
+
+_WIDTH, _HEIGHT, _FOOT = 380.0, 64.0, 18.0
+_STEP = _WIDTH / (HIGH - LOW)
+
+
+def decades(errors: Array) -> Array:
+    """How many errors fall into each decade; zeros in the first, infinities in the last.
+
+    Returns:
+        (HIGH - LOW,) counts; their sum is the number of errors.
+    """
+    clipped = np.clip(errors, 10.0**LOW, 10.0**HIGH)
+    place = np.clip(np.floor(np.log10(clipped)).astype(int) - LOW, 0, HIGH - LOW - 1)
+    return np.bincount(place, minlength=HIGH - LOW).astype(float)
+
+
+def svg(corrected: Array, printed: Array | None) -> str:
+    """The two spreads over decades of relative error, with the line of agreement.
+
+    Args:
+        corrected: errors of the corrected form.
+        printed: errors of the printed form, if there is one.
+    """
+    series = [("good", corrected)] + ([("bad", printed)] if printed is not None else [])
+    parts = [
+        f'<svg class="spread" viewBox="0 0 {_WIDTH:g} {_HEIGHT + _FOOT:g}" role="img" '
+        f'aria-label="{_label(corrected, printed)}">'
+    ]
+    for name, errors in series:
+        counts = decades(errors)
+        for k, share in enumerate(counts / np.max(counts)):
+            if share > 0.0:
+                tall = max(2.0, share * (_HEIGHT - 4.0))
+                parts.append(
+                    f'<rect class="{name}" x="{k * _STEP + 1.5:.1f}" y="{_HEIGHT - tall:.1f}" '
+                    f'width="{_STEP - 3:.1f}" height="{tall:.1f}" rx="1.5"/>'
+                )
+    parts.append(f'<path class="axis" d="M0 {_HEIGHT:g}H{_WIDTH:g}"/>')
+    limit = (np.log10(TOLERANCES.formula_agrees) - LOW) * _STEP
+    parts.append(f'<path class="limit" d="M{limit:.1f} 0V{_HEIGHT:g}"/>')
+    for power in range(LOW + 2, HIGH, 3):
+        x = (power - LOW) * _STEP
+        text = "1" if power == 0 else f"10<tspan dy='-4' font-size='8'>{power}</tspan>"
+        parts.append(f'<text x="{x:.1f}" y="{_HEIGHT + 14:g}">{text}</text>')
+    return "".join([*parts, "</svg>"])
+
+
+def _label(corrected: Array, printed: Array | None) -> str:
+    text = f"relative errors: corrected form at most {np.max(corrected):.1e}"
+    return text if printed is None else f"{text}, printed form up to {np.max(printed):.1e}"

@@ -1,0 +1,432 @@
+"""Dynamic slips: masses, centres, inertias, armatures and gravity, link by link.
+
+A body is told by what no choice of link frames can change: its mass, the place of its centre and
+its inertia about it with the axes of the world, all at q = 0; what is welded together counts as
+one body. Both sides are brought into that form, and what differs is brought back into the frame
+of the user's row, so that the numbers meant are known; the relation of the written ones to them
+names the slip.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations, permutations, product
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.tables.chain import Chain, frames, inverse
+from kinlab.doctor.tables.words import Cause, number
+from kinlab.model.dh import DHLink, DHTable
+
+_REL = 1e-8
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """The moving bodies of an arm at q = 0, in the world.
+
+    Attributes:
+        mass: kg, (n,).
+        com: centres, (n, 3), m.
+        inertia: about the centres, axes of the world, (n, 3, 3), kg m².
+        armature: (n,), or None where the reference has no place for it.
+        gravity: (3,), m/s², or None likewise.
+    """
+
+    mass: Array
+    com: Array
+    inertia: Array
+    armature: Array | None
+    gravity: Array | None
+    digit: float = 0.0
+    """One unit of the last digit of printed numbers; 0 where all digits are known."""
+
+    @property
+    def any(self) -> bool:
+        """Whether any body has mass or inertia."""
+        return bool(self.mass.any() or self.inertia.any())
+
+    @staticmethod
+    def of(table: DHTable) -> Bodies:
+        """The bodies of a table."""
+        poses = frames(Chain.of(table), np.zeros((1, table.n)))[0, 1:-1]
+        com = np.array([link.com for link in table.links])
+        inertia = np.array([link.inertia for link in table.links])
+        turn = poses[:, :3, :3]
+        return Bodies(
+            np.array([link.mass for link in table.links]),
+            (turn @ com[..., None])[..., 0] + poses[:, :3, 3],
+            turn @ inertia @ np.swapaxes(turn, -1, -2),
+            np.array([link.armature for link in table.links]),
+            np.array(table.gravity),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class _Link:
+    """A row's written and meant body, in its own frame."""
+
+    row: int
+    written: DHLink
+    mass: float
+    com: Array
+    inertia: Array
+    slack: float
+    """Absolute error of the numbers meant, from printed digits."""
+    poses: Array
+    """Frames 0 to n and the tool at q = 0, (n + 2, 4, 4)."""
+
+    def alike(self, one: Array, two: Array, scale: float = 0.0) -> bool:
+        """Whether two arrays are the same to rounding and printed digits."""
+        return _alike(one, two, scale, self.slack)
+
+    def power(self, one: float, two: float) -> int:
+        """k where one is 10^k times two, k not 0; else 0."""
+        return _power(one / two, self.slack / min(abs(one), abs(two)))
+
+
+def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
+    """Compares a table's bodies with a reference's, kinematics being the same.
+
+    Args:
+        table: the table, its kinematic slips taken back.
+        bodies: of the reference.
+
+    Returns:
+        The table with the bodies of the reference, and one cause for each cell that differs.
+    """
+    mine = Bodies.of(table)
+    poses = frames(Chain.of(table), np.zeros((1, table.n)))[0]
+    size = max(1.0, float(np.max(np.abs(poses[:, :3, 3]))))
+    causes: list[Cause] = []
+    links = list(table.links)
+    slack = 2.0 * bodies.digit
+    for i, link in enumerate(table.links):
+        back = inverse(poses[i + 1])
+        com = back[:3, :3] @ bodies.com[i] + back[:3, 3]
+        inertia = back[:3, :3] @ bodies.inertia[i] @ back[:3, :3].T
+        one = _Link(
+            i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), slack, poses
+        )
+        changes: dict[str, object] = {}
+        if abs(one.mass - link.mass) > _REL * max(one.mass, link.mass) + slack:
+            causes.append(_mass_cause(one))
+            changes["mass"] = one.mass
+        massive = one.mass > 0.0
+        if (
+            massive
+            and np.max(np.abs(com - np.asarray(link.com)))
+            > 1e-9 * size + slack * (table.n + 1) * size
+        ):
+            clean = _tidy(com)
+            causes.append(_com_cause(replace(one, com=clean, slack=slack * (table.n + 1) * size)))
+            changes["com"] = clean
+        limit = slack * (table.n + 1) * max(1.0, float(np.max(np.abs(inertia)))) + (
+            _REL * float(np.max(np.abs(inertia)))
+            + 1e-14
+            + 1e-10 * float(np.max(np.abs(link.inertia)))
+        )
+        if np.max(np.abs(one.inertia - np.asarray(link.inertia))) > limit:
+            clean = _tidy(one.inertia)
+            causes.append(
+                _inertia_cause(replace(one, inertia=clean, slack=limit if slack else 0.0))
+            )
+            changes["inertia"] = clean
+        if bodies.armature is not None:
+            meant = float(bodies.armature[i])
+            if abs(meant - link.armature) > _REL * max(meant, link.armature):
+                causes.append(_armature_cause(i + 1, link.armature, meant))
+                changes["armature"] = meant
+        if changes:
+            links[i] = replace(link, **changes)  # type: ignore[arg-type]
+    repaired = replace(table, links=links)
+    if bodies.gravity is not None and mine.gravity is not None:
+        gap = float(np.max(np.abs(bodies.gravity - mine.gravity)))
+        if gap > 1e-9 * max(1.0, float(np.max(np.abs(bodies.gravity)))):
+            causes.append(_gravity_cause(mine.gravity, bodies.gravity, poses))
+            repaired = replace(repaired, gravity=bodies.gravity)
+    return repaired, _together(causes, table.n)
+
+
+def _together(causes: list[Cause], n: int) -> list[Cause]:
+    """The same slip in three rows or more, or in all of them, is one."""
+    out: list[Cause] = []
+    for cause in causes:
+        same = [c for c in causes if (c.column, c.kind) == (cause.column, cause.kind)]
+        every = len(same) > 1 and len(same) == n
+        if (len(same) < 3 and not every) or cause.kind == "value" or cause.row is None:
+            out.append(cause)
+            continue
+        if same[0] is not cause:
+            continue
+        rows = tuple(row for c in same for row in c.rows)
+        said = cause.sentence.split(": ", 1)[1]
+        out.append(
+            Cause(rows, cause.column, [c.written for c in same], [c.meant for c in same],
+                  cause.kind, f"rows {rows[0]} to {rows[-1]}: {said.split(':')[0]}"
+                  if rows == tuple(range(rows[0], rows[-1] + 1))
+                  else f"rows {', '.join(map(str, rows))}: {said.split(':')[0]}", cause.cost)
+        )  # fmt: skip
+    return out
+
+
+def _mass_cause(one: _Link) -> Cause:
+    written, meant = float(one.written.mass), one.mass
+    at = f"row {one.row}: mass"
+    numbers = f"{number(written)} written, {number(meant)} kg meant"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(one.row, "mass", written, meant, kind, told, cost)
+
+    if written == 0.0:
+        return cause("missing", f"{at} is forgotten: {number(meant)} kg", 1.0)
+    if meant == 0.0:
+        return cause("superfluous", f"{at} must be zero: {number(written)} kg written", 1.5)
+    if one.power(written, meant) == 3:
+        return cause("grams", f"{at} is in grams: {numbers}", 1.0)
+    power = one.power(meant, written)
+    if power:
+        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
+    return cause("value", f"{at} is wrong: {numbers}", 2.0)
+
+
+def _frames_of(one: _Link) -> Iterator[tuple[str, Array]]:
+    """Other frames and their poses in frame i, at q = 0."""
+    here = inverse(one.poses[one.row])
+    n = len(one.poses) - 2
+    yield f"frame {one.row - 1}", here @ one.poses[one.row - 1]
+    if one.row < n:
+        yield f"frame {one.row + 1}", here @ one.poses[one.row + 1]
+    yield "the tool", here @ one.poses[-1]
+    yield "the world", here
+    if one.row > 1:
+        yield "the base", here @ one.poses[0]
+    for other in range(1, n + 1):
+        if abs(other - one.row) > 1:
+            yield f"frame {other}", here @ one.poses[other]
+
+
+def _com_cause(one: _Link) -> Cause:
+    written, meant = np.asarray(one.written.com), one.com
+    at = f"row {one.row}: com"
+    numbers = f"{_vector(written)} written, {_vector(meant)} meant"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(one.row, "com", written, meant, kind, f"{at} {told}: {numbers}", cost)
+
+    if not written.any():
+        return cause("missing", "is missing", 1.2)
+    for signs in _signs(3):
+        if one.alike(written, signs * meant):
+            some = [name for name, s, x in zip("xyz", signs, meant, strict=True) if s < 0 and x]
+            told = "has the wrong sign" + ("" if len(some) == 3 else f" in {', '.join(some)}")
+            return cause("sign", told, 1.0)
+    for factor in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001):
+        if one.alike(written, factor * meant):
+            if factor == 1000.0:
+                return cause("millimetres", "is in millimetres", 1.0)
+            return cause("decimal", "has the decimal point displaced", 1.0)
+    wrong = np.flatnonzero(
+        np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12 + one.slack
+    )
+    if len(wrong) == 1:
+        k = int(wrong[0])
+        if meant[k] and written[k] and one.power(float(meant[k]), float(written[k])):
+            return cause("decimal", f"has the decimal point displaced in {'xyz'[k]}", 1.0)
+    for order in permutations(range(3)):
+        if one.alike(written, meant[list(order)]):
+            return cause("axes", "has its axes in another order", 1.0)
+    for name, pose in _frames_of(one):
+        plain = name == f"frame {one.row + 1}" and np.allclose(pose[:3, :3], np.eye(3), atol=1e-9)
+        if plain and one.alike(written, meant - pose[:3, 3]):  # as well in that frame
+            return cause("other end", f"is counted from the origin of {name}", 1.0)
+        if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
+            return cause("frame", f"is given in {name}", 1.0)
+        if one.alike(written, meant - pose[:3, 3]):
+            return cause("other end", f"is counted from the origin of {name}", 1.0)
+        if one.alike(written, pose[:3, :3].T @ meant):
+            return cause("frame", f"has the axes of {name}", 1.05)
+    for order in permutations(range(3)):
+        for signs in _signs(3):
+            if one.alike(written, signs * meant[list(order)]):
+                return cause("axes", "has its axes turned", 1.2)
+    for name, pose in _frames_of(one):
+        if one.alike(written, meant + pose[:3, 3]):
+            return cause("other end", f"is shifted against the origin of {name}", 1.2)
+        if one.alike(written, (pose @ [*meant, 1.0])[:3]):
+            return cause("frame", f"is transformed the wrong way from {name}", 1.2)
+        if one.alike(written, pose[:3, :3] @ meant):
+            return cause("frame", f"is turned the wrong way from the axes of {name}", 1.2)
+    return cause("value", "is wrong", 2.0)
+
+
+def _inertia_cause(one: _Link) -> Cause:
+    written, meant = np.asarray(one.written.inertia), one.inertia
+    at = f"row {one.row}: inertia"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        numbers = f"{_tensor(written)} written, {_tensor(meant)} meant"
+        return Cause(one.row, "inertia", written, meant, kind, f"{at} {told}: {numbers}", cost)
+
+    if not written.any():
+        return cause("missing", "is missing", 1.0)
+    for com, whose in ((one.com, ""), (np.asarray(one.written.com), " (of the com written)")):
+        shift = steiner(one.mass, com)
+        if shift.any() and one.alike(written, meant + shift):
+            return cause("origin",
+                         f"is about the origin of frame {one.row}, not the centre of mass{whose}",
+                         1.0)  # fmt: skip
+        if shift.any() and one.alike(written, meant - shift):
+            return cause("origin", f"has the shift of origin taken off twice{whose}", 1.1)
+    found = _products(one)
+    if found:
+        return cause("products", f"has the wrong sign of {found}", 1.0)
+    for factor in (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e6, 1e9):
+        if one.alike(written, factor * meant):
+            if factor >= 1e4:
+                return cause("units", f"is {factor:g} times too large, as in other units", 1.0)
+            return cause("decimal", "has the decimal point displaced", 1.0)
+    limit = 1e-8 * float(np.max(np.abs(meant))) + one.slack
+    off = np.abs(written - meant) > limit
+    wrong = [(i, j) for i in range(3) for j in range(i, 3) if off[i, j]]
+    if len(wrong) == 1:
+        i, j = wrong[0]
+        name = f"I{'xyz'[i]}{'xyz'[j]}"
+        if meant[i, j] and one.power(float(written[i, j]), float(meant[i, j])):
+            return cause("decimal", f"has the decimal point displaced in {name}", 1.0)
+        if written[i, j] == 0.0:
+            return cause("missing", f"lacks {name}", 1.2)
+    off = ~np.eye(3, dtype=bool)
+    if one.alike(written[off], meant[off], np.max(np.abs(meant))):
+        for order in permutations(range(3)):
+            if one.alike(np.diag(written), np.diag(meant)[list(order)]):
+                return cause("order", "has its principal values in another order", 1.0)
+    if not written[off].any() and one.alike(np.diag(written), np.diag(meant)):
+        return cause("missing", "lacks its products", 1.2)
+    for name, pose in _frames_of(one):
+        turn = pose[:3, :3]
+        if one.alike(written, turn.T @ meant @ turn):
+            return cause("frame", f"has the axes of {name}", 1.0)
+        if one.alike(written, turn @ meant @ turn.T):
+            return cause("frame", f"is turned the wrong way from the axes of {name}", 1.1)
+    for order in permutations(range(3)):
+        if one.alike(written, meant[np.ix_(order, order)]):
+            return cause("axes", "has its axes in another order", 1.1)
+    for name, pose in _frames_of(one):
+        shift = steiner(one.mass, one.com - pose[:3, 3])
+        if shift.any() and one.alike(written, meant + shift):
+            return cause("origin", f"is about the origin of {name}", 1.1)
+    return cause("value", "is wrong", 2.0)
+
+
+def steiner(mass: float, lever: Array) -> Array:
+    """Inertia of a point mass about the origin, (3, 3)."""
+    out: Array = mass * (float(lever @ lever) * np.eye(3) - np.outer(lever, lever))
+    return out
+
+
+def _products(one: _Link) -> str:
+    """The products of inertia whose sign alone is wrong, in words."""
+    written, meant = np.asarray(one.written.inertia), one.inertia
+    places = [(0, 1), (0, 2), (1, 2)]
+    if not one.alike(np.diag(written), np.diag(meant)):
+        return ""
+    nonzero = [p for p in places if abs(meant[p]) > one.slack]
+    for count in range(len(nonzero), 0, -1):
+        for some in combinations(nonzero, count):
+            other = meant.copy()
+            for i, j in some:
+                other[i, j] = other[j, i] = -meant[i, j]
+            if one.alike(written, other):
+                if count == len(nonzero):
+                    return "its products"
+                return " and ".join(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
+    return ""
+
+
+def _armature_cause(row: int, written: float, meant: float) -> Cause:
+    at = f"row {row}: armature"
+    numbers = f"{number(written)} written, {number(meant)} meant"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(row, "armature", written, meant, kind, told, cost)
+
+    if written == 0.0:
+        return cause("missing", f"{at} is missing: {number(meant)}", 1.0)
+    if meant == 0.0:
+        return cause("superfluous", f"{at} must be zero: {number(written)} written", 1.5)
+    power = _power(meant / written)
+    if abs(power) in (1, 3):
+        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
+    gear = float(np.sqrt(meant / written))
+    if gear > 1.0:
+        return cause("gear",
+                     f"{at} is that of the motor, J in place of G^2 J with G = {gear:.6g}: "
+                     f"{numbers}", 1.0)  # fmt: skip
+    return cause("gear", f"{at} has a factor {number(written / meant)} too much: {numbers}",
+                 1.5)  # fmt: skip
+
+
+def _gravity_cause(written: Array, meant: Array, poses: Array) -> Cause:
+    numbers = f"{_vector(written)} written, {_vector(meant)} meant"
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(None, "gravity", written, meant, kind, f"gravity {told}: {numbers}", cost)
+
+    if not written.any():
+        return cause("missing", "is missing", 1.0)
+    if _alike(written, -meant):
+        return cause("sign", "points the other way", 1.0)
+    for order in permutations(range(3)):
+        for signs in _signs(3, True):
+            if _alike(written, signs * meant[list(order)]):
+                return cause("direction", "points along another axis", 1.0)
+    turn = poses[0, :3, :3]
+    if _alike(written, turn.T @ meant) or _alike(written, turn @ meant):
+        return cause("frame", "is given in the axes of frame 0", 1.0)
+    if abs(np.linalg.norm(written) - np.linalg.norm(meant)) < 1e-8 * np.linalg.norm(meant):
+        return cause("direction", "points in another direction", 1.5)
+    power = _power(float(np.linalg.norm(meant) / np.linalg.norm(written)))
+    if power and _alike(written * 10.0**power, meant):
+        return cause("decimal", "has the decimal point displaced", 1.0)
+    return cause("value", "is wrong", 2.0)
+
+
+def _signs(count: int, all_plus: bool = False) -> Iterator[Array]:
+    """Sign patterns, the fewest minuses first but all three before two."""
+    patterns = sorted(product((1.0, -1.0), repeat=count), key=lambda s: (s.count(-1.0) % 3, s))
+    for pattern in patterns:
+        if all_plus or -1.0 in pattern:
+            yield np.array(pattern)
+
+
+def _tidy(values: Array) -> Array:
+    """Without rounding residue, relative to the largest entry."""
+    scale = float(np.max(np.abs(values), initial=0.0)) or 1.0
+    digits = 13 - int(np.floor(np.log10(scale)))
+    return np.asarray(np.round(values, digits) + 0.0) if digits < 300 else values
+
+
+def _alike(one: Array, two: Array, scale: float = 0.0, slack: float = 0.0) -> bool:
+    scale = scale or float(np.max(np.abs(two), initial=0.0))
+    return bool(np.max(np.abs(np.asarray(one) - two), initial=0.0) <= 1e-7 * scale + 1e-13 + slack)
+
+
+def _power(ratio: float, slack: float = 0.0) -> int:
+    """k where the ratio is 10^k, k from -4 to 4 and not 0; else 0."""
+    if ratio <= 0.0:
+        return 0
+    k = round(float(np.log10(ratio)))
+    close = abs(ratio - 10.0**k) <= (1e-7 + slack) * 10.0**k
+    return k if k and abs(k) <= 4 and close else 0
+
+
+def _vector(values: Array) -> str:
+    return f"({', '.join(f'{float(x) + 0.0:.6g}' for x in values)})"
+
+
+def _tensor(values: Array) -> str:
+    entries = [values[0, 0], values[1, 1], values[2, 2], values[0, 1], values[0, 2], values[1, 2]]
+    return _vector(np.array(entries))

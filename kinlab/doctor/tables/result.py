@@ -1,0 +1,190 @@
+"""What the table doctor says: verdict, causes, evidence; as text, HTML and plain data."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass, field
+from html import escape
+from typing import Any
+
+from kinlab.doctor.tables.words import Cause, listed, where
+from kinlab.model.dh import DHTable
+
+_ROW = re.compile(r"rows? [^:]*")
+
+
+@dataclass(frozen=True, eq=False)
+class TableDiagnosis:
+    """A DH table, judged against another description of the arm.
+
+    Attributes:
+        agrees: the tool poses (and bodies, where compared) are the reference's. False too where
+            the cause is unknown.
+        sentence: the verdict in one sentence.
+        causes: the slips of the likeliest explanation; empty where none is known.
+        alternatives: other explanations that repair the table as well, each a tuple of causes.
+        repaired: the table as it should be; None where no cause is known.
+        same_arm: the joint axes are the same arm's: only zeros, base or tool differ, if anything.
+        differences: how two descriptions of the same arm differ, in words.
+        certain_rows: rows (1-based) that are right for certain.
+        rows_in_question: the others.
+        mine: the table as given.
+        reference: what it was held against.
+        states: at how many states.
+        error_before, error_after: largest difference of the poses over them, relative to the
+            arm's size, of the table as written and as repaired.
+        tolerance: below which a difference is rounding.
+        clear: with measured poses: how far the slip stands clear of the noise.
+        evidence: further lines.
+        notes: what was not compared, and why.
+    """
+
+    agrees: bool
+    sentence: str
+    causes: tuple[Cause, ...] = ()
+    alternatives: tuple[tuple[Cause, ...], ...] = ()
+    repaired: DHTable | None = field(default=None, repr=False)
+    same_arm: bool = False
+    differences: tuple[str, ...] = ()
+    certain_rows: tuple[int, ...] = ()
+    rows_in_question: tuple[int, ...] = ()
+    mine: DHTable | None = field(default=None, repr=False)
+    reference: str = ""
+    states: int = 0
+    error_before: float = 0.0
+    error_after: float | None = None
+    tolerance: float = 1e-9
+    clear: dict[str, float] = field(default_factory=dict)
+    evidence: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def verdict(self) -> str:
+        """``"agrees"``, ``"differs"`` or ``"differs, cause unknown"``."""
+        if self.agrees:
+            return "agrees"
+        return "differs" if self.causes else "differs, cause unknown"
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """Everything below the verdict, line by line."""
+        lines = []
+        if self.same_arm and self.differences:
+            lines.append(f"same arm; {'; '.join(self.differences)}")
+        lines += [f"or as well: {joined(other)}" for other in self.alternatives[:5]]
+        if len(self.alternatives) > 5:
+            lines.append(f"and {len(self.alternatives) - 5} more that repair it as well")
+        lines += list(self.evidence)
+        numbers = f"compared at {self.states} states"
+        if self.clear:
+            numbers += f": {self._noise()}"
+        elif self.agrees:
+            numbers += f": poses differ by {self.error_before:.1e} of the arm's size at most"
+        elif math.isinf(self.error_before):
+            numbers += ", with another number of joints"
+        else:
+            numbers += f": poses differ by {self.error_before:.3g} of the arm's size"
+            if self.error_after is not None:
+                numbers += f", by {self.error_after:.1e} once repaired"
+        lines.append(numbers)
+        if self.causes and self.certain_rows:
+            rows = "row" if len(self.certain_rows) == 1 else "rows"
+            lines.append(f"{rows} {listed(self.certain_rows)}: nothing to repair")
+        return (*lines, *(f"note: {note}" for note in self.notes))
+
+    def _noise(self) -> str:
+        """The noise in words."""
+        c = self.clear
+        text = (f"noise {1000 * c['sigma_position']:.3g} mm, "
+                f"{c['sigma_angle_deg']:.3g} deg")  # fmt: skip
+        if "effect" in c:
+            text += f"; the slip is {c['effect']:.3g} times the noise"
+        if "runner_up" in c:
+            text += f", the next best cause leaves {c['runner_up']:.3g} times the noise"
+        return text
+
+    def __str__(self) -> str:
+        name = self.mine.name if self.mine is not None else "table"
+        lines = [f"{name}: {self.verdict} (against {self.reference})", f"  {self.sentence}"]
+        return "\n".join([*lines, *(f"  {line}" for line in self.told)])
+
+    def _repr_html_(self) -> str:
+        name = self.mine.name if self.mine is not None else "table"
+        items = "".join(f"<li>{escape(line)}</li>" for line in self.told)
+        return (
+            f"<div><p><b>{escape(name)}: {escape(self.verdict)}</b> (against "
+            f"{escape(self.reference)})</p><p>{escape(self.sentence)}</p><ul>{items}</ul>"
+            f"{self.rows_html()}</div>"
+        )
+
+    def rows_html(self) -> str:
+        """The table with the wrong cells struck out beside what is meant."""
+        from kinlab.doctor.tables.words import degrees, number
+
+        if self.mine is None or self.repaired is None or not self.causes:
+            return ""
+        if self.mine.n != self.repaired.n:
+            return ""
+        head = "".join(f"<th>{h}</th>" for h in ("row", "a", "alpha", "d", "theta"))
+        body = ""
+        for i, (one, two) in enumerate(zip(self.mine.links, self.repaired.links, strict=True), 1):
+            body += f"<tr><td>{i}</td>"
+            for column in ("a", "alpha", "d", "theta"):
+                was, shall = getattr(one, column), getattr(two, column)
+                form = degrees if column in ("alpha", "theta") else number
+                text = escape(form(was))
+                if abs(was - shall) > 1e-9:
+                    text = f"<del>{text}</del> <b>{escape(form(shall))}</b>"
+                body += f"<td>{text}</td>"
+            body += "</tr>"
+        return f"<table><tr>{head}</tr>{body}</table>"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "table": self.mine.name if self.mine is not None else "",
+            "against": self.reference,
+            "verdict": self.verdict,
+            "agrees": self.agrees,
+            "same_arm": self.same_arm,
+            "diagnosis": self.sentence,
+            "causes": [cause.as_dict() for cause in self.causes],
+            "alternatives": [[c.as_dict() for c in other] for other in self.alternatives],
+            "differences": list(self.differences),
+            "certain_rows": list(self.certain_rows),
+            "rows_in_question": list(self.rows_in_question),
+            "states": self.states,
+            "error_before": self.error_before if math.isfinite(self.error_before) else None,
+            "error_after": self.error_after,
+            "tolerance": self.tolerance,
+            "clear": dict(self.clear),
+            "evidence": list(self.evidence),
+            "notes": list(self.notes),
+            "repaired": self.repaired.to_toml() if self.repaired is not None else None,
+        }
+
+
+def joined(causes: tuple[Cause, ...]) -> str:
+    """The causes in one sentence; the same slip in several rows is told once.
+
+    Example:
+        ``rows 2 and 3: a and d are exchanged``.
+    """
+    said: list[str] = []
+    done: set[int] = set()
+    for k, cause in enumerate(causes):
+        if k in done:
+            continue
+        rows = list(cause.rows)
+        tail = _ROW.sub("", cause.sentence, count=1) if cause.sentence.startswith("row") else ""
+        for other in range(k + 1, len(causes)):
+            two = causes[other]
+            if tail and two.sentence.startswith("row") and _ROW.sub("", two.sentence, 1) == tail:
+                rows += two.rows
+                done.add(other)
+        if len(rows) > len(cause.rows):
+            said.append(f"{where(tuple(sorted(rows)))}{tail}")
+        else:
+            said.append(cause.sentence)
+    return "; ".join(said)

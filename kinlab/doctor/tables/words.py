@@ -1,0 +1,327 @@
+"""What is wrong with a cell, told from what is written and what is meant.
+
+A relation between the two numbers (another sign, 90° apart, thousand times as much) is a likelier
+slip than a number that has nothing to do with the one meant: ``cost`` orders explanations that
+repair the table equally well.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+
+_SAME = 1e-7
+"""Relative difference below which a solved number is the one that a relation gives."""
+EXACT = 1e-7
+"""rad. Slack of an angle that is solved for from exact poses."""
+
+SIX = 2.7
+"""Cost of a base or tool all of whose six numbers are solved for: more than two slips of a known
+kind, which have no number to solve for."""
+
+_TURN = 2.0 * math.pi
+_ROUND = math.pi / 12
+"""Angles of tables are mostly multiples of 15°."""
+
+
+@dataclass(frozen=True, eq=False)
+class Cause:
+    """One slip.
+
+    Attributes:
+        row: 1-based; a tuple where several rows belong together; None for the whole table.
+        column: ``"a"``, ``"alpha"``, ``"d"``, ``"theta"``, ``"convention"``, ``"joint"``,
+            ``"flip"``, ``"tool"``, ``"base"``, ``"gravity"``, ``"mass"``, ``"com"``,
+            ``"inertia"``, ``"armature"``, ``"order"`` or ``"units"``.
+        written: what stands there.
+        meant: what should stand there.
+        kind: what sort of slip it is, in a word or two.
+        sentence: the slip in words.
+        cost: the less, the likelier among explanations that repair equally much.
+    """
+
+    row: int | tuple[int, ...] | None
+    column: str
+    written: Any
+    meant: Any
+    kind: str
+    sentence: str
+    cost: float = field(default=1.0, repr=False)
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        """The rows, empty for the whole table."""
+        if self.row is None:
+            return ()
+        return self.row if isinstance(self.row, tuple) else (self.row,)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return {
+            "row": list(self.row) if isinstance(self.row, tuple) else self.row,
+            "column": self.column,
+            "written": plain(self.written),
+            "meant": plain(self.meant),
+            "kind": self.kind,
+            "sentence": self.sentence,
+        }
+
+
+def plain(value: Any) -> Any:
+    """Numbers, text and lists in place of arrays."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, (np.floating, np.bool_)):
+        return value.item()
+    if isinstance(value, tuple):
+        return [plain(v) for v in value]
+    return value
+
+
+def where(row: int | tuple[int, ...]) -> str:
+    """``row 3``, or ``rows 2 and 3``."""
+    if isinstance(row, int):
+        return f"row {row}"
+    return f"rows {listed(row)}"
+
+
+def listed(items: Any) -> str:
+    """``1``, ``1 and 2``, ``1, 2 and 3``."""
+    words = [str(item) for item in items]
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def number(value: float) -> str:
+    """A length or mass in up to ten digits."""
+    return f"{value + 0.0:.10g}"
+
+
+def degrees(angle: float) -> str:
+    """An angle in degrees, ``-90 deg``."""
+    return f"{math.degrees(angle) + 0.0:.9g} deg"
+
+
+def wrapped(angle: float) -> float:
+    """The same angle from -180° (excluded) to 180°, and the multiple of 15° it is to rounding."""
+    turned = -((-angle + math.pi) % _TURN) + math.pi
+    nearest = round(turned / _ROUND) * _ROUND
+    return nearest if abs(turned - nearest) < 1e-8 else turned
+
+
+def tidy(length: float, written: float) -> float:
+    """A solved length without its rounding residue: of twelve digits, or zero."""
+    scale = max(abs(length), abs(written), 1e-3)
+    short = float(f"{length:.9g}")
+    if abs(length) < 1e-9 * scale:
+        return 0.0
+    return short if abs(short - length) < 1e-9 * scale else length
+
+
+def angle_cause(
+    row: int, column: str, written: float, solved: float, slack: float = EXACT
+) -> Cause:
+    """Names a slip in alpha or theta.
+
+    Args:
+        row: 1-based.
+        column: ``"alpha"`` or ``"theta"``.
+        written, solved: rad; ``solved`` is what the poses ask for.
+        slack: how far ``solved`` may be off, rad. Within it the number that a relation gives is
+            the one meant.
+    """
+    at = f"row {row}: {column}"
+    for kind, value, cost in _angle_relations(written):
+        if not _same_angle(value, solved, slack):
+            continue
+        meant = wrapped(value)
+        if kind == "missing" and not _round(solved, slack):
+            meant, cost = wrapped(solved), 1.6
+        numbers = f"{degrees(written)} written, {degrees(meant)} meant"
+        change = degrees(wrapped(meant - written))
+        told = {
+            "degrees": f"is in degrees: {number(written)} written, {degrees(meant)} meant",
+            "missing": f"lacks {change}",
+            "sign": f"has the wrong sign: {numbers}",
+            "half-turn": f"is 180 deg off: {numbers}",
+            "quarter-turn": f"lacks {change}: {numbers}",
+            "radians for degrees": f"was turned into radians twice: {numbers}",
+            "decimal": f"has the decimal point displaced: {number(written)} rad written, "
+            f"{number(meant)} rad meant",
+            "superfluous": f"must be zero: {degrees(written)} written",
+        }[kind]
+        return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+    meant = wrapped(solved)
+    change = degrees(wrapped(meant - written))
+    if _close(written, 0.0):
+        return Cause(row, column, written, meant, "missing", f"{at} lacks {change}",
+                     1.0 if _round(meant, EXACT) else 1.6)  # fmt: skip
+    kind, cost = _typed(written, meant)
+    if cost > 1.7:
+        kind, cost = _typed(math.degrees(written), math.degrees(meant))
+    told = f"{at} lacks {change}: {degrees(written)} written, {degrees(meant)} meant"
+    return Cause(row, column, written, meant, kind, told, cost)
+
+
+def _angle_relations(written: float) -> Iterator[tuple[str, float, float]]:
+    """Kinds of slips, the angle each one makes of what is written, and its cost."""
+    in_degrees = math.radians(written)
+    if abs(written) > _TURN + 1e-9:
+        yield "degrees", in_degrees, 1.0
+    if _close(written, 0.0):
+        for k in range(-11, 13):
+            yield "missing", k * _ROUND, 1.0
+        return
+    yield "sign", -written, 1.0
+    if abs(written) > 0.7:
+        yield "degrees", in_degrees, 1.2
+    yield "half-turn", written + math.pi, 1.1
+    yield "quarter-turn", written + math.pi / 2, 1.1
+    yield "quarter-turn", written - math.pi / 2, 1.1
+    yield "radians for degrees", math.degrees(written), 1.2
+    for power in (1, -1, 2, -2, 3, -3):
+        yield "decimal", written * 10.0**power, 1.2
+    yield "superfluous", 0.0, 1.4
+
+
+def length_cause(
+    row: int, column: str, written: float, solved: float, slides: bool, slack: float = 0.0
+) -> Cause:
+    """Names a slip in a or d.
+
+    Args:
+        row: 1-based.
+        column: ``"a"`` or ``"d"``.
+        written, solved: m; ``solved`` is what the poses ask for.
+        slides: the cell is the offset of a prismatic joint.
+        slack: how far ``solved`` may be off, m.
+    """
+    at = f"row {row}: {column}"
+    if slides and column == "d":
+        at += ", the offset of the prismatic joint,"
+    if not _close(written, 0.0):
+        for kind, meant, cost in _length_relations(written):
+            if abs(meant - solved) > slack and not _close(meant, solved):
+                continue
+            numbers = f"{number(written)} written, {number(meant)} meant"
+            told = {
+                "sign": f"has the wrong sign: {numbers}",
+                "millimetres": f"is in millimetres: {numbers}",
+                "decimal": f"has the decimal point displaced: {numbers}",
+                "inches": f"is in inches: {numbers}",
+                "superfluous": f"must be zero: {number(written)} written",
+            }[kind]
+            return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+    meant = _rounded(solved, slack)
+    if _close(written, 0.0):
+        return Cause(row, column, written, meant, "missing", f"{at} lacks {number(meant)} m", 1.3)
+    kind, cost = _typed(written, meant)
+    numbers = f"{number(written)} written, {number(meant)} meant"
+    return Cause(row, column, written, meant, kind, f"{at} is wrong: {numbers}", cost)
+
+
+def _length_relations(written: float) -> Iterator[tuple[str, float, float]]:
+    yield "sign", -written, 1.0
+    yield "millimetres", written / 1000.0, 1.0
+    for power in (1, -1, 2, -2, 3, -3):
+        yield "decimal", written * 10.0**power, 1.1
+    yield "inches", written * 0.0254, 1.2
+    yield "superfluous", 0.0, 1.5
+
+
+def _rounded(value: float, slack: float) -> float:
+    """The value in no more digits than its uncertainty allows."""
+    if slack < 1e-9:
+        return value
+    return round(value, max(0, math.ceil(-math.log10(slack))))
+
+
+def _typed(written: float, meant: float) -> tuple[str, float]:
+    """A number that shares its digits with the one meant is a misprint."""
+    one, two = (f"{abs(x):.6g}".replace(".", "").lstrip("0") for x in (written, meant))
+    if written * meant > 0 and len(one) > 1 and abs(len(one) - len(two)) <= 1:
+        if sorted(one) == sorted(two):
+            return "digits exchanged", 1.5
+        if len(one) == len(two) and sum(x != y for x, y in zip(one, two, strict=True)) == 1:
+            return "digit", 1.5
+        if len(one) != len(two) and (one.startswith(two) or two.startswith(one)):
+            return "digit", 1.5
+    return "value", 2.0
+
+
+def pose_cause(
+    which: str, written: Array, solved: Array, known: Array | None = None, slack: float = 0.0
+) -> Cause:
+    """Names a slip in base or tool, (4, 4) each.
+
+    Args:
+        which: ``"base"`` or ``"tool"``.
+        written, solved: ``solved`` is what the poses ask for.
+        known: the reference's own.
+        slack: how far entries of ``solved`` may be off.
+    """
+    meant = solved
+
+    def cause(kind: str, told: str, cost: float) -> Cause:
+        return Cause(None, which, written, meant, kind, f"{which} {told}", cost)
+
+    if _same_pose(written, np.eye(4)):
+        sure = known is not None and _same_pose(known, meant, slack)
+        return cause("missing", f"is missing: {pose_text(meant)}", 1.2 if sure else 1.9)
+    for kind, value, told in _pose_relations(written):
+        if _same_pose(value, solved, slack):
+            meant = value
+            return cause(kind, told.format(meant=pose_text(meant)), 1.0)
+    if _same_pose(meant, np.eye(4), slack):
+        meant = np.eye(4)
+        return cause("superfluous", "must be the identity", 1.8)
+    return cause("value", f"is wrong: meant is {pose_text(meant)}", SIX)
+
+
+def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
+    turned = np.array(written)
+    turned[:3, :3] = written[:3, :3].T
+    back = np.array(turned)
+    back[:3, 3] = -turned[:3, :3] @ written[:3, 3]
+    yield "inverted", back, "is inverted: meant is {meant}"
+    yield "transposed", turned, "has its rotation transposed"
+    if not np.any(written[:3, 3]):
+        return
+    for factor, kind in ((1e-3, "millimetres"), (0.1, "decimal"), (10.0, "decimal"),
+                         (-1.0, "sign")):  # fmt: skip
+        scaled = np.array(written)
+        scaled[:3, 3] *= factor
+        yield kind, scaled, f"has the slip '{kind}' in its translation: meant is {{meant}}"
+
+
+def pose_text(pose: Array) -> str:
+    """A pose as translation and roll, pitch, yaw."""
+    from kinlab.model.rotations import matrix_rpy
+
+    place = ", ".join(number(float(round(x, 9))) for x in pose[:3, 3])
+    if np.max(np.abs(pose[:3, :3] - np.eye(3))) < 1e-9:
+        return f"shift ({place}) m"
+    turn = ", ".join(f"{math.degrees(x) + 0.0:.6g}" for x in matrix_rpy(pose[:3, :3]))
+    return f"shift ({place}) m, roll, pitch, yaw ({turn}) deg"
+
+
+def _same_pose(one: Array, two: Array, slack: float = 0.0) -> bool:
+    scale = max(1.0, float(np.max(np.abs(two))))
+    return bool(np.max(np.abs(one - two)) < max(slack, 1e-8) * scale)
+
+
+def _same_angle(one: float, two: float, slack: float) -> bool:
+    return abs(math.remainder(one - two, _TURN)) < slack
+
+
+def _close(one: float, two: float) -> bool:
+    return abs(one - two) <= _SAME * max(abs(one), abs(two)) + 1e-10
+
+
+def _round(angle: float, slack: float) -> bool:
+    return abs(math.remainder(angle, _ROUND)) < slack

@@ -1,0 +1,15 @@
+"""What the engine says: a thin layer over Pinocchio, for one state or a stack of them.
+
+==============  ==================================================================================
+module          what it holds
+==============  ==================================================================================
+``dynamics``    Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies, of any
+                number of states
+``kinematics``  Forward kinematics, Jacobians and statics, by Pinocchio, for any number of states
+``lagrange``    What Lagrange's equation is made of: exact derivatives of M, the energies and the
+                action
+``links``       The single links, by Pinocchio: their motion, the wrenches on them, their energies
+``states``      Joint vectors at the door: cheap on the good path, exact about what is wrong on
+                the other
+==============  ==================================================================================
+"""

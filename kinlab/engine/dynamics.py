@@ -1,0 +1,209 @@
+"""Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies, of any number of states.
+
+tau = M(q) qddot + C(q, qdot) qdot + g(q). Armatures are part of M; URDF damping and friction
+are not in any of these. :mod:`kinlab.fast.stacks` has a faster road for long stacks.
+"""
+
+from __future__ import annotations
+
+from math import isfinite
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array
+from kinlab.engine.kinematics import each_state, statics
+from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
+from kinlab.model.robot import Robot, require_inertia, scratch
+
+
+def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
+    """Joint-space inertia matrix M(q), symmetric positive definite (note 002, 002.M).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        (n, n) or (N, n, n), kg m² (kg for prismatic joints).
+
+    Raises:
+        StateError: q of the wrong shape or type, or not finite.
+        InertiaError: a joint moves no inertia.
+    """
+    require_inertia(robot)
+    return each_state(robot, _mass_matrix, joint_vector(robot, q, "q"))
+
+
+def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+    """Christoffel's C(q, qdot): C_ij = ½ Σ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qdot_k.
+
+    With it Mdot - 2C is skew (note 002, 002.C corrected and 002.skew).
+
+    Args:
+        robot: the robot.
+        q, v: joint positions and velocities, (n,) or (N, n).
+
+    Returns:
+        (n, n) or (N, n, n).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    q, v = joint_vectors(robot, q=q, v=v)
+    return each_state(robot, _coriolis, q, v)
+
+
+def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
+    """Joint torques g(q) that hold the arm against gravity: g = dV/dq (note 002, 002.G).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        (n,) or (N, n), N m or N.
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _gravity, joint_vector(robot, q, "q"))
+
+
+def inverse_dynamics(
+    robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+) -> Array:
+    """Joint torques of a motion, by recursive Newton-Euler (note 000, 000.ne).
+
+    Args:
+        robot: the robot.
+        q, v, a: joint positions, velocities and accelerations, (n,) or (N, n).
+        wrench: (f, n) that the tool exerts on the environment, in base axes at the tool origin,
+            (6,) or (N, 6); adds J^T F.
+
+    Returns:
+        tau, (n,) or (N, n), N m or N.
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    if wrench is None and plain(robot, q, v, a):
+        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
+            return tau
+    q, v, a = joint_vectors(robot, q=q, v=v, a=a)
+    tau = each_state(robot, _inverse, q, v, a)
+    if wrench is not None:
+        tau = tau + statics(robot, q, wrench)
+    return finite_answer(robot, tau, "inverse_dynamics")
+
+
+def forward_dynamics(
+    robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
+) -> Array:
+    """Joint accelerations under joint torques, by the articulated-body algorithm.
+
+    Args:
+        robot: the robot.
+        q, v, tau: joint positions, velocities and torques, (n,) or (N, n).
+        wrench: as in :func:`inverse_dynamics`.
+
+    Returns:
+        qddot, (n,) or (N, n), rad/s² or m/s².
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    if wrench is None and plain(robot, q, v, tau):
+        a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
+        if isfinite(sum(a.tolist())):
+            return a
+    q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
+    if wrench is not None:
+        tau = tau - statics(robot, q, wrench)
+    return finite_answer(robot, each_state(robot, _forward, q, v, tau), "forward_dynamics")
+
+
+def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
+    """T = ½ qdot^T M qdot, armatures included (note 002).
+
+    Args:
+        robot: the robot.
+        q, v: joint positions and velocities, (n,) or (N, n).
+
+    Returns:
+        Joule: a float, or (N,).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    q, v = joint_vectors(robot, q=q, v=v)
+    # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
+    return moving(robot, mass_matrix(robot, q), v)
+
+
+def moving(robot: Robot, inertia: Array, v: Array) -> Array | float:
+    """½ v^T M v of (n, n) and (n,), or of stacks of them.
+
+    Raises:
+        StateError: the answer overflows.
+    """
+    if v.ndim == 1:
+        return float(finite_answer(robot, np.float64(0.5 * v @ inertia @ v), "kinetic_energy"))
+    energy: Array = 0.5 * np.einsum("ij,ijk,ik->i", v, inertia, v)
+    return finite_answer(robot, energy, "kinetic_energy")
+
+
+def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
+    """V = -Σ m g^T p_C, zero at the base origin (note 000, 000.lag).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+
+    Returns:
+        Joule: a float, or (N,).
+
+    Raises:
+        StateError, InertiaError: as :func:`mass_matrix`.
+    """
+    require_inertia(robot)
+    return each_state(robot, _potential, joint_vector(robot, q, "q"))
+
+
+# Pinocchio's bindings return these by value, so nothing here needs copying out of the scratch data.
+
+
+def _mass_matrix(robot: Robot, q: Array) -> Array:
+    full: Array = pin.crba(robot.model, scratch(robot), q)  # both triangles, from Python
+    return full
+
+
+def _coriolis(robot: Robot, q: Array, v: Array) -> Array:
+    matrix: Array = pin.computeCoriolisMatrix(robot.model, scratch(robot), q, v)
+    return matrix
+
+
+def _inverse(robot: Robot, q: Array, v: Array, a: Array) -> Array:
+    tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+    return tau
+
+
+def _forward(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
+    a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
+    return a
+
+
+def _gravity(robot: Robot, q: Array) -> Array:
+    torques: Array = pin.computeGeneralizedGravity(robot.model, scratch(robot), q)
+    return torques
+
+
+def _potential(robot: Robot, q: Array) -> float:
+    return float(pin.computePotentialEnergy(robot.model, scratch(robot), q))

@@ -1,0 +1,189 @@
+"""Forward kinematics, Jacobians and statics, by Pinocchio, for any number of states.
+
+A stack is looped over; :mod:`kinlab.fast.stacks` has the same functions with a faster road for long
+stacks.
+The one place that knows ``pin.ReferenceFrame``. Twists and wrenches are linear first, (v, w)
+and (f, n); see :data:`FRAMES` for the three frames a Jacobian can be in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, real_array
+from kinlab.engine.states import joint_vector, joint_vectors
+from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.model.robot import Robot, scratch
+
+FRAMES = {
+    "base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED,
+    "tool": pin.ReferenceFrame.LOCAL,
+    "spatial": pin.ReferenceFrame.WORLD,
+}
+"""``base``: axes of the base, reference point the tool origin (the textbook 0J). ``tool``: axes
+of the tool, reference point the tool origin. ``spatial``: axes of the base, reference point the
+base origin (Lynch & Park's space Jacobian)."""
+
+
+def fk(robot: Robot, q: ArrayLike) -> Array:
+    """Pose of the tool in the base.
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n), rad or m.
+
+    Returns:
+        Homogeneous transform, (4, 4) or (N, 4, 4).
+
+    Raises:
+        StateError: q of the wrong shape or type, or not finite.
+    """
+    q = joint_vector(robot, q, "q")
+    return each_state(robot, _fk, q)
+
+
+def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
+    """Geometric Jacobian: twist of the tool (v, w) = J qdot (note 000, section 4).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+        frame: ``"base"``, ``"tool"`` or ``"spatial"``; see :data:`FRAMES`.
+
+    Returns:
+        (6, n) or (N, 6, n); rows 0 to 2 linear (m/s per unit), 3 to 5 angular.
+
+    Raises:
+        StateError: as :func:`fk`.
+        NameUnknownError: another frame.
+    """
+    return each_state(robot, _jacobian, joint_vector(robot, q, "q"), reference(frame))
+
+
+def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") -> Array:
+    """Time derivative of the Jacobian along the motion v = qdot.
+
+    Args:
+        robot: the robot.
+        q, v: joint positions and velocities, (n,) or (N, n).
+        frame: as in :func:`jacobian`. In ``"tool"`` it is the derivative of the tool-frame
+            Jacobian's entries; in ``"base"`` and ``"spatial"`` those of theirs.
+
+    Returns:
+        (6, n) or (N, 6, n).
+
+    Raises:
+        StateError, NameUnknownError: as :func:`jacobian`.
+    """
+    q, v = joint_vectors(robot, q=q, v=v)
+    return each_state(robot, _jacobian_dot, q, v, reference(frame))
+
+
+def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
+    """Joint torques that hold a wrench which the tool exerts: tau = J^T F (note 000, 000.JTF).
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,) or (N, n).
+        wrench: (f, n) that the tool exerts on the environment, N and N m, (6,) or (N, 6), in
+            ``frame``.
+        frame: as in :func:`jacobian`.
+
+    Returns:
+        tau, (n,) or (N, n), N m or N. Gravity is not in it.
+
+    Raises:
+        StateError, NameUnknownError: as :func:`jacobian`.
+    """
+    q = joint_vector(robot, q, "q")
+    force = wrench_for(robot, q, wrench)
+    return held(jacobian(robot, q, frame), force)
+
+
+def wrench_for(robot: Robot, q: Array, wrench: ArrayLike) -> Array:
+    """Reads the wrench that goes with q, (6,) or (N, 6).
+
+    Raises:
+        StateError: as :func:`read_wrench`, or stacks of different length.
+    """
+    force = read_wrench(robot, wrench)
+    if q.ndim == 2 and force.ndim == 2 and len(q) != len(force):
+        raise StateError(
+            f"robot {robot.name!r}: stacks of different length: q {q.shape}, wrench {force.shape}"
+        )
+    return force
+
+
+def held(jacobians: Array, force: Array) -> Array:
+    """tau = J^T F of (..., 6, n) and (..., 6)."""
+    tau: Array = np.einsum("...ij,...i->...j", jacobians, force)
+    return tau
+
+
+def read_wrench(robot: Robot, wrench: ArrayLike) -> Array:
+    """Reads a wrench (6,) or (N, 6), force first.
+
+    Raises:
+        StateError: another shape, or not finite.
+    """
+    force = real_array(wrench, f"robot {robot.name!r}: wrench")
+    if force.ndim not in (1, 2) or force.shape[-1] != 6:
+        raise StateError(
+            f"robot {robot.name!r}: wrench has shape {force.shape}; expected (6,) or (N, 6), "
+            "force first"
+        )
+    return force
+
+
+def reference(frame: str) -> Any:
+    """Pinocchio's reference frame for one of our names.
+
+    Raises:
+        NameUnknownError: another name.
+    """
+    try:
+        return FRAMES[frame]
+    except (KeyError, TypeError):
+        raise NameUnknownError(f"frame {frame!r} is unknown; {near(str(frame), FRAMES)}") from None
+
+
+def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Array:
+    """Applies ``single`` to one state, or to each row of a stack."""
+    first = arguments[0]
+    if first.ndim == 1:
+        answer: Array = single(robot, *arguments)
+        return answer
+    stacks = [a for a in arguments if isinstance(a, np.ndarray)]
+    rest = arguments[len(stacks) :]
+    if not len(first):
+        sample = single(robot, *(np.zeros(stack.shape[1:]) for stack in stacks), *rest)
+        return np.empty((0, *np.shape(sample)))
+    return np.stack([np.asarray(single(robot, *row, *rest)) for row in zip(*stacks, strict=True)])
+
+
+def _fk(robot: Robot, q: Array) -> Array:
+    data = scratch(robot)
+    pin.forwardKinematics(robot.model, data, q)
+    pose: Array = pin.updateFramePlacement(robot.model, data, robot.tool).homogeneous
+    return pose
+
+
+def _jacobian(robot: Robot, q: Array, frame: Any) -> Array:
+    data = scratch(robot)
+    pin.computeJointJacobians(robot.model, data, q)
+    pin.updateFramePlacement(robot.model, data, robot.tool)
+    jac: Array = pin.getFrameJacobian(robot.model, data, robot.tool, frame)
+    return jac.reshape(6, robot.n)  # eigenpy hands out a matrix of one column as a vector
+
+
+def _jacobian_dot(robot: Robot, q: Array, v: Array, frame: Any) -> Array:
+    data = scratch(robot)
+    pin.computeJointJacobiansTimeVariation(robot.model, data, q, v)
+    pin.updateFramePlacement(robot.model, data, robot.tool)
+    jac: Array = pin.getFrameJacobianTimeVariation(robot.model, data, robot.tool, frame)
+    return jac.reshape(6, robot.n)

@@ -1,0 +1,313 @@
+r"""Formulas as text, read by a whitelist over Python's syntax tree. Nothing is ever evaluated.
+
+A file looks like this (see :func:`read_file`)::
+
+    robot = "planar2r"
+
+    [symbols]                 # only what the robot's own names (kinlab derive) do not cover
+    th1 = "q1"
+    L = 0.5
+
+    [formulas]
+    tau1 = "(m1 + m2)*l1**2*qdd1 + ..."
+    "mass_matrix[0,0]" = "..."
+
+    [latex]
+    tau2 = '(m_2 l_2^2 + m_2 l_1 l_2 c_2) \ddot{q}_1 + ...'
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from dataclasses import dataclass
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+from kinlab.errors import ExpressionError, FileError, near
+from kinlab.formulas import tree
+from kinlab.formulas.latex import expression
+from kinlab.formulas.tree import Node
+from kinlab.host.files import read_text, read_toml
+
+_FILE_LIMIT = 1 << 20
+_LENGTH = 20_000
+MOST_NODES = 5_000
+_DEPTH = 60
+_NESTING = 50
+_CHAIN = 400
+_DIGITS = 25
+_EXPONENT = 6
+_FORMULAS = 200
+
+SHORTHAND = re.compile(r"([cs])([1-9]+)")
+"""c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
+
+_JOINT = (
+    (re.compile(r"(?:theta|th|q)_?([1-9]\d?)"), "q"),
+    (re.compile(r"(?:dtheta|thetad|dth|thd|qd|dq|theta_dot_?|q_dot_?|qdot_?)_?([1-9]\d?)"), "qd"),
+    (re.compile(r"(?:ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_ddot_?|q_ddot_?|qddot_?)_?([1-9]\d?)"),
+     "qdd"),
+)  # fmt: skip
+
+_SYNONYMS = {
+    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "Abs": "abs",
+    "ln": "log",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FormulaFile:
+    """What a formula file holds.
+
+    Attributes:
+        path: where it was read.
+        robot: a name or path for ``kl.load``.
+        symbols: the user's own names: a number, or text over other names.
+        formulas: entry name to expression, in the order of the file.
+        texts: the formulas as they are written, for plain evaluation.
+        symbol_texts: the same for symbols; a number as its digits.
+    """
+
+    path: str
+    robot: str
+    symbols: dict[str, Node]
+    formulas: dict[str, Node]
+    texts: dict[str, str]
+    symbol_texts: dict[str, str]
+
+
+def read_file(path: str | Path) -> FormulaFile:
+    """Reads a TOML file of formulas.
+
+    Args:
+        path: the file. ``robot`` is required; ``[symbols]`` gives numbers or other names to the
+            user's symbols; every entry of ``[formulas]`` (or of the top level) is a formula:
+            its name says what it claims to be (``tau1``, ``g2``, ``M12``, ``C11``, ``J11``,
+            ``x``, or a quantity such as ``"fk[0,3]"``). Entries of ``[latex]`` are LaTeX
+            (:mod:`kinlab.formulas.latex`).
+
+    Raises:
+        FileError: missing, too large, no TOML.
+        ExpressionError: an expression that is no arithmetic, with the entry's name.
+    """
+    text = read_text(path, limit=_FILE_LIMIT)
+    document = read_toml(text, str(path), FileError)
+    place = str(path)
+    robot = document.pop("robot", None)
+    if not isinstance(robot, str) or not robot:
+        raise FileError(f'{place}: robot is missing; write robot = "planar2r" or a path')
+    symbols = _table(document.pop("symbols", {}), f"{place}: [symbols]")
+    entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
+    typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
+    for key, value in document.items():
+        if key in ("title", "source", "name"):
+            continue
+        if not isinstance(value, str):
+            raise FileError(f"{place}: {key!r} is no formula; write it as text in [formulas]")
+        entries[key] = value
+    for key in typeset.keys() & entries.keys():
+        raise FileError(f"{place}: {key!r} is given twice, as text and as LaTeX; keep one")
+    entries |= {key: _from_latex(value, f"{place}: {key}") for key, value in typeset.items()}
+    if not entries:
+        raise FileError(f'{place}: no formulas; write [formulas] and lines such as tau1 = "..."')
+    for found, what in ((entries, "formulas"), (symbols, "symbols")):
+        if len(found) > _FORMULAS:
+            raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    return FormulaFile(
+        place,
+        robot,
+        {name: _symbol(value, f"{place}: symbol {name!r}") for name, value in symbols.items()},
+        {name: _formula(value, f"{place}: {name}") for name, value in entries.items()},
+        {name: tidied(value) for name, value in entries.items()},
+        {name: tidied(value if isinstance(value, str) else repr(float(value)))
+         for name, value in symbols.items()},
+    )  # fmt: skip
+
+
+def parse(text: str, place: str = "expression") -> Node:
+    """Reads one arithmetic expression.
+
+    Args:
+        text: numbers, names, ``+ - * / **``, parentheses, and the functions of
+            :data:`kinlab.formulas.tree.FUNCTIONS`; ``^`` is read as a power, ``pi`` as the number.
+        place: what to put in front of a message.
+
+    Raises:
+        ExpressionError: too long, too deep, a huge power, or anything but arithmetic.
+    """
+    if len(text) > _LENGTH:
+        raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
+    text = tidied(text)
+    _refuse_deep(text, place)
+    try:
+        parsed = ast.parse(text, mode="eval")
+    except (SyntaxError, ValueError) as problem:
+        where = f" near column {problem.offset}" if isinstance(problem, SyntaxError) else ""
+        raise ExpressionError(f"{place}: no arithmetic{where}: {_short(text)}") from None
+    except (RecursionError, MemoryError):
+        raise ExpressionError(f"{place}: nested too deep") from None
+    if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:
+        raise ExpressionError(f"{place}: more than {MOST_NODES} terms and factors")
+    return _Reader(place).read(parsed.body, 0)
+
+
+def tidied(text: str) -> str:
+    """The text with ``**`` for ``^``, plain signs and single blanks, as Python reads it."""
+    return " ".join(text.replace("^", "**").replace("·", "*").replace("−", "-").split())
+
+
+def canonical(name: str) -> Node:
+    """What a name means by the field's habits: th1 is q1, c12 is cos(q1 + q2)."""
+    for pattern, letter in _JOINT:
+        found = pattern.fullmatch(name)
+        if found:
+            return tree.sym(f"{letter}{found.group(1)}")
+    found = SHORTHAND.fullmatch(name)
+    if found:
+        angle = tree.add(*(tree.sym(f"q{digit}") for digit in found.group(2)))
+        return tree.call("cos" if found.group(1) == "c" else "sin", angle)
+    return tree.sym(name)
+
+
+class _Reader:
+    """Walks one syntax tree; holds the place for its messages."""
+
+    def __init__(self, place: str) -> None:
+        self.place = place
+
+    def read(self, node: ast.expr, depth: int) -> Node:
+        if depth > _DEPTH + _CHAIN:
+            raise ExpressionError(f"{self.place}: nested deeper than {_DEPTH}")
+        match node:
+            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
+                return tree.num(self._number(number))
+            case ast.Name(id="pi"):
+                return tree.num(Fraction(repr(math.pi)))
+            case ast.Name(id=name):
+                return tree.sym(name)
+            case ast.UnaryOp(op=ast.USub(), operand=operand):
+                return tree.mul(tree.num(-1), self.read(operand, depth + 1))
+            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
+                return self.read(operand, depth + 1)
+            case ast.BinOp(op=ast.Pow(), left=left, right=right):
+                return self._power(self.read(left, depth + 1), self.read(right, depth + 1))
+            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() as op):
+                return self._binary(
+                    op, self.read(node.left, depth + 1), self.read(node.right, depth + 1)
+                )
+            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+                return self._call(name, [self.read(a, depth + 1) for a in args])
+        kind = type(node).__name__
+        raise ExpressionError(
+            f"{self.place}: {kind} is not arithmetic; write numbers, names, + - * / ** ( ) and "
+            f"functions such as sin, cos, sqrt"
+        )
+
+    def _number(self, number: float) -> Fraction:
+        if not math.isfinite(number):
+            raise ExpressionError(f"{self.place}: a number is not finite")
+        value = Fraction(repr(number)) if isinstance(number, float) else Fraction(number)
+        return self._bounded(value)
+
+    def _bounded(self, value: Fraction) -> Fraction:
+        if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
+            raise ExpressionError(f"{self.place}: a number is too large or too small")
+        return value
+
+    def _binary(self, op: ast.operator, left: Node, right: Node) -> Node:
+        if isinstance(op, ast.Div):
+            if right.op == "num" and right.value == 0:
+                raise ExpressionError(f"{self.place}: division by zero")
+            made = tree.mul(left, tree.power(right, Fraction(-1)))
+        elif isinstance(op, ast.Mult):
+            made = tree.mul(left, right)
+        elif isinstance(op, ast.Sub):
+            made = tree.add(left, tree.mul(tree.num(-1), right))
+        else:
+            made = tree.add(left, right)
+        if made.op == "num":
+            self._bounded(made.value)
+        elif made.op == "mul" and made.args[0].op == "num":
+            self._bounded(made.args[0].value)
+        return made
+
+    def _power(self, base: Node, exponent: Node) -> Node:
+        if exponent.op != "num":
+            raise ExpressionError(f"{self.place}: the power {exponent} is not a number")
+        value = exponent.value
+        if abs(value) > _EXPONENT or value.denominator > 2:
+            shown = str(value) if value.numerator.bit_length() < 64 else "huge"
+            raise ExpressionError(
+                f"{self.place}: the power {shown} is beyond what formulas of arms need "
+                f"(up to {_EXPONENT}, and halves)"
+            )
+        if base.op == "num" and base.value == 0 and value < 0:
+            raise ExpressionError(f"{self.place}: division by zero")
+        made = tree.power(base, value)
+        if made.op == "num":
+            self._bounded(made.value)
+        return made
+
+    def _call(self, name: str, args: list[Node]) -> Node:
+        plain = _SYNONYMS.get(name, name)
+        if plain not in tree.FUNCTIONS:
+            choices = near(name, [*tree.FUNCTIONS, *_SYNONYMS])
+            raise ExpressionError(f"{self.place}: function {_short(name)!r} is unknown; {choices}")
+        wanted = 2 if plain == "atan2" else 1
+        if len(args) != wanted:
+            raise ExpressionError(f"{self.place}: {plain} takes {wanted} argument, not {len(args)}")
+        if plain == "sqrt":
+            return tree.power(args[0], Fraction(1, 2))
+        return tree.call(plain, *args)
+
+
+def _refuse_deep(text: str, place: str) -> None:
+    """Bounds nesting and chains before Python's own parser sees the text."""
+    depth = deepest = 0
+    for character in text:
+        depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(character, 0)
+        deepest = max(deepest, depth)
+    if deepest > _NESTING:
+        raise ExpressionError(f"{place}: {deepest} levels of parentheses; at most {_NESTING}")
+    signs = sum(text.count(character) for character in "+-*/")
+    if signs > _CHAIN * 4:
+        raise ExpressionError(f"{place}: {signs} operators; at most {_CHAIN * 4}")
+    if re.search(r"(?:[+-]\s*){8,}", text):
+        raise ExpressionError(f"{place}: a row of signs without numbers")
+    if re.search(rf"\d{{{_DIGITS + 1},}}", text):
+        raise ExpressionError(f"{place}: a number of more than {_DIGITS} digits")
+
+
+def _table(value: Any, place: str) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        raise FileError(f"{place} is {type(value).__name__}; it must be a table of names")
+    return dict(value)
+
+
+def _symbol(value: Any, place: str) -> Node:
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise ExpressionError(f"{place}: {type(value).__name__}; give a number, or other names")
+    if isinstance(value, str):
+        return parse(value, place)
+    if not math.isfinite(value) or abs(value) > 1e30:
+        raise ExpressionError(f"{place}: {value} is not a usable number")
+    return tree.num(Fraction(repr(float(value))))
+
+
+def _formula(value: Any, place: str) -> Node:
+    if not isinstance(value, str):
+        raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
+    return parse(value, place)
+
+
+def _from_latex(value: Any, place: str) -> str:
+    if not isinstance(value, str):
+        raise ExpressionError(f"{place}: {type(value).__name__}; write the LaTeX as text")
+    return expression(value, place)
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -1,0 +1,12 @@
+"""What is asked of the machine: files written whole, processes that end with us, safe pages.
+
+=============  ===================================================================================
+module         what it holds
+=============  ===================================================================================
+``files``      Files are read with a clear error and written whole or not at all
+``processes``  Processes of ours end with the process that started them, however that one ends
+``version``    The version of the package
+``web``        What every page we write has in common: a policy that runs our own scripts and no
+               others
+=============  ===================================================================================
+"""

@@ -1,0 +1,248 @@
+"""DH tables: links, conventions, and the hand product of link transforms.
+
+Nothing from Pinocchio is used here, so ``DHTable.fk`` is an oracle for the engine.
+
+Sources: note 000 section 3 and Craig, *Introduction to Robotics*, section 3.4 (modified);
+note 002 and Siciliano et al., *Robotics*, section 2.8 (standard).
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, frozen, real_array, rigid_transform, shaped, shown
+from kinlab.errors import StateError, TableError
+from kinlab.host.files import write_text
+from kinlab.model import table_files as table_io
+from kinlab.model.link import Convention, DHLink, check_name, read_convention, same_value
+
+__all__ = ["DHLink", "DHTable", "link_transform"]
+
+GRAVITY = (0.0, 0.0, -9.81)
+
+_LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
+
+
+@dataclass(frozen=True, eq=False)
+class DHTable:
+    """A serial arm as a DH table.
+
+    Attributes:
+        name: the arm's name.
+        convention: ``"standard"`` or ``"modified"``; required.
+        links: the rows, from base to tool.
+        base: frame 0 in the world, (4, 4).
+        tool: the tool in DH frame n, (4, 4).
+        gravity: acceleration of gravity in the world, m/s², (3,).
+        source: where the numbers come from.
+        tool_name: name of the tool frame in the URDF.
+
+    Raises:
+        TableError: convention missing or unknown, no links, transforms not rigid.
+    """
+
+    name: str
+    convention: Convention | str | None = None
+    links: Sequence[DHLink] = ()
+    base: ArrayLike = field(default_factory=lambda: np.eye(4))
+    tool: ArrayLike = field(default_factory=lambda: np.eye(4))
+    gravity: ArrayLike = GRAVITY
+    source: str = ""
+    tool_name: str = "tool"
+
+    def __post_init__(self) -> None:
+        check_name(self.name, "table: name")
+        place = f"table {self.name!r}"
+        check_name(self.tool_name, f"{place}: tool_name")
+        if _LINK_NAME.fullmatch(self.tool_name):
+            raise TableError(f"{place}: tool_name {self.tool_name!r} is the name of a link")
+        if not isinstance(self.source, str):
+            raise TableError(f"{place}: source is {shown(self.source)}; it must be text")
+        object.__setattr__(self, "convention", read_convention(self.convention, place))
+        links = tuple(self.links)
+        if not links:
+            raise TableError(f"{place}: it has no links")
+        if len(links) > table_io.MOST_LINKS:
+            raise TableError(f"{place}: {len(links)} links; at most {table_io.MOST_LINKS}")
+        for i, link in enumerate(links, 1):
+            if not isinstance(link, DHLink):
+                raise TableError(f"{place}, link {i}: {type(link).__name__} is not a DHLink")
+        object.__setattr__(self, "links", links)
+        names = [link.name or f"joint_{i}" for i, link in enumerate(links, 1)]
+        for i, name in enumerate(names, 1):
+            if name in names[: i - 1]:
+                raise TableError(f"{place}, link {i}: the name {name!r} is used twice")
+        for which in ("base", "tool"):
+            transform = rigid_transform(getattr(self, which), f"{place}: {which}", TableError)
+            shaped(transform, (4, 4), f"{place}: {which}", TableError)
+            object.__setattr__(self, which, frozen(transform))
+        gravity = shaped(self.gravity, (3,), f"{place}: gravity", TableError)
+        object.__setattr__(self, "gravity", frozen(gravity))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, DHTable):
+            return NotImplemented
+        return all(same_value(getattr(self, f.name), getattr(other, f.name)) for f in fields(self))
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.convention, self.links))
+
+    @property
+    def n(self) -> int:
+        """Number of joints."""
+        return len(self.links)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, numbered where the table names none."""
+        return tuple(link.name or f"joint_{i}" for i, link in enumerate(self.links, 1))
+
+    def link_transforms(self, q: ArrayLike) -> Array:
+        """Each link's own transform ^{i-1}T_i, without base and tool.
+
+        Args:
+            q: joint positions, (n,) or (N, n), rad or m.
+
+        Returns:
+            (n, 4, 4) or (N, n, 4, 4).
+
+        Raises:
+            StateError: q of another length or type, or not finite.
+        """
+        values = self._read_q(q)
+        transforms = np.empty((*values.shape, 4, 4))
+        for i, link in enumerate(self.links):
+            move = -values[..., i] if link.flip else values[..., i]
+            revolute = link.joint == "revolute"
+            theta = link.theta + move if revolute else np.full_like(move, link.theta)
+            d = np.full_like(move, link.d) if revolute else link.d + move
+            transforms[..., i, :, :] = link_transform(
+                Convention(str(self.convention)), link.a, link.alpha, d, theta
+            )
+        return transforms
+
+    def frames(self, q: ArrayLike) -> Array:
+        """DH frames 1 to n in the world, (n, 4, 4) or (N, n, 4, 4); the tool is not applied."""
+        steps = self.link_transforms(q)
+        out = np.empty_like(steps)
+        current = np.asarray(self.base)
+        for i in range(self.n):
+            current = current @ steps[..., i, :, :]
+            out[..., i, :, :] = current
+        return out
+
+    def fk(self, q: ArrayLike) -> Array:
+        """Forward kinematics by hand: the product of the link transforms (note 000, 000.chain).
+
+        Args:
+            q: joint positions, (n,) or (N, n), rad or m.
+
+        Returns:
+            (n+1, 4, 4) or (N, n+1, 4, 4) in the world: the base frame 0, DH frames 1 to n-1,
+            and last the tool (DH frame n times ``tool``).
+
+        Raises:
+            StateError: q of another length or type, or not finite.
+        """
+        frames = self.frames(q)
+        base = np.broadcast_to(np.asarray(self.base), (*frames.shape[:-3], 1, 4, 4))
+        out = np.concatenate([base, frames], axis=-3)
+        out[..., -1, :, :] = out[..., -1, :, :] @ np.asarray(self.tool)
+        return out
+
+    def _read_q(self, q: ArrayLike) -> Array:
+        values = real_array(q, f"table {self.name!r}: q")
+        if values.ndim not in (1, 2) or values.shape[-1] != self.n:
+            raise StateError(
+                f"table {self.name!r}: q has shape {values.shape}; "
+                f"expected ({self.n},) or (N, {self.n})"
+            )
+        return values
+
+    @staticmethod
+    def load(path: str | Path, convention: str | None = None) -> DHTable:
+        """Reads a table from TOML or CSV; :mod:`kinlab.model.table_files` describes the formats.
+
+        Args:
+            path: a ``.toml`` or ``.csv`` file.
+            convention: for a CSV without a ``convention`` column.
+
+        Raises:
+            FileError: the file cannot be read, or is of another kind.
+            TableError: a missing or unknown column, or an impossible value, with its place.
+        """
+        return DHTable.from_columns(table_io.read(path, convention))
+
+    @staticmethod
+    def from_columns(columns: Mapping[str, Any]) -> DHTable:
+        """Builds a table from plain values, naming the row in every error.
+
+        Args:
+            columns: the fields of a table, with ``links`` as a list of mappings.
+
+        Raises:
+            TableError: an impossible value, with its place.
+        """
+        links = []
+        for i, row in enumerate(columns["links"], 1):
+            try:
+                links.append(DHLink(**row))
+            except TableError as problem:
+                said = str(problem).split(": ", 1)[1]  # the link does not know its row
+                raise TableError(f"table {columns['name']!r}, link {i}: {said}") from None
+        return DHTable(**{**columns, "links": links})
+
+    def save(self, path: str | Path) -> None:
+        """Writes the table as TOML; loading it again gives the same table, bit for bit.
+
+        Raises:
+            FileError: the file cannot be written; an old one stays whole.
+        """
+        write_text(path, self.to_toml())
+
+    def to_toml(self) -> str:
+        """The text that :meth:`save` writes."""
+        document = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "links"}
+        rows = [{f.name: getattr(link, f.name) for f in fields(link)} for link in self.links]
+        return table_io.dumps({**document, "links": rows})
+
+
+def link_transform(
+    convention: Convention, a: float, alpha: float, d: ArrayLike, theta: ArrayLike
+) -> Array:
+    """The transform ^{i-1}T_i of one row, written out entry by entry.
+
+    Args:
+        convention: which product of elementary transforms (see :class:`Convention`).
+        a: metres. alpha: radians.
+        d: metres, any shape S. theta: radians, shape S.
+
+    Returns:
+        (*S, 4, 4).
+    """
+    c, s = np.cos(theta), np.sin(theta)
+    ca, sa = math.cos(alpha), math.sin(alpha)
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    if convention is Convention.MODIFIED:
+        rows: list[list[Any]] = [
+            [c, -s, zero, a * one],
+            [s * ca, c * ca, -sa * one, -sa * np.asarray(d)],
+            [s * sa, c * sa, ca * one, ca * np.asarray(d)],
+            [zero, zero, zero, one],
+        ]
+    else:
+        rows = [
+            [c, -s * ca, s * sa, a * c],
+            [s, c * ca, -c * sa, a * s],
+            [zero, sa * one, ca * one, np.asarray(d)],
+            [zero, zero, zero, one],
+        ]
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

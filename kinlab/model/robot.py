@@ -1,0 +1,242 @@
+"""Robot: a small frozen handle of a serial arm in Pinocchio. It only looks things up.
+
+Every robot has nq == nv == n: a continuous joint becomes a revolute one with wide limits, and
+what does not lie on the way from the root to the tool is locked at zero.
+"""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab.arrays import Array, frozen
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
+from kinlab.model import urdf_read
+from kinlab.model import urdf_read as urdf_chain
+from kinlab.model.dh import DHTable
+from kinlab.model.urdf_write import to_urdf
+from kinlab.tolerances import TOLERANCES
+
+
+@dataclass(frozen=True, eq=False)
+class Robot:
+    """A serial arm: a Pinocchio model and the frame that counts as its tool.
+
+    Build one with :meth:`from_dh`, :meth:`from_urdf` or :func:`kinlab.load`.
+
+    Attributes:
+        name: what messages call it.
+        model: the ``pin.Model``; nq == nv == n. Do not write to it.
+        tool: index of the tool frame in ``model.frames``.
+        urdf: the URDF text the model was built from.
+        table: the DH table, where the robot comes from one.
+        folder: where meshes are looked for, where the robot comes from a file.
+        source: where the numbers come from.
+        n: number of joints.
+        lower, upper: limits of q, (n,), rad or m.
+    """
+
+    name: str
+    model: Any = field(repr=False)
+    tool: int
+    urdf: str = field(default="", repr=False)
+    table: DHTable | None = field(default=None, repr=False)
+    folder: Path | None = None
+    source: str = ""
+    n: int = field(init=False)
+    lower: Array = field(init=False, repr=False)
+    upper: Array = field(init=False, repr=False)
+    singular_mass: str = field(init=False, repr=False)
+    """Why the mass matrix is singular, or an empty string."""
+    shape: tuple[int] = field(init=False, repr=False)
+    _scratch: threading.local = field(init=False, repr=False, default_factory=threading.local)
+
+    def __post_init__(self) -> None:
+        if self.model.nq != self.model.nv or self.model.nv != self.model.njoints - 1:
+            raise StructureError(
+                f"robot {self.name!r}: nq {self.model.nq}, nv {self.model.nv}, joints "
+                f"{self.model.njoints - 1}; every joint must have one degree of freedom (no "
+                "floating base; continuous joints as revolute)"
+            )
+        put = object.__setattr__
+        put(self, "n", int(self.model.nv))
+        put(self, "shape", (self.n,))
+        put(self, "lower", frozen(self.model.lowerPositionLimit))
+        put(self, "upper", frozen(self.model.upperPositionLimit))
+        put(self, "singular_mass", _why_singular(self.model, self.name))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return Robot, (
+            self.name, self.model, self.tool, self.urdf, self.table, self.folder, self.source,
+        )  # fmt: skip
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints in the order of q."""
+        return tuple(str(name) for name in list(self.model.names)[1:])
+
+    @property
+    def tool_name(self) -> str:
+        """Name of the tool frame."""
+        return str(self.model.frames[self.tool].name)
+
+    @staticmethod
+    def from_dh(table: DHTable) -> Robot:
+        """Builds a robot from a DH table, by way of its URDF.
+
+        Args:
+            table: the DH table.
+
+        Returns:
+            The robot; its tool frame is DH frame n times ``table.tool``.
+        """
+        text = to_urdf(table)
+        chain = urdf_chain.read(text, f"table {table.name!r}", table.tool_name)
+        return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
+
+    @staticmethod
+    def from_urdf(path_or_xml: str | Path, tool: str | None = None) -> Robot:
+        """Builds a robot from a URDF file or text.
+
+        Args:
+            path_or_xml: a file, or the XML itself.
+            tool: name of the link that is the tool. May be left out where all moving joints
+                lie on one chain; then it is that chain's last link, and of several links fixed
+                to it one with a usual tool name (tool, tool0, ee_link, ...), or the outermost.
+
+        Returns:
+            The robot of the joints between root and tool; all others are locked at zero.
+
+        Raises:
+            FileError: the file cannot be read.
+            UrdfError: not a sound URDF; the message names the link or joint.
+            StructureError: a tree and no tool named, no moving joint on the way to the tool, or
+                a mimic or multi-degree-of-freedom joint on it.
+            NameUnknownError: no link of that name.
+        """
+        text, file = urdf_read.load_source(path_or_xml)
+        chain = urdf_chain.read(text, f"urdf {file.name!r}" if file else None, tool)
+        name = chain.name or (file.stem if file else "robot")
+        folder = file.resolve().parent if file else None
+        source = str(file) if file else "URDF text"
+        return Robot(name, chain.model, chain.tool, text, None, folder, source)
+
+    @staticmethod
+    def from_model(model: Any, tool: str | None = None) -> Robot:
+        """Wraps a ``pin.Model`` whose joints form one chain.
+
+        Args:
+            model: the model; every joint one degree of freedom with nq == nv.
+            tool: name of the tool frame; left out, the last body frame.
+
+        Raises:
+            StructureError: the joints branch, or a joint has another number of freedoms.
+            NameUnknownError: no frame of that name.
+        """
+        where = f"model {model.name!r}"
+        for j in range(1, model.njoints):
+            if model.parents[j] != j - 1:
+                raise StructureError(
+                    f"{where}: joint {model.names[j]!r} branches off; reduce the model to one "
+                    "chain, or load the URDF with a tool named"
+                )
+        names = [str(frame.name) for frame in model.frames]
+        if tool is not None and tool not in names:
+            raise NameUnknownError(f"{where}: frame {tool!r} does not exist; {near(tool, names)}")
+        frame = _frame_index(model, tool) if tool is not None else len(names) - 1
+        return Robot(str(model.name), model, frame, source="pin.Model")
+
+
+def require_robot(robot: object) -> None:
+    """Refuses what is no robot.
+
+    Raises:
+        StructureError: saying how to make one of it.
+    """
+    if isinstance(robot, Robot):
+        return
+    if isinstance(robot, str):
+        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
+    if isinstance(robot, DHTable):
+        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
+    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
+    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
+
+
+def scratch(robot: Robot) -> Any:
+    """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
+    try:
+        return robot._scratch.data
+    except AttributeError:
+        robot._scratch.data = robot.model.createData()
+        return robot._scratch.data
+
+
+def model_pool(robot: Robot, threads: int) -> Any:
+    """The ``pin.ModelPool`` of this robot for this thread, for calls on so many threads."""
+    pools: dict[int, Any] = robot._scratch.__dict__.setdefault("pools", {})
+    if threads not in pools:
+        pools[threads] = pin.ModelPool(robot.model, threads)
+    return pools[threads]
+
+
+def require_inertia(robot: Robot) -> None:
+    """Refuses dynamics of a robot whose mass matrix is singular.
+
+    Raises:
+        InertiaError: naming the joint that moves nothing.
+    """
+    require_robot(robot)
+    if robot.singular_mass:
+        raise InertiaError(robot.singular_mass)
+
+
+def frame_id(robot: Robot, name: str) -> int:
+    """Index of a frame by name.
+
+    Raises:
+        NameUnknownError: with the near names.
+    """
+    names = [str(frame.name) for frame in robot.model.frames]
+    if name not in names:
+        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+        raise NameUnknownError(message)
+    return _frame_index(robot.model, name)
+
+
+def _frame_index(model: Any, name: str) -> int:
+    """Index of a frame of that name; a body's frame where a joint has the same name."""
+    same = [i for i, frame in enumerate(model.frames) if str(frame.name) == name]
+    bodies = [i for i in same if model.frames[i].type == pin.FrameType.BODY]
+    return (bodies or same)[0]
+
+
+def _why_singular(model: Any, name: str) -> str:
+    """Says which joint moves no inertia, or nothing where M is regular.
+
+    Judged by M = U D U^T: D_i is the inertia that joint i feels with all joints behind it free,
+    and the articulated-body algorithm divides by it. A special pose can make it vanish, so M
+    counts as singular only if it is so at three seeded states.
+    """
+    data = model.createData()
+    rng = np.random.default_rng(0)
+    joint = 0
+    for q in rng.uniform(-3.0, 3.0, (3, model.nv)):
+        diagonal = np.diag(pin.crba(model, data, q))
+        if not diagonal.any():
+            return f"robot {name!r}: no link has mass: kinematics only; give mass and inertia"
+        pin.cholesky.decompose(model, data)
+        # from the tip on: behind a singular joint the factors mean nothing
+        light = np.flatnonzero(~(TOLERANCES.massless * diagonal < data.D))
+        if not len(light):
+            return ""
+        joint = int(light[-1])
+    return (
+        f"robot {name!r}: the mass matrix is singular: joint {model.names[joint + 1]!r} moves no "
+        "inertia; give its link mass, inertia or armature (kinematics work without)"
+    )
