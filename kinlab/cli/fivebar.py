@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import Screen, echo, screen, styled
+from kinlab.cli.screen import Screen, screen, styled
 from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
@@ -62,15 +62,16 @@ def list_fivebars() -> None:
         one = FiveBar.load(name)
         table.add_row(name, _pair(one.l1), _pair(one.l2), f"{one.e:.4g}", f"{one.payload:g}")
     console.print(table)
-    table = _table(
-        "motor", "maker", "rated W", "rated N m", "peak N m", "max r/min", "rotor kg m²",
-        left=(0, 1),
-    )  # fmt: skip
+    columns = {
+        "rated W": "rated_power",
+        "rated N m": "rated_torque",
+        "peak N m": "peak_torque",
+        "max r/min": "max_speed",
+        "rotor kg m²": "rotor_inertia",
+    }
+    table = _table("motor", "maker", *columns, left=(0, 1))
     for motor in catalogue().values():
-        figures = (
-            motor.rated_power, motor.rated_torque, motor.peak_torque, motor.max_speed,
-            motor.rotor_inertia,
-        )  # fmt: skip
+        figures = (getattr(motor, column) for column in columns.values())
         table.add_row(motor.name, motor.maker, *("-" if f is None else f"{f:g}" for f in figures))
     console.print(table)
 
@@ -84,14 +85,7 @@ def analyse(
 ) -> None:
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
     from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.isotropy import isotropic_poses
-    from kinlab.fivebar.pose import MODES
-    from kinlab.fivebar.workspace import (
-        largest_circle,
-        largest_rectangle,
-        reachable_area,
-        workspace_map,
-    )
+    from kinlab.fivebar.arguments import MODES
     from kinlab.plots.canvas import save
     from kinlab.plots.fivebar import workspace_picture
 
@@ -101,20 +95,20 @@ def analyse(
     console.print(styled((fivebar.name, "bold"), about))
     console.print(
         f"l1 {_pair(fivebar.l1)} m, l2 {_pair(fivebar.l2)} m, e {fivebar.e:.6g} m; "
-        f"reachable area {reachable_area(fivebar):.6g} m²"
+        f"reachable area {fivebar.reachable_area():.6g} m²"
     )
     table = _table("mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic", left=(0,))
-    poses = {each: isotropic_poses(fivebar, each) for each in MODES}
+    poses = {each: fivebar.isotropic_poses(each) for each in MODES}
     for each in MODES:
-        areas = (f"{area:.4g}" for area in workspace_map(fivebar, each).area)
+        areas = (f"{area:.4g}" for area in fivebar.workspace_map(each).area)
         table.add_row(_signs(each), *areas, str(len(poses[each])))
     console.print(table)
     for pose in poses[signs]:
         place = f"({_fixed(pose.xy[0])}, {_fixed(pose.xy[1])}) m"
         full = ", fully (pressure angles 0)" if max(pose.pressure) < _RIGHT_ANGLE else ""
         console.print(f"isotropic in mode {_signs(signs)}: {place}{full}")
-    circle = largest_circle(fivebar, signs, assembly)
-    box = largest_rectangle(fivebar, signs, assembly)
+    circle = fivebar.largest_circle(signs, assembly)
+    box = fivebar.largest_rectangle(signs, assembly)
     console.print(f"free of singularities in mode {_signs(signs)}, assembly {assembly:+d}:")
     console.print(
         f"  largest circle: radius {circle.radius:.6g} m about "
@@ -134,21 +128,18 @@ def analyse(
 def _print_place(fivebar: FiveBar, at: tuple[float, float], mode: tuple[int, int]) -> None:
     import numpy as np
 
-    from kinlab.fivebar.metrics import passive_angles, pressure_angles, transmission_angle
-    from kinlab.fivebar.singularity import classify, distances
-
     console = screen(highlight=False)
-    away = distances(fivebar, at, mode)
-    (kind,) = classify(fivebar, at, mode)
+    away = fivebar.singularity_distances(at, mode)
+    (kind,) = fivebar.classify(at, mode)
     console.print(f"at ({at[0]:g}, {at[1]:g}) m, mode {_signs(mode)}: {kind}")
 
     def degrees(radians: object) -> str:
         return ", ".join(f"{x:.4g}°" for x in np.atleast_1d(np.degrees(np.asarray(radians))))
 
     console.print(f"  crank angles {degrees(fivebar.ik(at, mode))}")
-    console.print(f"  passive angles {degrees(passive_angles(fivebar, at, mode))}")
-    console.print(f"  pressure angles {degrees(pressure_angles(fivebar, at, mode))}")
-    console.print(f"  transmission angle {degrees(transmission_angle(fivebar, at, mode))}")
+    console.print(f"  passive angles {degrees(fivebar.passive_angles(at, mode))}")
+    console.print(f"  pressure angles {degrees(fivebar.pressure_angles(at, mode))}")
+    console.print(f"  transmission angle {degrees(fivebar.transmission_angle(at, mode))}")
     console.print(
         f"  to type I: outer {_pair(away.outer)}, inner {_pair(away.inner)} m; "
         f"to type II {float(away.type_two):.4g} m (w1 x w2 = {float(away.rods):.4g})"
@@ -170,13 +161,12 @@ def size(
 ) -> None:
     """Size the servos for a workspace, a speed and an acceleration in any direction."""
     from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.workspace import largest_rectangle
     from kinlab.plots.canvas import save
     from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
-    box = workspace or largest_rectangle(fivebar, signs, max_condition=_CONDITION)
+    box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
     if workspace is None:
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
     sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
@@ -215,7 +205,7 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"sigma in the workspace is {sizing.sigma[0]:.4g} to {sizing.sigma[1]:.4g}"
     )
     console.print(
-        f"pick-and-place cycle of {cycle.path.duration:.4g} s: peak {_pair(cycle.peak_torque)}, "
+        f"pick-and-place cycle of {sizing.path.duration:.4g} s: peak {_pair(cycle.peak_torque)}, "
         f"RMS {_pair(cycle.rms_torque)} N m, peak power {_pair(cycle.peak_power)} W"
     )
     console.print(_fits(sizing))
@@ -223,17 +213,19 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
 
 
 def _fits(sizing: ServoSizing) -> Table:
-    table = _table(
-        "motor", "gear", "peak N m", "RMS N m", "r/min", "inertia", "margin", "limited by",
-        left=(0, 7),
-    )  # fmt: skip
+    columns = ["motor", "gear", "peak N m", "RMS N m", "r/min", "inertia", "margin", "limited by"]
+    table = _table(*columns, left=(0, 7))
     for fit in sizing.fits:
+        figures = (fit.gear_ratio, fit.peak, fit.rms)
         margin = f"{fit.margin:.3g}"
         table.add_row(
-            fit.motor.name, f"{fit.gear_ratio:.3g}", f"{fit.peak:.3g}", f"{fit.rms:.3g}",
-            f"{fit.speed:.0f}", f"{fit.inertia_ratio:.3g}",
-            styled((margin, "" if fit.fits else "red")), fit.limit,
-        )  # fmt: skip
+            fit.motor.name,
+            *(f"{figure:.3g}" for figure in figures),
+            f"{fit.speed:.0f}",
+            f"{fit.inertia_ratio:.3g}",
+            styled((margin, "" if fit.fits else "red")),
+            " and ".join(fit.limits),
+        )
     return table
 
 
@@ -246,13 +238,11 @@ def export(
 ) -> None:
     """Write MJCF with the loop, or URDF with a loop sidecar; joint zero is the pose --at."""
     from kinlab.fivebar import FiveBar
-    from kinlab.fivebar import export as exporting
-    from kinlab.fivebar.workspace import largest_circle
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
-    place = at or largest_circle(fivebar, signs, assembly).centre
-    for file in exporting.export(fivebar, output, place, signs):
-        echo(f"wrote {file}")
+    place = at or fivebar.largest_circle(signs, assembly).centre
+    for file in fivebar.export(output, place, signs):
+        typer.echo(f"wrote {file}")
 
 
 def read_signs(mode: str) -> tuple[int, int]:

@@ -1,9 +1,12 @@
-"""Motors, gears and cycles: what drives a mechanism.
+"""Motors, gears and cycles: what drives a mechanism, whatever the mechanism is.
 
-==========  ======================================================================================
-module      what it holds
-==========  ======================================================================================
-``motors``  Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
-            one's own
-==========  ======================================================================================
+===========  =====================================================================================
+module       what it holds
+===========  =====================================================================================
+``motors``   Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
+             one's own
+``cycles``   The pick-and-place cycle: a path of the tool, up, across, down, and back
+``demand``   What a motion asks of the drives over time, at the joints and at the motors' shafts
+``fitting``  One motor against what its duty asks, and the gear ratio that suits it
+===========  =====================================================================================
 """

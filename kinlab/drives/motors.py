@@ -13,9 +13,8 @@ from kinlab.errors import MotorError, NameUnknownError, near
 from kinlab.host.files import read_text, read_toml
 from kinlab.model.library import robots_dir
 
-FIGURES = (
-    "rated_power", "rated_torque", "peak_torque", "rated_speed", "max_speed", "rotor_inertia",
-)  # fmt: skip
+_TEXT = ("name", "maker", "data_sheet")
+"""What of a motor is no figure."""
 
 
 @dataclass(frozen=True)
@@ -48,16 +47,14 @@ class Motor:
     rotor_inertia: float | None = None
 
     def __post_init__(self) -> None:
-        for figure in FIGURES:
-            value = getattr(self, figure)
-            if value is None:
+        for figure, value in vars(self).items():
+            if figure in _TEXT or value is None:
                 continue
             sound = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not sound or not np.isfinite(value) or value <= 0:
                 raise MotorError(
                     f"motor {self.name!r}: {figure} is {value!r}; it must be a positive number"
                 )
-            object.__setattr__(self, figure, float(value))
 
     def need(self, figure: str) -> float:
         """A figure that must be there.

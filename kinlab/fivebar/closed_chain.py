@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
@@ -12,9 +12,11 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped, shown, whole
 from kinlab.errors import OptionError, SingularError, UnreachableError
-from kinlab.fivebar.linkage import JOINTS, Linkage
-from kinlab.fivebar.pose import HANGING, Mode, read_mode
+from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_mode
 from kinlab.tolerances import TOLERANCES
+
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
 
 # -------- Newton's method that stays on one branch of solutions
 
@@ -23,10 +25,10 @@ _STEPS = 30
 _LEAST_STRIDE = 1e-6
 
 
-def lead_to_zero(
+def follow_branch_to_zero(
     residual: Residual, start: Array, inside: Callable[[Array], bool], tolerance: float
 ) -> tuple[Array, float]:
-    """Leads a residual to zero along a straight line, in one go where Newton manages that.
+    """Continuation: takes a residual to zero along a straight line, at once if Newton can.
 
     Where the Jacobian is regular on the whole branch, the residual can follow any line that the
     branch can reach; a step that Newton cannot make, or that leaves the branch, is halved.
@@ -96,7 +98,7 @@ class ClosedChain:
         tool: the frame at the end of rod 1.
     """
 
-    linkage: Linkage
+    linkage: FiveBar
     model: Any
     anchor: Any
     tool: int
@@ -106,8 +108,8 @@ class ClosedChain:
     ) -> Array:
         """Closes the loop for given crank angles by Newton, staying in one assembly mode.
 
-        Inside a branch the closure's Jacobian is regular, so the gap can be led straight to
-        zero without a change of the sign of w_1 x w_2; see :mod:`kinlab.fivebar.closed_chain`.
+        Inside a branch the closure's Jacobian is regular, so the gap can be taken straight to
+        zero without a change of the sign of w_1 x w_2.
 
         Args:
             theta: (2,), rad.
@@ -144,7 +146,7 @@ class ClosedChain:
             return self._rods_sine(_joined(angles, passive)) * assembly > 0
 
         tolerance = TOLERANCES.closure * self.size
-        passive, gap = lead_to_zero(residual, q[[*PASSIVE]], inside, tolerance)
+        passive, gap = follow_branch_to_zero(residual, q[[*PASSIVE]], inside, tolerance)
         if gap > tolerance:
             raise UnreachableError(
                 f"{name}: the loop stays open by {gap:.3g} m at theta = ({angles[0]:.9g}, "
@@ -186,7 +188,7 @@ class ClosedChain:
             base = np.array([self.linkage.base_x[leg], 0.0])
             arm = residual(start)[0] + point - base
             start[0] = np.arctan2(*(point - base)[::-1]) - np.arctan2(arm[1], arm[0])
-            q[joints], gap = lead_to_zero(residual, start, inside, tolerance)
+            q[joints], gap = follow_branch_to_zero(residual, start, inside, tolerance)
             if gap > tolerance:
                 raise UnreachableError(
                     f"{self.linkage.name}: leg {leg + 1} stays {gap:.3g} m short of "
@@ -214,8 +216,8 @@ class ClosedChain:
         pin.forwardKinematics(self.model, data, q)
         span = data.oMi[4].translation - data.oMi[2].translation
         first, second = np.asarray(self.linkage.l2)
-        turn = np.arctan2(span[1], span[0]) + assembly * np.arctan2(second, first)
-        return np.array([turn, turn + assembly * 0.5 * np.pi])
+        angle = np.arctan2(span[1], span[0]) + assembly * np.arctan2(second, first)
+        return np.array([angle, angle + assembly * 0.5 * np.pi])
 
     @staticmethod
     def _rods_sine(q: Array) -> float:
@@ -240,9 +242,9 @@ class ClosedChain:
         pin.computeJointJacobians(self.model, data, q)
         self.anchor.calc(self.model, data, anchor)
         rows = self.anchor.jacobian(self.model, data, anchor)
-        turn = data.oMi[self.anchor.joint1_id].rotation[:2, :2]
-        gap = turn @ anchor.constraint_position_error[:2]
-        return gap, turn @ rows[:2] + np.outer([-gap[1], gap[0]], [1.0, 1.0, 0.0, 0.0])
+        rotation = data.oMi[self.anchor.joint1_id].rotation[:2, :2]
+        gap = rotation @ anchor.constraint_position_error[:2]
+        return gap, rotation @ rows[:2] + np.outer([-gap[1], gap[0]], [1.0, 1.0, 0.0, 0.0])
 
     def closure_bias(self, q: ArrayLike, qd: ArrayLike) -> Array:
         """Jc_dot qd of the closed loop, (2,), m/s², in the base's axes."""
@@ -251,8 +253,8 @@ class ClosedChain:
         pin.forwardKinematics(self.model, data, q, qd, np.zeros(4))
         pin.computeJointJacobians(self.model, data, q)
         self.anchor.calc(self.model, data, anchor)
-        turn = data.oMi[self.anchor.joint1_id].rotation[:2, :2]
-        return np.asarray(turn @ anchor.constraint_acceleration_error[:2])
+        rotation = data.oMi[self.anchor.joint1_id].rotation[:2, :2]
+        return np.asarray(rotation @ anchor.constraint_acceleration_error[:2])
 
     def fk(self, q: ArrayLike) -> Array:
         """The tool, (2,), m."""
@@ -367,13 +369,12 @@ def _joined(cranks: Array, passive: Array) -> Array:
 #          its loop
 
 
-def build(linkage: Linkage) -> ClosedChain:
+def build(linkage: FiveBar) -> ClosedChain:
     """Builds the tree, the payload and the anchor."""
     model = pin.Model()
     model.name = linkage.name
-    model.gravity.linear = np.array([*np.asarray(linkage.gravity), 0.0])
-    l1, l2 = np.asarray(linkage.l1), np.asarray(linkage.l2)
-    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    model.gravity.linear = np.array([*linkage.gravity, 0.0])
+    l1, l2 = linkage.l1, linkage.l2
     ends = []
     for leg in range(2):
         base = pin.SE3(np.eye(3), np.array([linkage.base_x[leg], 0.0, 0.0]))
@@ -387,7 +388,7 @@ def build(linkage: Linkage) -> ClosedChain:
             )
             body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
             model.appendBodyToJoint(joint, body, pin.SE3.Identity())
-        model.armature[model.joints[crank].idx_v] = rotor[leg]
+        model.armature[model.joints[crank].idx_v] = linkage.reflected_inertia[leg]
         ends.append((rod, pin.SE3(np.eye(3), np.array([l2[leg], 0.0, 0.0]))))
     load = pin.Inertia(linkage.payload, ends[0][1].translation, np.zeros((3, 3)))
     model.appendBodyToJoint(ends[0][0], load, pin.SE3.Identity())

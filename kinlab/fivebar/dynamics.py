@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shown
 from kinlab.errors import InertiaError, OptionError, near
-from kinlab.fivebar.geometry import rate_bias, rate_matrix
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.pose import HANGING, Mode, OnUnreachable, Pose, read_vectors, solve_pose, turned
+from kinlab.fivebar.arguments import HANGING, Mode, OnUnreachable, perpendicular, read_vectors
+from kinlab.fivebar.geometry import Pose, rate_bias, rate_matrix, solve_pose
 from kinlab.tolerances import TOLERANCES
+
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
 
 # -------- What the mass of a rod does at its two ends: exact, left out, or lumped
 # A rod moves as the straight line between its elbow B and the tool P, so its kinetic energy is
@@ -43,10 +46,10 @@ class RodModel:
     tool_weight: Array
 
 
-def exact_rods(linkage: Linkage) -> RodModel:
+def exact_rods(linkage: FiveBar) -> RodModel:
     """alpha_B = m(1-rho)² + I/l2², alpha_C = m rho² + I/l2², kappa = m rho(1-rho) - I/l2²."""
-    mass, rho = np.asarray(linkage.rod_mass), _fraction(linkage)
-    spin = np.asarray(linkage.rod_inertia) / np.asarray(linkage.l2) ** 2
+    mass, rho = linkage.rod_mass, _fraction(linkage)
+    spin = linkage.rod_inertia / linkage.l2**2
     return RodModel(
         elbow=mass * (1.0 - rho) ** 2 + spin,
         coupling=mass * rho * (1.0 - rho) - spin,
@@ -56,18 +59,18 @@ def exact_rods(linkage: Linkage) -> RodModel:
     )
 
 
-def _fraction(linkage: Linkage) -> Array:
-    rho: Array = np.asarray(linkage.rod_com) / np.asarray(linkage.l2)
+def _fraction(linkage: FiveBar) -> Array:
+    rho: Array = linkage.rod_com / linkage.l2
     return rho
 
 
-def _two_masses(linkage: Linkage, at_tool: ArrayLike) -> RodModel:
-    mass = np.asarray(linkage.rod_mass)
+def _two_masses(linkage: FiveBar, at_tool: ArrayLike) -> RodModel:
+    mass = linkage.rod_mass
     tool = mass * np.asarray(at_tool)
     return RodModel(mass - tool, np.zeros(2), tool, mass - tool, tool)
 
 
-ROD_MODELS: dict[str, Callable[[Linkage], RodModel]] = {
+ROD_MODELS: dict[str, Callable[[FiveBar], RodModel]] = {
     "exact": exact_rods,
     "massless": lambda linkage: RodModel(*np.zeros((5, 2))),
     "half": lambda linkage: _two_masses(linkage, 0.5),
@@ -82,7 +85,7 @@ for Delta robots), ``static`` so that weight and centre are right and only inert
 """
 
 
-def rod_model(linkage: Linkage, model: str) -> RodModel:
+def rod_model(linkage: FiveBar, model: str) -> RodModel:
     """The coefficients of a named model.
 
     Raises:
@@ -102,18 +105,15 @@ def rod_model(linkage: Linkage, model: str) -> RodModel:
 # have no mass; the exact form is derived by virtual work and tested against a Lagrangian.
 
 
-def crank_inertia(linkage: Linkage, rods: RodModel) -> Array:
+def crank_inertia(linkage: FiveBar, rods: RodModel) -> Array:
     """I_A* = I_1 + m_1 c_1² + j² I_M + alpha_B l1², about the base pins, (2,), kg m²."""
-    own = np.asarray(linkage.crank_inertia) + np.asarray(linkage.crank_mass) * np.square(
-        linkage.crank_com
-    )
-    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
-    total: Array = own + rotor + rods.elbow * np.square(linkage.l1)
+    own = linkage.crank_inertia + linkage.crank_mass * np.square(linkage.crank_com)
+    total: Array = own + linkage.reflected_inertia + rods.elbow * np.square(linkage.l1)
     return total
 
 
 def inverse_dynamics(
-    linkage: Linkage,
+    linkage: FiveBar,
     xy: ArrayLike,
     v: ArrayLike,
     a: ArrayLike,
@@ -146,25 +146,25 @@ def inverse_dynamics(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, on_unreachable, regular="I II")
-    velocity = read_vectors(v, pose, f"{linkage.name}: v")
-    acceleration = read_vectors(a, pose, f"{linkage.name}: a")
-    return pose.give(torques(linkage, pose, velocity, acceleration, rods))
+    velocity = read_vectors(v, len(pose.xy), f"{linkage.name}: v")
+    acceleration = read_vectors(a, len(pose.xy), f"{linkage.name}: a")
+    return pose.restore(torques(linkage, pose, velocity, acceleration, rods))
 
 
-def torques(linkage: Linkage, pose: Pose, v: Array, a: Array, rods: RodModel) -> Array:
+def torques(linkage: FiveBar, pose: Pose, v: Array, a: Array, rods: RodModel) -> Array:
     """The formula of :func:`inverse_dynamics` for solved poses, (N, 2)."""
-    l1 = np.asarray(linkage.l1)
+    l1 = linkage.l1
     jac = rate_matrix(linkage, pose)
     rate = np.einsum("nij,nj->ni", jac, v)
-    turn = np.einsum("nij,nj->ni", jac, a) + rate_bias(linkage, pose, v)
-    normal = turned(pose.u)
-    elbow = l1[:, None] * (turn[..., None] * normal - (rate**2)[..., None] * pose.u)
+    theta_ddot = np.einsum("nij,nj->ni", jac, a) + rate_bias(linkage, pose, v)
+    normal = perpendicular(pose.u)
+    elbow = l1[:, None] * (theta_ddot[..., None] * normal - (rate**2)[..., None] * pose.u)
     force = (linkage.payload + rods.tool.sum()) * a
     force = force + np.einsum("i,nij->nj", rods.coupling, elbow)
-    force = force - (linkage.payload + rods.tool_weight.sum()) * np.asarray(linkage.gravity)
+    force = force - (linkage.payload + rods.tool_weight.sum()) * linkage.gravity
     shared = rods.coupling * l1 * np.einsum("nij,nj->ni", normal, a)
     tau: Array = (
-        crank_inertia(linkage, rods) * turn
+        crank_inertia(linkage, rods) * theta_ddot
         + shared
         + crank_gravity(linkage, pose, rods)
         + tool_force(linkage, pose, force)
@@ -172,15 +172,15 @@ def torques(linkage: Linkage, pose: Pose, v: Array, a: Array, rods: RodModel) ->
     return tau
 
 
-def crank_gravity(linkage: Linkage, pose: Pose, rods: RodModel) -> Array:
+def crank_gravity(linkage: FiveBar, pose: Pose, rods: RodModel) -> Array:
     """tau_Ag: what holds the weight of the cranks and of the rods' share at the elbows, (N, 2)."""
-    moment = np.asarray(linkage.crank_mass) * np.asarray(linkage.crank_com)
-    moment = moment + rods.elbow_weight * np.asarray(linkage.l1)
-    held: Array = -moment * (turned(pose.u) @ np.asarray(linkage.gravity))
+    moment = linkage.crank_mass * linkage.crank_com
+    moment = moment + rods.elbow_weight * linkage.l1
+    held: Array = -moment * (perpendicular(pose.u) @ linkage.gravity)
     return held
 
 
-def tool_force(linkage: Linkage, pose: Pose, force: Array) -> Array:
+def tool_force(linkage: FiveBar, pose: Pose, force: Array) -> Array:
     """J^-T F: the crank torques that apply the force F at the tool, (N, 2).
 
     From F = lambda_1 w_1 + lambda_2 w_2: tau_i = l1_i (u_i x w_i) lambda_i.
@@ -189,21 +189,19 @@ def tool_force(linkage: Linkage, pose: Pose, force: Array) -> Array:
     first = (force[:, 0] * w2[:, 1] - force[:, 1] * w2[:, 0]) / pose.rods
     second = (w1[:, 0] * force[:, 1] - w1[:, 1] * force[:, 0]) / pose.rods
     along = np.stack([first, second], axis=1)
-    tau: Array = np.asarray(linkage.l1) * pose.sine * along
+    tau: Array = linkage.l1 * pose.sine * along
     return tau
 
 
-def velocity_matrix(linkage: Linkage, pose: Pose) -> Array:
+def velocity_matrix(linkage: FiveBar, pose: Pose) -> Array:
     """J^-1 of v = J^-1 theta_dot for solved poses, (N, 2, 2)."""
-    columns = np.stack([-turned(pose.w[:, 1]), turned(pose.w[:, 0])], axis=2)
-    inverse: Array = (
-        columns * (np.asarray(linkage.l1) * pose.sine)[:, None, :] / pose.rods[:, None, None]
-    )
+    columns = np.stack([-perpendicular(pose.w[:, 1]), perpendicular(pose.w[:, 0])], axis=2)
+    inverse: Array = columns * (linkage.l1 * pose.sine)[:, None, :] / pose.rods[:, None, None]
     return inverse
 
 
 def mass_matrix(
-    linkage: Linkage,
+    linkage: FiveBar,
     xy: ArrayLike,
     mode: Mode = HANGING,
     model: str = "exact",
@@ -231,13 +229,13 @@ def mass_matrix(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, on_unreachable, regular="II")
-    return pose.give(joint_mass(linkage, pose, rods))
+    return pose.restore(joint_mass(linkage, pose, rods))
 
 
-def joint_mass(linkage: Linkage, pose: Pose, rods: RodModel) -> Array:
+def joint_mass(linkage: FiveBar, pose: Pose, rods: RodModel) -> Array:
     """The formula of :func:`mass_matrix` for solved poses, (N, 2, 2)."""
     inverse = velocity_matrix(linkage, pose)
-    shared = (rods.coupling * np.asarray(linkage.l1))[:, None] * turned(pose.u) @ inverse
+    shared = (rods.coupling * linkage.l1)[:, None] * perpendicular(pose.u) @ inverse
     mass: Array = (
         np.diag(crank_inertia(linkage, rods))
         + shared
@@ -248,7 +246,7 @@ def joint_mass(linkage: Linkage, pose: Pose, rods: RodModel) -> Array:
 
 
 def task_mass_matrix(
-    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+    linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
 ) -> Array:
     """Lambda = J^T M J, the inertia felt at the tool: J^T tau = Lambda a + ...
 
@@ -264,11 +262,11 @@ def task_mass_matrix(
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="I II")
     jac = rate_matrix(linkage, pose)
-    return pose.give(jac.swapaxes(1, 2) @ joint_mass(linkage, pose, rods) @ jac)
+    return pose.restore(jac.swapaxes(1, 2) @ joint_mass(linkage, pose, rods) @ jac)
 
 
 def gravity_torques(
-    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+    linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
 ) -> Array:
     """Crank torques that hold the linkage still, (2,) or (N, 2), N m.
 
@@ -280,13 +278,13 @@ def gravity_torques(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="II")
-    weight = -(linkage.payload + rods.tool_weight.sum()) * np.asarray(linkage.gravity)
+    weight = -(linkage.payload + rods.tool_weight.sum()) * linkage.gravity
     held = tool_force(linkage, pose, np.broadcast_to(weight, pose.xy.shape))
-    return pose.give(crank_gravity(linkage, pose, rods) + held)
+    return pose.restore(crank_gravity(linkage, pose, rods) + held)
 
 
 def bias_torques(
-    linkage: Linkage, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+    linkage: FiveBar, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
 ) -> Array:
     """h of tau = M theta_ddot + h: gravity and velocity terms, (2,) or (N, 2), N m.
 
@@ -294,18 +292,18 @@ def bias_torques(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="I II")
-    velocity = read_vectors(v, pose, f"{linkage.name}: v")
-    return pose.give(_bias(linkage, pose, velocity, rods))
+    velocity = read_vectors(v, len(pose.xy), f"{linkage.name}: v")
+    return pose.restore(_bias(linkage, pose, velocity, rods))
 
 
-def _bias(linkage: Linkage, pose: Pose, v: Array, rods: RodModel) -> Array:
+def _bias(linkage: FiveBar, pose: Pose, v: Array, rods: RodModel) -> Array:
     inverse = velocity_matrix(linkage, pose)
     steady = -np.einsum("nij,nj->ni", inverse, rate_bias(linkage, pose, v))  # theta_ddot = 0
     return torques(linkage, pose, v, steady, rods)
 
 
 def forward_dynamics(
-    linkage: Linkage,
+    linkage: FiveBar,
     xy: ArrayLike,
     v: ArrayLike,
     tau: ArrayLike,
@@ -330,8 +328,8 @@ def forward_dynamics(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="I II")
-    velocity = read_vectors(v, pose, f"{linkage.name}: v")
-    torque = read_vectors(tau, pose, f"{linkage.name}: tau")
+    velocity = read_vectors(v, len(pose.xy), f"{linkage.name}: v")
+    torque = read_vectors(tau, len(pose.xy), f"{linkage.name}: tau")
     mass = joint_mass(linkage, pose, rods)
     least = np.linalg.eigvalsh(mass)
     if np.any(least[:, 0] <= TOLERANCES.massless * np.abs(least[:, 1])):
@@ -340,7 +338,7 @@ def forward_dynamics(
             "acceleration; give the cranks an inertia, or the tool a payload and the rods a mass"
         )
     force = torque - _bias(linkage, pose, velocity, rods)
-    return pose.give(np.asarray(np.linalg.solve(mass, force[..., None])[..., 0], np.float64))
+    return pose.restore(np.asarray(np.linalg.solve(mass, force[..., None])[..., 0], np.float64))
 
 
 # -------- Energy and power of a five-bar in closed form
@@ -348,19 +346,19 @@ def forward_dynamics(
 
 
 def kinetic_energy(
-    linkage: Linkage, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+    linkage: FiveBar, xy: ArrayLike, v: ArrayLike, mode: Mode = HANGING, model: str = "exact"
 ) -> Array:
     """Rotors included, () or (N,), J; arguments and errors as :func:`inverse_dynamics`."""
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="I II")
-    velocity = read_vectors(v, pose, f"{linkage.name}: v")
+    velocity = read_vectors(v, len(pose.xy), f"{linkage.name}: v")
     rate = np.einsum("nij,nj->ni", rate_matrix(linkage, pose), velocity)
     mass = joint_mass(linkage, pose, rods)
-    return pose.give(0.5 * np.einsum("ni,nij,nj->n", rate, mass, rate))
+    return pose.restore(0.5 * np.einsum("ni,nij,nj->n", rate, mass, rate))
 
 
 def potential_energy(
-    linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
+    linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING, model: str = "exact"
 ) -> Array:
     """Zero where all mass would lie at the origin, between the base pins; () or (N,), J.
 
@@ -371,18 +369,18 @@ def potential_energy(
     """
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode)
-    moment = np.asarray(linkage.crank_mass) * np.asarray(linkage.crank_com)
-    moment = moment + rods.elbow_weight * np.asarray(linkage.l1)
+    moment = linkage.crank_mass * linkage.crank_com
+    moment = moment + rods.elbow_weight * linkage.l1
     base = np.stack([linkage.base_x, np.zeros(2)], axis=1)
-    anchored = (np.asarray(linkage.crank_mass) + rods.elbow_weight) @ base
+    anchored = (linkage.crank_mass + rods.elbow_weight) @ base
     first: Array = np.einsum("i,nij->nj", moment, pose.u) + anchored
     first = first + (linkage.payload + rods.tool_weight.sum()) * pose.xy
-    energy: Array = -np.einsum("nj,j->n", first, np.asarray(linkage.gravity))
-    return pose.give(energy)
+    energy: Array = -np.einsum("nj,j->n", first, linkage.gravity)
+    return pose.restore(energy)
 
 
 def joint_power(
-    linkage: Linkage,
+    linkage: FiveBar,
     xy: ArrayLike,
     v: ArrayLike,
     a: ArrayLike,
@@ -392,7 +390,7 @@ def joint_power(
     """P_i = tau_i theta_dot_i, (2,) or (N, 2), W; as :func:`inverse_dynamics` (003.P)."""
     rods = rod_model(linkage, model)
     pose = solve_pose(linkage, xy, mode, regular="I II")
-    velocity = read_vectors(v, pose, f"{linkage.name}: v")
-    acceleration = read_vectors(a, pose, f"{linkage.name}: a")
+    velocity = read_vectors(v, len(pose.xy), f"{linkage.name}: v")
+    acceleration = read_vectors(a, len(pose.xy), f"{linkage.name}: a")
     rate = np.einsum("nij,nj->ni", rate_matrix(linkage, pose), velocity)
-    return pose.give(rate * torques(linkage, pose, velocity, acceleration, rods))
+    return pose.restore(rate * torques(linkage, pose, velocity, acceleration, rods))

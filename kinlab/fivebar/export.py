@@ -14,7 +14,7 @@ x), and what it leaves out into a TOML file beside it.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -23,17 +23,20 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.errors import FileError, InertiaError, StateError
-from kinlab.fivebar.linkage import JOINTS, Linkage
-from kinlab.fivebar.pose import HANGING, Mode, solve_pose
+from kinlab.fivebar.arguments import HANGING, JOINTS, Mode
+from kinlab.fivebar.geometry import solve_pose
 from kinlab.host.files import write_text
 
-_EFFORT, _VELOCITY, _TURN = "1000", "100", repr(2.0 * np.pi)
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
+
+_EFFORT, _VELOCITY, _FULL_TURN = "1000", "100", repr(2.0 * np.pi)
 """URDF demands limits; these do not bind."""
 
 _COLOURS = ("0.33 0.47 0.60 1", "0.86 0.47 0.20 1")
 
 
-def to_mjcf(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
+def to_mjcf(linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING) -> str:
     """MJCF text whose joint zero is the pose with the tool at ``xy``.
 
     Args:
@@ -48,7 +51,7 @@ def to_mjcf(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
     angles = _reference(linkage, xy, mode)
     root = ElementTree.Element("mujoco", model=linkage.name)
     ElementTree.SubElement(root, "compiler", angle="radian")
-    gravity = _numbers([*np.asarray(linkage.gravity), 0.0])
+    gravity = _numbers([*linkage.gravity, 0.0])
     ElementTree.SubElement(root, "option", gravity=gravity, timestep="0.001", integrator="RK4")
     world = ElementTree.SubElement(root, "worldbody")
     base = ElementTree.SubElement(world, "body", name="base")
@@ -70,7 +73,7 @@ def to_mjcf(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
     return _text(root, linkage)
 
 
-def _reference(linkage: Linkage, xy: ArrayLike, mode: Mode) -> Array:
+def _reference(linkage: FiveBar, xy: ArrayLike, mode: Mode) -> Array:
     """(theta_1, psi_1, theta_2, psi_2) of the reference pose."""
     pose = solve_pose(linkage, xy, mode)
     if len(pose.xy) != 1:
@@ -80,14 +83,14 @@ def _reference(linkage: Linkage, xy: ArrayLike, mode: Mode) -> Array:
     return np.stack([theta, psi], axis=1).ravel()
 
 
-def _mjcf_leg(linkage: Linkage, leg: int, angles: Array, base: ElementTree.Element) -> None:
-    l1, l2 = float(np.asarray(linkage.l1)[leg]), float(np.asarray(linkage.l2)[leg])
-    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+def _mjcf_leg(linkage: FiveBar, leg: int, angles: Array, base: ElementTree.Element) -> None:
+    l1, l2 = float(linkage.l1[leg]), float(linkage.l2[leg])
+    rotor = linkage.reflected_inertia
     parent, x = base, float(linkage.base_x[leg])
     for part, length, angle in (("crank", l1, angles[0]), ("rod", l2, angles[1])):
-        turn = _numbers([np.cos(0.5 * angle), 0.0, 0.0, np.sin(0.5 * angle)])
+        quaternion = _numbers([np.cos(0.5 * angle), 0.0, 0.0, np.sin(0.5 * angle)])
         body = ElementTree.SubElement(
-            parent, "body", name=f"{part}_{leg + 1}", pos=_numbers([x, 0.0, 0.0]), quat=turn
+            parent, "body", name=f"{part}_{leg + 1}", pos=_numbers([x, 0.0, 0.0]), quat=quaternion
         )
         mass, com, spin = body_inertia(linkage, part, leg)
         if mass <= 0.0 or spin <= 0.0:
@@ -101,30 +104,39 @@ def _mjcf_leg(linkage: Linkage, leg: int, angles: Array, base: ElementTree.Eleme
             body, "joint", name=joint, type="hinge", axis="0 0 1", armature=armature
         )
         ElementTree.SubElement(
-            body, "inertial", pos=_numbers([com, 0.0, 0.0]), mass=repr(mass),
+            body,
+            "inertial",
+            pos=_numbers([com, 0.0, 0.0]),
+            mass=repr(mass),
             diaginertia=_numbers([spin] * 3),
-        )  # fmt: skip
+        )
         ElementTree.SubElement(
-            body, "geom", type="capsule", size=repr(0.03 * length), rgba=_COLOURS[leg],
-            fromto=_numbers([0.0, 0.0, 0.0, length, 0.0, 0.0]), contype="0", conaffinity="0",
-        )  # fmt: skip
+            body,
+            "geom",
+            type="capsule",
+            size=repr(0.03 * length),
+            rgba=_COLOURS[leg],
+            fromto=_numbers([0.0, 0.0, 0.0, length, 0.0, 0.0]),
+            contype="0",
+            conaffinity="0",
+        )
         parent, x = body, length
     ElementTree.SubElement(parent, "site", name=f"end_{leg + 1}", pos=_numbers([l2, 0.0, 0.0]))
 
 
-def body_inertia(linkage: Linkage, part: str, leg: int) -> tuple[float, float, float]:
+def body_inertia(linkage: FiveBar, part: str, leg: int) -> tuple[float, float, float]:
     """Mass, centre along the bar and inertia about it; the payload rides at the end of rod 1."""
     mass, com, spin = (
         float(getattr(linkage, f"{part}_{what}")[leg]) for what in ("mass", "com", "inertia")
     )
     if part == "crank" or leg == 1 or linkage.payload == 0.0:
         return mass, com, spin
-    load, at = linkage.payload, float(np.asarray(linkage.l2)[0])
+    load, at = linkage.payload, float(linkage.l2[0])
     total = mass + load
     return total, (mass * com + load * at) / total, spin + mass * load / total * (at - com) ** 2
 
 
-def to_urdf(linkage: Linkage) -> str:
+def to_urdf(linkage: FiveBar) -> str:
     """URDF text of the tree cut at the tool; q = 0 has all bars along x.
 
     Links: base_link, crank_1, rod_1, tool (on rod 1), crank_2, rod_2, loop_end (on rod 2).
@@ -142,7 +154,12 @@ def to_urdf(linkage: Linkage) -> str:
             element = _urdf_joint(robot, joint, "revolute", parent, name, x)
             ElementTree.SubElement(element, "axis", xyz="0 0 1")
             ElementTree.SubElement(
-                element, "limit", effort=_EFFORT, velocity=_VELOCITY, lower=f"-{_TURN}", upper=_TURN
+                element,
+                "limit",
+                effort=_EFFORT,
+                velocity=_VELOCITY,
+                lower=f"-{_FULL_TURN}",
+                upper=_FULL_TURN,
             )
             parent, x = name, length
         ElementTree.SubElement(robot, "link", name=end)
@@ -179,7 +196,7 @@ def _urdf_joint(
     return joint
 
 
-def loop_sidecar(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
+def loop_sidecar(linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING) -> str:
     """TOML text of what the URDF cannot hold: the loop, what is driven, gravity, rotors.
 
     Args:
@@ -191,12 +208,12 @@ def loop_sidecar(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
         UnreachableError: xy is out of reach. StateError: xy is not one point.
     """
     angles = _reference(linkage, xy, mode)
-    ends = np.asarray(linkage.l2)
-    rotor = np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    ends = linkage.l2
+    rotor = linkage.reflected_inertia
     document: dict[str, Any] = {
         "mechanism": linkage.name,
         "actuated": ["crank_1", "crank_2"],
-        "gravity": [*np.asarray(linkage.gravity).tolist(), 0.0],
+        "gravity": [*linkage.gravity.tolist(), 0.0],
         "armature": {"crank_1": float(rotor[0]), "crank_2": float(rotor[1])},
         "closed_pose": dict(zip(JOINTS, angles.tolist(), strict=True)),
         "loop": [
@@ -213,7 +230,7 @@ def loop_sidecar(linkage: Linkage, xy: ArrayLike, mode: Mode = HANGING) -> str:
     return tomli_w.dumps(document)
 
 
-def export(linkage: Linkage, path: str | Path, xy: ArrayLike, mode: Mode = HANGING) -> list[Path]:
+def export(linkage: FiveBar, path: str | Path, xy: ArrayLike, mode: Mode = HANGING) -> list[Path]:
     """Writes ``.xml`` (MJCF), or ``.urdf`` with ``<name>.loop.toml`` beside it.
 
     Returns:
@@ -241,7 +258,7 @@ def _numbers(values: list[float]) -> str:
     return " ".join(repr(float(v)) for v in values)
 
 
-def _text(root: ElementTree.Element, linkage: Linkage) -> str:
+def _text(root: ElementTree.Element, linkage: FiveBar) -> str:
     about = f" {linkage.name}. {linkage.source} ".replace("--", "- -")
     root.insert(0, ElementTree.Comment(about))
     ElementTree.indent(root, "  ")

@@ -1,26 +1,26 @@
 """Five-bars as TOML: the presets in ``robots/fivebar/`` and files of one's own.
 
-Keys are the arguments of :class:`kinlab.fivebar.linkage.Linkage`; numbers may be text such as
+Keys are the arguments of :class:`kinlab.FiveBar`; numbers may be text such as
 ``"0.2/sqrt(2)"``, and a pair is a list (leg 1, leg 2).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import fields
+from collections.abc import Collection
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
 from kinlab.errors import ExpressionError, MechanismError, NameUnknownError, near
-from kinlab.fivebar.linkage import Linkage
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml, write_text
 from kinlab.model.library import robots_dir
 
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
+
 _TEXT = ("name", "source")
-_KEYS = tuple(f.name for f in fields(Linkage))
 _MOTORS = "motors"
 
 
@@ -30,11 +30,12 @@ def presets() -> dict[str, Path]:
     return {file.stem: file for file in files if file.stem != _MOTORS}
 
 
-def read(name_or_path: str | Path) -> dict[str, Any]:
+def read(name_or_path: str | Path, keys: Collection[str]) -> dict[str, Any]:
     """Reads the arguments of a five-bar.
 
     Args:
         name_or_path: a preset ("isotropic"), or a path ending in .toml.
+        keys: what the file may hold.
 
     Returns:
         Arguments for ``FiveBar(**...)``; the name is the file's where it states none.
@@ -51,16 +52,16 @@ def read(name_or_path: str | Path) -> dict[str, Any]:
         path = presets()[text]
     else:
         raise NameUnknownError(f"no five-bar {text!r}; {near(text, presets())}")
-    return loads(read_text(path), path.stem)
+    return loads(read_text(path), path.stem, keys)
 
 
-def loads(text: str, name: str) -> dict[str, Any]:
+def loads(text: str, name: str, keys: Collection[str]) -> dict[str, Any]:
     """As :func:`read`, from TOML text."""
     data = read_toml(text, f"five-bar {name!r}", MechanismError)
     place = f"five-bar {data.get('name', name)!r}"
     for key in data:
-        if key not in _KEYS:
-            raise MechanismError(f"{place}: key {key!r} is unknown; {near(key, _KEYS)}")
+        if key not in keys:
+            raise MechanismError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
     for key in ("l1", "l2", "e"):
         if key not in data:
             raise MechanismError(f"{place}: key {key!r} is missing")
@@ -73,18 +74,19 @@ def _value(key: str, value: object, place: str) -> Any:
             raise MechanismError(f"{place}: {key} must be text")
         return value
     try:
-        if isinstance(value, list):
+        if not isinstance(value, list):
+            return parse_number(value)
+        if len(value) == 2:
             return [parse_number(v) for v in value]
-        return parse_number(value)
     except ExpressionError as problem:
         raise MechanismError(f"{place}: {key}: {problem}") from None
+    raise MechanismError(f"{place}: {key} is a list of {len(value)}; a list holds two numbers")
 
 
-def write(linkage: Linkage, path: str | Path) -> None:
+def write(linkage: FiveBar, path: str | Path) -> None:
     """Writes a five-bar; reading it again gives the same one, bit for bit.
 
     Raises:
         FileError: the file cannot be written; an old one stays whole.
     """
-    values: Mapping[str, Any] = linkage.values()
-    write_text(path, tomli_w.dumps(values))
+    write_text(path, tomli_w.dumps(linkage.values()))

@@ -1,38 +1,111 @@
-"""The numbers of a five-bar linkage, checked once and then immutable.
+"""``FiveBar``: the numbers of a five-bar linkage, and the table of its methods.
 
 Two cranks turn about base pins on the x axis, leg 1 at (+e, 0) and leg 2 at (-e, 0); each
 carries a rod, and the rods meet at the tool. u_i points along crank i, w_i along rod i from the
 elbow to the tool. The plane is (x, y), angles are counter-clockwise from x.
+
+The methods *are* the functions of this package: the class binds them, so that
+``fivebar.ik(xy)`` is ``geometry.ik(fivebar, xy)``, with one docstring and one signature. The
+files of the functions know this class by its type only.
 
 Source: note 003; Huang et al. 2005, doi 10.1115/1.1898343.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any
+from pathlib import Path
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, frozen, real_array, shaped, shown
 from kinlab.errors import MechanismError
+from kinlab.fivebar import closed_chain as chain
+from kinlab.fivebar import (
+    dynamics,
+    export,
+    files,
+    geometry,
+    metrics,
+    servo,
+    singularity,
+    workspace,
+)
 
-JOINTS = ("crank_1", "elbow_1", "crank_2", "elbow_2")
-"""Names of the four joints of the tree that the loop is cut into."""
+T = TypeVar("T")
 
-_PAIRS = (
-    "l1", "l2", "crank_mass", "crank_com", "crank_inertia", "rod_mass", "rod_com",
-    "rod_inertia", "rotor_inertia", "gear_ratio",
-)  # fmt: skip
-_NOT_NEGATIVE = ("crank_mass", "crank_inertia", "rod_mass", "rod_inertia", "rotor_inertia")
+
+class Converted(Generic[T]):
+    """A field of a frozen dataclass that a function reads when it is set.
+
+    This is Python's descriptor-typed field of a dataclass: the constructor sets it through
+    ``__set__`` and takes its default from the class; assignment is refused by the dataclass.
+
+    Args:
+        read: from what was given, and the field's name in messages, to what is kept.
+        default: what the constructor takes where nothing is given.
+    """
+
+    def __init__(
+        self, read: Callable[[ArrayLike, str], T], default: ArrayLike | None = None
+    ) -> None:
+        self._read, self._default = read, default
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, holder: None, owner: type) -> ArrayLike: ...
+    @overload
+    def __get__(self, holder: object, owner: type) -> T: ...
+    def __get__(self, holder: object | None, owner: type) -> T | ArrayLike:
+        if holder is not None:
+            value: T = vars(holder)[self._name]
+            return value
+        if self._default is None:
+            raise AttributeError(f"{owner.__name__}.{self._name} has no default")
+        return self._default
+
+    def __set__(self, holder: object, value: ArrayLike) -> None:
+        vars(holder)[self._name] = self._read(value, f"five-bar: {self._name}")
+
+
+def _pair(value: ArrayLike, what: str) -> Array:
+    array = real_array(value, what, MechanismError)
+    if array.shape not in ((), (2,)):
+        raise MechanismError(
+            f"{what} has shape {array.shape}; expected one number or a pair (leg 1, leg 2)"
+        )
+    return frozen(np.broadcast_to(array, (2,)))
+
+
+def _number(value: ArrayLike, what: str) -> float:
+    return float(shaped(value, (), what, MechanismError))
+
+
+def _vector(value: ArrayLike, what: str) -> Array:
+    return frozen(shaped(value, (2,), what, MechanismError))
+
+
+Pair = Converted[Array]
+"""Given as one number for both legs or as (leg 1, leg 2); kept as (2,)."""
+
+Number = Converted[float]
+Vector = Converted[Array]
+"""Given and kept as (2,)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Linkage:
-    """Lengths and masses of a five-bar. Pairs are (leg 1, leg 2); one number serves both legs.
+class FiveBar:
+    """A five-bar linkage. Pairs are (leg 1, leg 2); one number serves both legs.
 
-    Nothing is guessed: masses, centres and inertias that are not given are zero.
+    Leg 1 is based at (+e, 0), leg 2 at (-e, 0); theta_i and u_i belong to crank i, w_i to rod i.
+    A mode is (sign of u_1 x w_1, sign of u_2 x w_2); the default (-1, +1) hangs below the base
+    with its elbows outward. An assembly is the sign of w_1 x w_2. Methods take points (2,) or
+    (N, 2). Nothing is guessed: masses, centres and inertias that are not given are zero.
 
     Attributes:
         l1: crank lengths, m.
@@ -56,99 +129,144 @@ class Linkage:
             finite, or lengths that cannot close.
     """
 
-    l1: ArrayLike
-    l2: ArrayLike
-    e: float
-    crank_mass: ArrayLike = 0.0
-    crank_com: ArrayLike = 0.0
-    crank_inertia: ArrayLike = 0.0
-    rod_mass: ArrayLike = 0.0
-    rod_com: ArrayLike = 0.0
-    rod_inertia: ArrayLike = 0.0
-    payload: float = 0.0
-    rotor_inertia: ArrayLike = 0.0
-    gear_ratio: ArrayLike = 1.0
-    gravity: ArrayLike = (0.0, -9.81)
+    l1: Pair = Converted(_pair)
+    l2: Pair = Converted(_pair)
+    e: Number = Converted(_number)
+    crank_mass: Pair = Converted(_pair, 0.0)
+    crank_com: Pair = Converted(_pair, 0.0)
+    crank_inertia: Pair = Converted(_pair, 0.0)
+    rod_mass: Pair = Converted(_pair, 0.0)
+    rod_com: Pair = Converted(_pair, 0.0)
+    rod_inertia: Pair = Converted(_pair, 0.0)
+    payload: Number = Converted(_number, 0.0)
+    rotor_inertia: Pair = Converted(_pair, 0.0)
+    gear_ratio: Pair = Converted(_pair, 1.0)
+    gravity: Vector = Converted(_vector, (0.0, -9.81))
     name: str = "five-bar"
     source: str = ""
 
-    def __post_init__(self) -> None:
-        for column, text in (("name", self.name), ("source", self.source)):
-            if not isinstance(text, str):
-                raise MechanismError(f"five-bar: {column} is {shown(text)}; it must be text")
-        if not self.name.strip() or not self.name.isprintable():
-            raise MechanismError(f"five-bar: name is {shown(self.name)}; it must be printable")
-        for column in _PAIRS:
-            object.__setattr__(self, column, frozen(self._pair(column)))
-        for column in ("e", "payload"):
-            value = shaped(getattr(self, column), (), f"{self.name}: {column}", MechanismError)
-            object.__setattr__(self, column, float(value))
-        gravity = shaped(self.gravity, (2,), f"{self.name}: gravity", MechanismError)
-        object.__setattr__(self, "gravity", frozen(gravity))
-        self._check_signs()
-        self._check_closes()
+    # geometry: positions, rates, accelerations
+    ik = geometry.ik
+    fk = geometry.fk
+    reachable = geometry.reachable
+    mode_of = geometry.mode_of
+    jacobian = geometry.jacobian
+    acceleration_bias = geometry.acceleration_bias
+    joint_rates = geometry.joint_rates
+    joint_accelerations = geometry.joint_accelerations
 
-    def _pair(self, column: str) -> Array:
-        what = f"{self.name}: {column}"
-        value = real_array(getattr(self, column), what, MechanismError)
-        if value.shape not in ((), (2,)):
-            raise MechanismError(
-                f"{what} has shape {value.shape}; expected one number or a pair (leg 1, leg 2)"
-            )
-        return np.broadcast_to(value, (2,))
+    # dynamics: torque, mass matrix, energy, power
+    inverse_dynamics = dynamics.inverse_dynamics
+    forward_dynamics = dynamics.forward_dynamics
+    mass_matrix = dynamics.mass_matrix
+    task_mass_matrix = dynamics.task_mass_matrix
+    gravity_torques = dynamics.gravity_torques
+    bias_torques = dynamics.bias_torques
+    kinetic_energy = dynamics.kinetic_energy
+    potential_energy = dynamics.potential_energy
+    joint_power = dynamics.joint_power
 
-    def _check_signs(self) -> None:
-        for column in ("l1", "l2", "gear_ratio"):
-            for leg, value in enumerate(getattr(self, column), 1):
-                if value <= 0:
-                    raise MechanismError(
-                        f"{self.name}: {column} of leg {leg} is {value:g}; it must be positive"
-                    )
-        for column in _NOT_NEGATIVE:
-            for leg, value in enumerate(getattr(self, column), 1):
-                if value < 0:
-                    raise MechanismError(
-                        f"{self.name}: {column} of leg {leg} is {value:g}; it must be >= 0"
-                    )
-        for column in ("e", "payload"):
-            if getattr(self, column) < 0:
-                raise MechanismError(
-                    f"{self.name}: {column} is {getattr(self, column):g}; it must be >= 0"
-                )
+    # metrics: how good a pose is
+    determinant = metrics.determinant
+    singular_values = metrics.singular_values
+    condition_number = metrics.condition_number
+    passive_angles = metrics.passive_angles
+    pressure_angles = metrics.pressure_angles
+    transmission_angle = metrics.transmission_angle
+    stiffness = metrics.stiffness
+    isotropic_poses = metrics.isotropic_poses
 
-    def _check_closes(self) -> None:
-        """Five bars close into a loop that can move iff each is shorter than the rest together."""
-        (a1, b1), (a2, b2) = np.asarray(self.l1), np.asarray(self.l2)
-        bars = {
-            "crank 1": a1, "rod 1": a2, "crank 2": b1, "rod 2": b2, "base 2e": 2.0 * self.e,
-        }  # fmt: skip
-        total = sum(bars.values())
-        for bar, length in bars.items():
-            if length >= total - length:
-                raise MechanismError(
-                    f"{self.name}: the loop cannot close and move: {bar} is {length:g} m long, "
-                    f"the other four bars together {total - length:g} m; it must be shorter"
-                )
+    # singularity: where the loci are, and how far away
+    type_one = singularity.type_one
+    type_two = singularity.type_two
+    type_two_polynomial = singularity.type_two_polynomial
+    type_two_contour = singularity.type_two_contour
+    singularity_distances = singularity.distances
+    classify = singularity.classify
+
+    # workspace: what can be reached, and the regions free of singularities
+    reachable_area = workspace.reachable_area
+    workspace_map = workspace.workspace_map
+    free_region = workspace.free_region
+    largest_circle = workspace.largest_circle
+    largest_rectangle = workspace.largest_rectangle
+
+    # drives, Pinocchio's closed chain, files
+    follow = servo.follow
+    size_servo = servo.size_servo
+    fit_to_motor = servo.fit_to_motor
+    closed_chain = chain.build
+    export = export.export
+    save = files.write
+
+    @staticmethod
+    def load(name_or_path: str | Path) -> FiveBar:
+        """A preset by name ("isotropic"), or a TOML file.
+
+        Raises:
+            NameUnknownError: no preset of that name.
+            FileError: the file cannot be read.
+            MechanismError: not TOML, a key that does not exist or is missing, not a number, or
+                an impossible linkage.
+        """
+        return FiveBar(**files.read(name_or_path, [f.name for f in fields(FiveBar)]))
 
     @property
     def base_x(self) -> Array:
         """x of the two base pins, (2,): (+e, -e)."""
         return np.array([self.e, -self.e])
 
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Linkage):
-            return NotImplemented
-        return all(
-            np.array_equal(getattr(self, f.name), getattr(other, f.name)) for f in fields(Linkage)
-        )
-
-    def __hash__(self) -> int:
-        return hash((self.name, self.e, self.payload, *np.asarray(self.l1), *np.asarray(self.l2)))
+    @property
+    def reflected_inertia(self) -> Array:
+        """j² I_M: the rotors' inertia at the cranks, (2,), kg m²."""
+        return np.asarray(self.gear_ratio**2 * self.rotor_inertia)
 
     def values(self) -> dict[str, Any]:
         """The constructor's arguments as plain numbers and text, pairs as lists."""
-        out: dict[str, Any] = {}
-        for f in fields(Linkage):
-            value = getattr(self, f.name)
-            out[f.name] = value.tolist() if isinstance(value, np.ndarray) else value
-        return out
+        return {
+            f.name: value.tolist() if isinstance(value, np.ndarray) else value
+            for f in fields(self)
+            for value in [getattr(self, f.name)]
+        }
+
+    def __eq__(self, other: object) -> bool:
+        return self.values() == other.values() if isinstance(other, FiveBar) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.name, self.e, self.payload, *self.l1, *self.l2))
+
+    def __post_init__(self) -> None:
+        """Refuses signs that cannot be, and bars that cannot close into a loop that moves."""
+        for column, text in (("name", self.name), ("source", self.source)):
+            if not isinstance(text, str):
+                raise MechanismError(f"five-bar: {column} is {shown(text)}; it must be text")
+        if not self.name.strip() or not self.name.isprintable():
+            raise MechanismError(f"five-bar: name is {shown(self.name)}; it must be printable")
+        bounds = {
+            "must be positive": (np.less_equal, ("l1", "l2", "gear_ratio")),
+            "must be >= 0": (
+                np.less,
+                ("crank_mass", "crank_inertia", "rod_mass", "rod_inertia", "rotor_inertia"),
+            ),
+        }
+        for rule, (breaks, columns) in bounds.items():
+            for column in columns:
+                for leg, value in enumerate(getattr(self, column), 1):
+                    if breaks(value, 0.0):
+                        raise MechanismError(
+                            f"{self.name}: {column} of leg {leg} is {value:g}; it {rule}"
+                        )
+        for column in ("e", "payload"):
+            if getattr(self, column) < 0.0:
+                raise MechanismError(
+                    f"{self.name}: {column} is {getattr(self, column):g}; it must be >= 0"
+                )
+        (a1, b1), (a2, b2) = self.l1, self.l2
+        bars = {"crank 1": a1, "rod 1": a2, "crank 2": b1, "rod 2": b2, "base 2e": 2.0 * self.e}
+        total = sum(bars.values())
+        for bar, length in bars.items():  # each must be shorter than the others together
+            if length >= total - length:
+                raise MechanismError(
+                    f"{self.name}: the loop cannot close and move: {bar} is {length:g} m long, "
+                    f"the other four bars together {total - length:g} m; it must be shorter"
+                )

@@ -136,10 +136,8 @@ def forward_dynamics(chain: ClosedChain, q: ArrayLike, qd: ArrayLike, tau: Array
         SingularError: the loop has no unique motion.
     """
     name = chain.linkage.name
-    return ConstraintSolver(chain).acceleration(
-        shaped(q, (4,), f"{name}: q"), shaped(qd, (4,), f"{name}: qd"),
-        shaped(tau, (2,), f"{name}: tau"),
-    )  # fmt: skip
+    pose, rates = shaped(q, (4,), f"{name}: q"), shaped(qd, (4,), f"{name}: qd")
+    return ConstraintSolver(chain).acceleration(pose, rates, shaped(tau, (2,), f"{name}: tau"))
 
 
 def simulate(

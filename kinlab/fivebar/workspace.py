@@ -1,21 +1,24 @@
-"""The workspace of a five-bar: what is reachable, the free room in it and its bounds."""
+"""The workspace of a five-bar: what is reachable, and the regions free of singularities."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError, StructureError
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.loci import Circle, grid, type_one, type_two
+from kinlab.fivebar.arguments import HANGING, Mask, Mode, read_mode, read_points
+from kinlab.fivebar.geometry import grid, solve_pose
 from kinlab.fivebar.metrics import condition_number
-from kinlab.fivebar.pose import HANGING, Mask, Mode, read_mode, read_points, solve_pose
+from kinlab.fivebar.singularity import Circle, type_one, type_two_of_mode
 
-# -------- The free room of one working and assembly mode, and what bounds it
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
+
+# -------- The free region of one working and assembly mode, and what bounds it
 
 
 class Rectangle(NamedTuple):
@@ -50,8 +53,8 @@ def read_rectangle(value: ArrayLike, name: str) -> Rectangle:
 
 
 @dataclass(frozen=True)
-class Room:
-    """The free places of one working and assembly mode, with what bounds them.
+class FreeRegion:
+    """The region free of singularities in one working and assembly mode, with what bounds it.
 
     Attributes:
         linkage: the five-bar.
@@ -61,7 +64,7 @@ class Room:
         curve: points of the type II curve of this mode, (K, 2), m.
     """
 
-    linkage: Linkage
+    linkage: FiveBar
     mode: Mode
     assembly: int
     circles: tuple[tuple[Circle, Circle], tuple[Circle, Circle]]
@@ -73,7 +76,7 @@ class Room:
         return np.asarray(pose.ok & (np.sign(pose.rods) == self.assembly))
 
     def clearance(self, xy: ArrayLike) -> Array:
-        """Distance to the nearest singularity, () or (N,), m; negative outside the room."""
+        """Distance to the nearest singularity, () or (N,), m; negative outside the region."""
         from scipy.spatial import cKDTree
 
         points, single = read_points(xy, f"{self.linkage.name}: xy")
@@ -87,8 +90,8 @@ class Room:
         nearest = np.where(inside, nearest, -np.abs(nearest))
         return nearest[0] if single else nearest
 
-    def holds(self, box: Rectangle) -> bool:
-        """Whether a rectangle lies in the room; decided by its edges, not by samples in it."""
+    def contains_rectangle(self, box: Rectangle) -> bool:
+        """Whether a rectangle lies in the region; decided by its edges, not by samples in it."""
         middle = np.array([[0.5 * (box.x_min + box.x_max), 0.5 * (box.y_min + box.y_max)]])
         if not self.contains(middle)[0]:
             return False
@@ -108,8 +111,8 @@ class Room:
         return not bool(inside.any())
 
 
-def room(linkage: Linkage, mode: Mode = HANGING, assembly: int = 1) -> Room:
-    """The free places of one working and assembly mode.
+def free_region(linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1) -> FreeRegion:
+    """The region free of singularities in one working and assembly mode.
 
     Raises:
         OptionError: a mode or assembly that does not exist.
@@ -117,24 +120,11 @@ def room(linkage: Linkage, mode: Mode = HANGING, assembly: int = 1) -> Room:
     signs = read_mode(mode)
     if assembly not in (1, -1):
         raise OptionError(f"assembly {assembly!r} does not exist; choose +1 or -1")
-    curves = [np.empty((0, 2))]
-    for locus in type_two(linkage):
-        ours = np.all(locus.modes * signs >= 0.0, axis=1)
-        curves.append(_closed(locus.points, ours))
     both = (int(signs[0]), int(signs[1]))
-    return Room(linkage, both, assembly, type_one(linkage), np.concatenate(curves))
+    return FreeRegion(linkage, both, assembly, type_one(linkage), type_two_of_mode(linkage, mode))
 
 
-def _closed(points: Array, keep: Mask) -> Array:
-    """The kept points of a closed curve, with each gap between neighbours filled to 1/8."""
-    after, keep_after = np.roll(points, -1, axis=0), np.roll(keep, -1)
-    both = keep & keep_after
-    steps = np.arange(1, 8)[:, None, None] / 8.0
-    between = points[both] + steps * (after - points)[both]
-    return np.concatenate([points[keep], between.reshape(-1, 2)])
-
-
-# -------- The reachable workspace of a five-bar and the free room in it
+# -------- The reachable workspace of a five-bar and the free regions in it
 # What can be reached is the common part of two rings, the same for all four working modes. The
 # curve of type II cuts it into pieces, differently in each mode; a tool that stays in one mode
 # and one assembly (the sign of w_1 x w_2) stays in one of those pieces.
@@ -143,7 +133,7 @@ _STARTS = 12
 """Best places of the grid from which a largest circle or rectangle is refined."""
 
 
-def reachable_area(linkage: Linkage) -> float:
+def reachable_area(linkage: FiveBar) -> float:
     """Area of the common part of the two rings, m², in closed form."""
     (in1, out1), (in2, out2) = type_one(linkage)
     d = 2.0 * linkage.e
@@ -184,9 +174,7 @@ class WorkspaceMap:
     area: tuple[float, float]
 
 
-def workspace_map(
-    linkage: Linkage, mode: Mode = HANGING, resolution: int = 201
-) -> WorkspaceMap:  # fmt: skip
+def workspace_map(linkage: FiveBar, mode: Mode = HANGING, resolution: int = 201) -> WorkspaceMap:
     """Maps reach, assembly and condition number of one working mode.
 
     Args:
@@ -213,24 +201,24 @@ def workspace_map(
 
 
 def largest_circle(
-    linkage: Linkage, mode: Mode = HANGING, assembly: int = 1, resolution: int = 121
+    linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1, resolution: int = 121
 ) -> Circle:
     """The largest circle without a singularity in one working and assembly mode.
 
     The grid's best places are refined by halving steps, so the answer is a local best to
-    1e-6 m; a second room narrower than a cell of the grid can be missed. With both cranks on
+    1e-6 m; a second region narrower than a cell of the grid can be missed. With both cranks on
     one axis (e = 0) it can be turned about that axis; the one straight below is returned.
 
     Raises:
         StructureError: no pose in that mode and assembly.
         OptionError: a mode or assembly that does not exist.
     """
-    free = room(linkage, mode, assembly)
+    free = free_region(linkage, mode, assembly)
     x, _, points = grid(linkage, resolution)
     clear = free.clearance(points)
     best = np.argsort(clear)[::-1][:_STARTS]
     if clear[best[0]] <= 0.0:
-        raise _no_room(linkage, mode, assembly)
+        raise _no_free_region(linkage, mode, assembly)
     centres, radii, step = points[best], clear[best], float(x[1] - x[0])
     ways = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]])
     while step > 1e-7 * float(np.sum(linkage.l1)):
@@ -250,7 +238,7 @@ def largest_circle(
 
 
 def largest_rectangle(
-    linkage: Linkage,
+    linkage: FiveBar,
     mode: Mode = HANGING,
     assembly: int = 1,
     resolution: int = 121,
@@ -272,7 +260,7 @@ def largest_rectangle(
         StructureError: no pose in that mode and assembly, or none so well conditioned.
         OptionError: a mode or assembly that does not exist.
     """
-    free = room(linkage, mode, assembly)
+    free = free_region(linkage, mode, assembly)
     x, y, points = grid(linkage, resolution)
     good = free.contains(points)
     if max_condition < np.inf:
@@ -284,7 +272,7 @@ def largest_rectangle(
     middles = np.stack(np.meshgrid(0.5 * (x[1:] + x[:-1]), 0.5 * (y[1:] + y[:-1])), axis=-1)
     cells &= (free.clearance(middles.reshape(-1, 2)) > half).reshape(cells.shape)
     if not cells.any():
-        raise _no_room(linkage, mode, assembly)
+        raise _no_free_region(linkage, mode, assembly)
     top, bottom, left, right = _largest_block(cells)
     box = Rectangle(float(x[left]), float(x[right]), float(y[top]), float(y[bottom]))
     return box if max_condition < np.inf else _grown(free, box, float(x[1] - x[0]))
@@ -308,13 +296,13 @@ def _largest_block(cells: Mask) -> tuple[int, int, int, int]:
     return block
 
 
-def _grown(free: Room, box: Rectangle, step: float) -> Rectangle:
-    """Moves one side, or two against each other, while the area grows and the room holds it."""
+def _grown(free: FreeRegion, box: Rectangle, step: float) -> Rectangle:
+    """Moves one side, or two against each other, while the area grows and stays in the region."""
     ways = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 4), axis=-1).reshape(-1, 4)
     least = 1e-6 * float(np.sum(free.linkage.l1))
     while step > least:
         trials = [Rectangle(*(np.asarray(box) + step * way).tolist()) for way in ways]
-        trials = [t for t in trials if t.area > box.area and free.holds(t)]
+        trials = [t for t in trials if t.area > box.area and free.contains_rectangle(t)]
         if trials:
             box = max(trials, key=lambda t: t.area)
         else:
@@ -322,7 +310,7 @@ def _grown(free: Room, box: Rectangle, step: float) -> Rectangle:
     return box
 
 
-def _no_room(linkage: Linkage, mode: Mode, assembly: int) -> StructureError:
+def _no_free_region(linkage: FiveBar, mode: Mode, assembly: int) -> StructureError:
     return StructureError(
         f"{linkage.name}: no free place in working mode {tuple(mode)} and assembly {assembly:+d} "
         "on this grid; try another mode, a finer resolution, or a larger max_condition"

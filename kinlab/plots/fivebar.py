@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.fivebar import FiveBar
+from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.dynamics import crank_inertia, rod_model
-from kinlab.fivebar.isotropy import isotropic_poses
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.loci import type_one, type_two, type_two_contour
-from kinlab.fivebar.pose import HANGING, Mode, solve_pose
+from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.servo import ServoSizing
-from kinlab.fivebar.workspace import Rectangle, largest_circle, largest_rectangle, workspace_map
+from kinlab.fivebar.workspace import Rectangle
 from kinlab.plots.canvas import new_axes, new_figure
 
 _LEGS = ("tab:blue", "tab:orange")
@@ -22,7 +21,7 @@ _WORST_SHOWN = 10.0
 
 
 def workspace_picture(
-    linkage: Linkage, mode: Mode = HANGING, assembly: int = 1, resolution: int = 301
+    linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1, resolution: int = 301
 ) -> Any:
     """Condition number over the workspace with the loci, the free circle and rectangle.
 
@@ -40,23 +39,29 @@ def workspace_picture(
         StructureError: no pose in that mode and assembly.
     """
     axes = new_axes(size=(8.4, 6.6))
-    grid = workspace_map(linkage, mode, resolution)
+    grid = linkage.workspace_map(mode, resolution)
     drawn = axes.pcolormesh(
-        grid.x, grid.y, np.minimum(grid.condition, _WORST_SHOWN), cmap="viridis_r",
-        vmin=1.0, vmax=_WORST_SHOWN, shading="nearest", rasterized=True,
-    )  # fmt: skip
+        grid.x,
+        grid.y,
+        np.minimum(grid.condition, _WORST_SHOWN),
+        cmap="viridis_r",
+        vmin=1.0,
+        vmax=_WORST_SHOWN,
+        shading="nearest",
+        rasterized=True,
+    )
     axes.figure.colorbar(
         drawn, ax=axes, label=f"condition number of J (from {_WORST_SHOWN:g} up: same)"
     )
-    circle = largest_circle(linkage, mode, assembly)
+    circle = linkage.largest_circle(mode, assembly)
     _loci(axes, linkage, mode)
     ring = _circle(circle.centre, circle.radius)
     axes.plot(
         *ring.T, color="black", lw=1.6, label=f"largest free circle, r = {circle.radius:.3g} m"
     )
-    box = largest_rectangle(linkage, mode, assembly)
+    box = linkage.largest_rectangle(mode, assembly)
     _box(axes, box, f"largest free rectangle, {box.area:.3g} m²")
-    for k, pose in enumerate(isotropic_poses(linkage, mode)):
+    for k, pose in enumerate(linkage.isotropic_poses(mode)):
         label = "isotropic pose" if k == 0 else None
         axes.plot(*pose.xy, marker="*", ms=12, color="gold", mec="black", ls="none", label=label)
     _bars(axes, linkage, np.array(circle.centre), mode)
@@ -67,37 +72,37 @@ def workspace_picture(
     return axes
 
 
-def _loci(axes: Any, linkage: Linkage, mode: Mode) -> None:
-    for leg, circles in enumerate(type_one(linkage)):
+def _loci(axes: Any, linkage: FiveBar, mode: Mode) -> None:
+    for leg, circles in enumerate(linkage.type_one()):
         for k, circle in enumerate(circles):
             label = f"type I, leg {leg + 1}" if k else None
             ring = _circle(circle.centre, circle.radius)
             axes.plot(*ring.T, color=_LEGS[leg], lw=1.0, ls="--", label=label)
     first = True
-    for locus in type_two(linkage):
+    for locus in linkage.type_two():
         ours = np.all(locus.modes * np.asarray(mode) >= 0, axis=1)
         points = np.where(ours[:, None], locus.points, np.nan)
         points = np.concatenate([points, points[:1]])
         axes.plot(*points.T, color="crimson", lw=2.0, label="type II" if first else None)
-        axes.plot(*locus.points.T, color="crimson", lw=0.6, ls=":",
-                  label="type II, other modes" if first else None)  # fmt: skip
+        label = "type II, other modes" if first else None
+        axes.plot(*locus.points.T, color="crimson", lw=0.6, ls=":", label=label)
         first = False
-    for k, line in enumerate(type_two_contour(linkage, mode)):
+    for k, line in enumerate(linkage.type_two_contour(mode)):
         label = "type II, by contour" if k == 0 else None
         axes.plot(*line.T, color="black", lw=0.9, ls=(0, (1, 4)), label=label)
 
 
-def _bars(axes: Any, linkage: Linkage, xy: Array, mode: Mode) -> None:
+def _bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
     pose = solve_pose(linkage, xy, mode)
     for leg in range(2):
         base = np.array([linkage.base_x[leg], 0.0])
-        elbow = base + np.asarray(linkage.l1)[leg] * pose.u[0, leg]
+        elbow = base + linkage.l1[leg] * pose.u[0, leg]
         chain = np.stack([base, elbow, pose.xy[0]])
         axes.plot(*chain.T, color="black", lw=3.4, solid_capstyle="round")
         axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
 
 
-def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
+def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
 
     Returns:
@@ -108,33 +113,33 @@ def cycle_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     """
     figure = new_figure((9.6, 6.4))
     where, rate, torque, power = figure.subplots(2, 2).ravel()
-    cycle, box = sizing.cycle, sizing.workspace
-    where.plot(*cycle.path.xy.T, color="black", lw=1.5)
+    path, cycle, box = sizing.path, sizing.cycle, sizing.workspace
+    where.plot(*path.points.T, color="black", lw=1.5)
     _box(where, box, None, colour="tab:green")
-    _bars(where, linkage, cycle.path.xy[len(cycle.path.t) // 4], sizing.mode)
+    _bars(where, linkage, path.points[len(path.t) // 4], sizing.mode)
     where.set(aspect="equal", xlabel="x, m", ylabel="y, m", title="path in the workspace")
     curves = (
-        (rate, cycle.theta_dot, "crank rate, rad/s"),
+        (rate, cycle.v, "crank rate, rad/s"),
         (torque, cycle.tau, "crank torque, N m"),
         (power, cycle.power, "crank power, W"),
     )
     for axes, values, label in curves:
         for leg in range(2):
-            axes.plot(cycle.path.t, values[:, leg], color=_LEGS[leg], label=f"crank {leg + 1}")
+            axes.plot(path.t, values[:, leg], color=_LEGS[leg], label=f"crank {leg + 1}")
         axes.axhline(0.0, color="0.6", lw=0.6, zorder=0)
-        axes.set(xlabel="t, s", ylabel=label, xlim=(0.0, cycle.path.duration))
+        axes.set(xlabel="t, s", ylabel=label, xlim=(0.0, path.duration))
     rms = cycle.rms_torque.max()
     torque.axhline(rms, color="0.4", lw=1.0, ls=":")
     torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
-        f"{linkage.name}: {60 / cycle.path.duration:.0f} cycles a minute, "
+        f"{linkage.name}: {60 / path.duration:.0f} cycles a minute, "
         f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
     )
     return where
 
 
-def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
+def gain_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     """Torque per acceleration over the gain of J: I_A sigma + m / sigma, least at sqrt(eta).
 
     Returns:
@@ -145,7 +150,7 @@ def gain_picture(linkage: Linkage, sizing: ServoSizing) -> Any:
     """
     axes = new_axes(size=(7.2, 4.4))
     arms = crank_inertia(linkage, rod_model(linkage, "massless"))
-    arms = arms - np.square(linkage.gear_ratio) * np.asarray(linkage.rotor_inertia)
+    arms = arms - linkage.reflected_inertia
     best = np.sqrt(sizing.eta[np.isfinite(sizing.eta)])
     low = 0.5 * min([sizing.sigma[0], *best])
     high = 1.5 * max([sizing.sigma[1], *best])
@@ -175,5 +180,5 @@ def _circle(centre: tuple[float, float], radius: float) -> Array:
 
 def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
     x, y = box[:2], box[2:]
-    axes.plot([x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]],
-              color=colour, lw=1.8, ls="-.", label=label)  # fmt: skip
+    corners = np.array([[x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]]])
+    axes.plot(*corners, color=colour, lw=1.8, ls="-.", label=label)

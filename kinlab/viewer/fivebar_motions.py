@@ -1,4 +1,4 @@
-"""Motions to show a five-bar with: round, straight, and pick and place, inside its free room."""
+"""Motions to show a five-bar with: round, straight, and pick and place, inside its free circle."""
 
 from __future__ import annotations
 
@@ -7,19 +7,17 @@ from collections.abc import Callable
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.drives.cycles import pick_and_place
 from kinlab.errors import NameUnknownError, near
-from kinlab.fivebar.geometry import ik
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.loci import Circle
-from kinlab.fivebar.pose import Mode
-from kinlab.fivebar.trajectory import pick_and_place
-from kinlab.fivebar.workspace import largest_circle
+from kinlab.fivebar import FiveBar
+from kinlab.fivebar.arguments import Mode
+from kinlab.fivebar.singularity import Circle
 from kinlab.viewer.motions import Motion
 
 _SAMPLES = 201
 
 
-def motion(linkage: Linkage, kind: str, mode: Mode, assembly: int) -> Motion:
+def motion(linkage: FiveBar, kind: str, mode: Mode, assembly: int) -> Motion:
     """A motion of a five-bar by name, within its largest circle free of singularities.
 
     Args:
@@ -34,14 +32,14 @@ def motion(linkage: Linkage, kind: str, mode: Mode, assembly: int) -> Motion:
     if kind not in MOTIONS:
         raise NameUnknownError(f"motion {kind!r} of a five-bar; {near(kind, MOTIONS)}")
     name, path = MOTIONS[kind]
-    xy, duration = path(largest_circle(linkage, mode, assembly))
-    theta = np.unwrap(ik(linkage, xy, mode), axis=0)
+    xy, duration = path(linkage.largest_circle(mode, assembly))
+    theta = np.unwrap(linkage.ik(xy, mode), axis=0)
     return Motion(name, theta, duration)
 
 
 def _round(free: Circle) -> tuple[Array, float]:
-    turn = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
-    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    angle = np.linspace(0.0, 2.0 * np.pi, _SAMPLES)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
     return np.array(free.centre) + 0.8 * free.radius * ring, 5.0
 
 
@@ -55,7 +53,7 @@ def _pick(free: Circle) -> tuple[Array, float]:
     centre = np.array(free.centre) - [0.0, 0.5 * lift]
     speed = 2.0 * free.radius
     cycle = pick_and_place(centre, speed, 4.0 * speed, lift, 1.4 * free.radius, samples=_SAMPLES)
-    return cycle.xy, float(cycle.t[-1])
+    return cycle.points, float(cycle.t[-1])
 
 
 MOTIONS: dict[str, tuple[str, Callable[[Circle], tuple[Array, float]]]] = {

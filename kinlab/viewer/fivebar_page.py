@@ -11,11 +11,9 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.errors import StructureError
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.loci import Circle, type_one, type_two
-from kinlab.fivebar.metrics import condition_number
-from kinlab.fivebar.pose import HANGING, Mode, solve_pose
-from kinlab.fivebar.workspace import workspace_map
+from kinlab.fivebar import FiveBar
+from kinlab.fivebar.arguments import HANGING, Mode
+from kinlab.fivebar.geometry import solve_pose
 from kinlab.viewer import shapes
 from kinlab.viewer.shapes import Label, add_ellipsoids, empty_spec, look_at, set_stage
 
@@ -31,12 +29,12 @@ _ONE, _TWO = 0x1565C0, 0xC62828
 """Colours of the loci of type I and of type II."""
 
 
-def size_of(linkage: Linkage) -> float:
+def size_of(linkage: FiveBar) -> float:
     """Length of the longer leg and the base together, metres: the scale for drawing it."""
-    return float(np.max(np.asarray(linkage.l1) + np.asarray(linkage.l2)) + linkage.e)
+    return float(np.max(linkage.l1 + linkage.l2) + linkage.e)
 
 
-def best_start(linkage: Linkage, assembly: int) -> Array:
+def best_start(linkage: FiveBar, assembly: int) -> Array:
     """The tool on the axis x = 0 where the condition number is least, elbows outward, (2,).
 
     Raises:
@@ -45,7 +43,7 @@ def best_start(linkage: Linkage, assembly: int) -> Array:
     far = size_of(linkage)
     points = np.column_stack([np.zeros(400), np.linspace(-far, far, 400)])
     pose = solve_pose(linkage, points, HANGING, "mask")
-    kappa = np.ma.filled(condition_number(linkage, points, HANGING, "mask"), np.inf)
+    kappa = np.ma.filled(linkage.condition_number(points, HANGING, "mask"), np.inf)
     kappa = np.where(pose.ok & (assembly * pose.rods > 0.0), kappa, np.inf)
     k = int(np.argmin(kappa))
     if not np.isfinite(kappa[k]):
@@ -55,8 +53,8 @@ def best_start(linkage: Linkage, assembly: int) -> Array:
 
 
 def draw_page(
-    vis: Any, linkage: Linkage, theta: Array, assembly: int, mode: Mode
-) -> dict[str, Any]:  # fmt: skip
+    vis: Any, linkage: FiveBar, theta: Array, assembly: int, mode: Mode
+) -> dict[str, Any]:
     """Draws a five-bar with its singular loci and workspace.
 
     Args:
@@ -83,8 +81,8 @@ def draw_page(
         "kind": "fivebar",
         "planar": True,
         "home": HOME,
-        "l1": np.asarray(linkage.l1).tolist(),
-        "l2": np.asarray(linkage.l2).tolist(),
+        "l1": linkage.l1.tolist(),
+        "l2": linkage.l2.tolist(),
         "e": linkage.e,
         "assembly": assembly,
         "least_sine": LEAST_SINE,
@@ -125,11 +123,11 @@ def _crank(i: int, middle: float) -> dict[str, Any]:
     }
 
 
-def _draw_bars(vis: Any, linkage: Linkage, size: float) -> None:
+def _draw_bars(vis: Any, linkage: FiveBar, size: float) -> None:
     """Cranks in the plane, rod 1 in front of it and rod 2 behind, so that they can cross."""
     width, height = 0.045 * size, 0.02 * size
     for i, layer in ((0, 1.0), (1, -1.0)):
-        l1, l2 = (float(np.asarray(lengths)[i]) for lengths in (linkage.l1, linkage.l2))
+        l1, l2 = float(linkage.l1[i]), float(linkage.l2[i])
         shapes.slab(vis[f"{HOME}/crank{i + 1}"], l1, width, height, shapes.paint(_CRANK))
         rod = vis[f"{HOME}/rod{i + 1}"]
         shapes.slab(rod["body"], l2, 0.7 * width, height, shapes.paint(_ROD))
@@ -139,22 +137,20 @@ def _draw_bars(vis: Any, linkage: Linkage, size: float) -> None:
         shapes.pin(rod["pin"], np.zeros(3), 0.25 * width, 4 * height, shapes.paint(_PIN))
         centre = np.array([linkage.base_x[i], 0.0, 0.0])
         shapes.pin(vis[f"{HOME}/base{i + 1}"], centre, 0.4 * width, 5 * height, shapes.paint(_PIN))
-    shapes.pin(
-        vis[f"{HOME}/tool/pin"], np.zeros(3), 0.45 * width, 5 * height, shapes.paint(_TOOL)
-    )  # fmt: skip
+    shapes.pin(vis[f"{HOME}/tool/pin"], np.zeros(3), 0.45 * width, 5 * height, shapes.paint(_TOOL))
 
 
-def _type_one_points(linkage: Linkage) -> list[Array]:
+def _type_one_points(linkage: FiveBar) -> list[Array]:
     """The circles of type I as points, (K, 2) each; a circle of radius 0 is left out."""
-    circles: list[Circle] = [circle for leg in type_one(linkage) for circle in leg]
-    turn = np.linspace(0.0, 2.0 * np.pi, 241)
-    ring = np.column_stack([np.cos(turn), np.sin(turn)])
+    circles = [circle for leg in linkage.type_one() for circle in leg]
+    angle = np.linspace(0.0, 2.0 * np.pi, 241)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
     return [np.array(c.centre) + c.radius * ring for c in circles if c.radius > 0.0]
 
 
-def _draw_loci(vis: Any, linkage: Linkage, edges: list[Array], size: float) -> list[str]:
+def _draw_loci(vis: Any, linkage: FiveBar, edges: list[Array], size: float) -> list[str]:
     curves = [(curve, _ONE) for curve in edges]
-    for locus in type_two(linkage, samples=200):
+    for locus in linkage.type_two(samples=200):
         curves.append((np.vstack([locus.points, locus.points[:1]]), _TWO))
     for k, (curve, color) in enumerate(curves):
         flat = np.column_stack([curve, np.zeros(len(curve))])
@@ -162,9 +158,9 @@ def _draw_loci(vis: Any, linkage: Linkage, edges: list[Array], size: float) -> l
     return [f"{HOME}/loci"]
 
 
-def _draw_workspace(vis: Any, linkage: Linkage, mode: Mode, assembly: int, size: float) -> str:
+def _draw_workspace(vis: Any, linkage: FiveBar, mode: Mode, assembly: int, size: float) -> str:
     """Reachable points of the start's working mode and assembly, coloured by 1/kappa."""
-    area = workspace_map(linkage, mode, resolution=121)
+    area = linkage.workspace_map(mode, resolution=121)
     same = np.ma.filled(assembly * area.rods, -1.0) > 0.0
     quality = np.ma.filled(1.0 / area.condition, 0.0)[same]
     x, y = np.meshgrid(area.x, area.y)

@@ -9,10 +9,8 @@ from kinlab.arrays import Array, real_array, shaped
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, StateError, near
 from kinlab.fast.stacks import fk, jacobian
-from kinlab.fivebar.geometry import fk as fivebar_fk
-from kinlab.fivebar.geometry import ik, mode_of
-from kinlab.fivebar.linkage import Linkage
-from kinlab.fivebar.pose import solve_pose
+from kinlab.fivebar import FiveBar
+from kinlab.fivebar.geometry import solve_pose
 from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
@@ -112,14 +110,14 @@ class FiveBarScene(Page):
         StateError: theta of another shape, or not finite.
     """
 
-    def __init__(self, linkage: Linkage, theta: ArrayLike | None = None, assembly: int = 1) -> None:
+    def __init__(self, linkage: FiveBar, theta: ArrayLike | None = None, assembly: int = 1) -> None:
         self.linkage, self.assembly = linkage, assembly
         if theta is None:
-            start = ik(linkage, best_start(linkage, assembly))
+            start = linkage.ik(best_start(linkage, assembly))
         else:
             start = shaped(theta, (2,), f"{linkage.name}: theta")
-        xy = fivebar_fk(linkage, start, assembly)
-        self.mode = mode_of(linkage, start, xy)
+        xy = linkage.fk(start, assembly)
+        self.mode = linkage.mode_of(start, xy)
         solve_pose(linkage, xy, self.mode, regular="II")
         vis, recorder = new_scene()
         spec = draw_fivebar(vis, linkage, start, assembly, self.mode)

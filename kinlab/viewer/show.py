@@ -15,12 +15,12 @@ from kinlab.model.library import load
 from kinlab.model.robot import Robot
 
 if TYPE_CHECKING:
-    from kinlab.fivebar.linkage import Linkage
+    from kinlab.fivebar import FiveBar
     from kinlab.viewer.scene import FiveBarScene, Scene
 
 
 def view(
-    robot: Robot | Linkage | DHTable | str | Path,
+    robot: Robot | FiveBar | DHTable | str | Path,
     q: ArrayLike | None = None,
     *,
     meshes: bool = True,

@@ -17,9 +17,8 @@ import numpy as np
 
 import kinlab as kl
 from kinlab.errors import MechanismError, UnreachableError
-from kinlab.fivebar.dynamics import ROD_MODELS, kinetic_energy, potential_energy
-from kinlab.fivebar.geometry import joint_accelerations
-from kinlab.fivebar.pose import MODES
+from kinlab.fivebar.arguments import MODES
+from kinlab.fivebar.dynamics import ROD_MODELS
 from kinlab.fivebar.simulation import forward_dynamics, simulate
 
 LIMITS = {
@@ -71,7 +70,7 @@ def compare(states: int, seed: int) -> dict[str, float]:
         qd = chain.joint_rates(q, v)
         qdd = chain.joint_accelerations(q, qd, a)
         tau = linkage.inverse_dynamics(xy, v, a, mode)
-        turn = joint_accelerations(linkage, xy, v, a, mode)
+        turn = linkage.joint_accelerations(xy, v, a, mode)
         kinetic, potential = chain.energy(q, qd)
         found = {
             "FK, m": float(np.abs(linkage.fk(q[[0, 2]], assembly) - xy).max()),
@@ -79,8 +78,8 @@ def compare(states: int, seed: int) -> dict[str, float]:
             "theta_ddot": gap(turn, qdd[[0, 2]]),
             "torque, exact": gap(tau, chain.inverse_dynamics(q, qd, qdd)),
             "mass matrix": gap(linkage.mass_matrix(xy, mode), chain.mass_matrix(q)),
-            "kinetic energy": gap(kinetic_energy(linkage, xy, v, mode), kinetic),
-            "potential energy": gap(potential_energy(linkage, xy, mode), potential),
+            "kinetic energy": gap(linkage.kinetic_energy(xy, v, mode), kinetic),
+            "potential energy": gap(linkage.potential_energy(xy, mode), potential),
             "forward dynamics": gap(forward_dynamics(chain, q, qd, tau)[[0, 2]], turn),
         }
         worst = {name: max(worst[name], found[name]) for name in worst}

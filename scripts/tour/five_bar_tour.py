@@ -11,10 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import kinlab as kl
-from kinlab.fivebar.export import export
-from kinlab.fivebar.isotropy import isotropic_poses
-from kinlab.fivebar.trajectory import fit_to_motor, pick_and_place
-from kinlab.fivebar.workspace import largest_circle, largest_rectangle, reachable_area
+from kinlab.drives.cycles import pick_and_place
 from kinlab.plots.canvas import save
 from kinlab.plots.fivebar import cycle_picture, gain_picture, workspace_picture
 
@@ -43,9 +40,9 @@ def main() -> None:
     print(f"   massless rods       {robot.inverse_dynamics(xy, v, a, model='massless')} N m")
 
     print("3. Singularities and room")
-    print(f"   reachable {reachable_area(robot):.4f} m²; {largest_circle(robot)}")
-    print(f"   {largest_rectangle(robot)}")
-    for pose in isotropic_poses(robot):
+    print(f"   reachable {robot.reachable_area():.4f} m²; {robot.largest_circle()}")
+    print(f"   {robot.largest_rectangle()}")
+    for pose in robot.isotropic_poses():
         print(f"   isotropic at ({pose.xy[0]:.6f}, {pose.xy[1]:.6f}), kappa - 1 = "
               f"{pose.condition - 1:.1e}")  # fmt: skip
 
@@ -58,13 +55,13 @@ def main() -> None:
               f"{fit.margin:.2f}, limited by {fit.limit}")  # fmt: skip
     best = sizing.short_list[0]
     path = pick_and_place([0.0, -0.65], v_max=10.0, a_max=200.0)
-    fastest = fit_to_motor(robot, path, best.motor, best.gear_ratio)
+    fastest = robot.fit_to_motor(path, best.motor, best.gear_ratio)
     print(f"   with {best.motor.name} the 25/305/25 mm cycle takes {fastest.duration:.3f} s")
 
     save(workspace_picture(robot), folder / "workspace.png")
     save(cycle_picture(robot, sizing), folder / "cycle.png")
     save(gain_picture(robot, sizing), folder / "gain.png")
-    for file in export(robot, folder / "five_bar.xml", xy):
+    for file in robot.export(folder / "five_bar.xml", xy):
         print(f"wrote {file}")
     print(f"wrote {', '.join(str(folder / n) for n in ('workspace.png', 'cycle.png', 'gain.png'))}")
 

@@ -10,9 +10,7 @@ from fivebars import random_fivebar, random_state
 
 import kinlab as kl
 from kinlab.errors import FileError, InertiaError, OptionError, SingularError, UnreachableError
-from kinlab.fivebar.dynamics import kinetic_energy, potential_energy
-from kinlab.fivebar.export import export, loop_sidecar, to_mjcf, to_urdf
-from kinlab.fivebar.geometry import joint_accelerations, joint_rates
+from kinlab.fivebar.export import loop_sidecar, to_mjcf, to_urdf
 from kinlab.fivebar.simulation import forward_dynamics, simulate
 
 
@@ -35,7 +33,7 @@ def test_closed_form_is_the_closed_chain_on_a_thousand_states():
         qd = chain.joint_rates(q, v)
         qdd = chain.joint_accelerations(q, qd, a)
         torque = fivebar.inverse_dynamics(xy, v, a, mode)
-        turn = joint_accelerations(fivebar, xy, v, a, mode)
+        turn = fivebar.joint_accelerations(xy, v, a, mode)
         energy = chain.energy(q, qd)
         gaps = {
             "fk": np.abs(chain.fk(q) - fivebar.fk(theta, assembly)).max(),
@@ -43,8 +41,8 @@ def test_closed_form_is_the_closed_chain_on_a_thousand_states():
             "turn": relative(qdd[[0, 2]], turn),
             "torque": relative(chain.inverse_dynamics(q, qd, qdd), torque),
             "mass": relative(chain.mass_matrix(q), fivebar.mass_matrix(xy, mode)),
-            "kinetic": relative(energy[0], kinetic_energy(fivebar, xy, v, mode)),
-            "potential": relative(energy[1], potential_energy(fivebar, xy, mode)),
+            "kinetic": relative(energy[0], fivebar.kinetic_energy(xy, v, mode)),
+            "potential": relative(energy[1], fivebar.potential_energy(xy, mode)),
             "forward": relative(forward_dynamics(chain, q, qd, torque)[[0, 2]], turn),
         }
         worst = {name: max(worst[name], gap) for name, gap in gaps.items()}
@@ -157,12 +155,12 @@ def test_mujoco_reads_the_mjcf_and_agrees():
     np.testing.assert_allclose(chain.projection(q).T @ tree, tau, rtol=1e-12)
     # its loop is a stiff spring, so the motion agrees to the spring's softness
     np.testing.assert_allclose(data.qacc, qdd, atol=5e-3)
-    assert np.abs(joint_rates(MODEL, xy, v, mode) - qd[[0, 2]]).max() < 1e-13
+    assert np.abs(MODEL.joint_rates(xy, v, mode) - qd[[0, 2]]).max() < 1e-13
 
 
 def test_pinocchio_reads_the_mjcf_with_its_loop(tmp_path):
     xy, mode = np.array([0.1, -0.5]), (-1, 1)
-    (file,) = export(MODEL, tmp_path / "tilted.xml", xy, mode)
+    (file,) = MODEL.export(tmp_path / "tilted.xml", xy, mode)
     model, points, frames = pin.buildModelAndConstraintsFromMJCF(str(file))
     assert (model.nq, len(points), len(frames)) == (4, 1, 0)
     data, anchor = model.createData(), points[0].createData()
@@ -179,7 +177,7 @@ def test_pinocchio_reads_the_mjcf_with_its_loop(tmp_path):
 def test_urdf_and_its_sidecar_hold_the_same_tree(tmp_path):
     import tomllib
 
-    files = export(MODEL, tmp_path / "tilted.urdf", [0.1, -0.5])
+    files = MODEL.export(tmp_path / "tilted.urdf", [0.1, -0.5])
     assert [f.name for f in files] == ["tilted.urdf", "tilted.loop.toml"]
     model = pin.buildModelFromXML(files[0].read_text(encoding="utf-8"))
     loop = tomllib.loads(files[1].read_text(encoding="utf-8"))
@@ -207,7 +205,7 @@ def test_urdf_and_its_sidecar_hold_the_same_tree(tmp_path):
 
 def test_export_refuses_by_name(tmp_path):
     with pytest.raises(FileError, match="name a .xml file"):
-        export(MODEL, tmp_path / "five.obj", [0.1, -0.5])
+        MODEL.export(tmp_path / "five.obj", [0.1, -0.5])
     with pytest.raises(InertiaError, match="crank 1 has mass 0"):
         to_mjcf(kl.FiveBar(0.3, 0.5, 0.1), [0.0, -0.5])
     with pytest.raises(UnreachableError):

@@ -13,16 +13,7 @@ from fivebars import random_fivebar, random_state
 
 import kinlab as kl
 from kinlab.errors import InertiaError
-from kinlab.fivebar.dynamics import (
-    ROD_MODELS,
-    bias_torques,
-    gravity_torques,
-    joint_power,
-    kinetic_energy,
-    potential_energy,
-    task_mass_matrix,
-)
-from kinlab.fivebar.geometry import joint_accelerations, joint_rates
+from kinlab.fivebar.dynamics import ROD_MODELS
 
 STEP = mpmath.mpf(10) ** -16
 
@@ -112,15 +103,15 @@ def test_exact_torque_is_lagranges():
         xy, mode, assembly = random_state(fivebar, rng, clear=0.25)
         v, a = rng.uniform(-1, 1, 2), rng.uniform(-5, 5, 2)
         theta = [mpmath.mpf(float(t)) for t in fivebar.ik(xy, mode)]
-        rate = [mpmath.mpf(float(x)) for x in joint_rates(fivebar, xy, v, mode)]
-        turn = [mpmath.mpf(float(x)) for x in joint_accelerations(fivebar, xy, v, a, mode)]
+        rate = [mpmath.mpf(float(x)) for x in fivebar.joint_rates(xy, v, mode)]
+        turn = [mpmath.mpf(float(x)) for x in fivebar.joint_accelerations(xy, v, a, mode)]
         oracle = Lagrangian(fivebar, assembly)
         expected = oracle.torque(theta, rate, turn)
         found = fivebar.inverse_dynamics(xy, v, a, mode)
         np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
         kinetic, potential = oracle.energies(theta, rate)
-        assert abs(kinetic_energy(fivebar, xy, v, mode) - float(kinetic)) < 1e-11 * float(kinetic)
-        assert abs(potential_energy(fivebar, xy, mode) - float(potential)) < 1e-11
+        assert abs(fivebar.kinetic_energy(xy, v, mode) - float(kinetic)) < 1e-11 * float(kinetic)
+        assert abs(fivebar.potential_energy(xy, mode) - float(potential)) < 1e-11
 
 
 @pytest.mark.parametrize("model", sorted(ROD_MODELS))
@@ -132,18 +123,18 @@ def test_parts_make_the_whole_in_every_model(model):
         v, a = rng.uniform(-1, 1, 2), rng.uniform(-5, 5, 2)
         tau = fivebar.inverse_dynamics(xy, v, a, mode, model)
         mass = fivebar.mass_matrix(xy, mode, model)
-        turn = joint_accelerations(fivebar, xy, v, a, mode)
+        turn = fivebar.joint_accelerations(xy, v, a, mode)
         scale = np.abs(tau).max()
-        parts = mass @ turn + bias_torques(fivebar, xy, v, mode, model)
+        parts = mass @ turn + fivebar.bias_torques(xy, v, mode, model)
         np.testing.assert_allclose(parts, tau, atol=1e-12 * scale)
         np.testing.assert_allclose(mass, mass.T, rtol=1e-13)
         assert np.all(np.linalg.eigvalsh(mass) > 0)
         jac = fivebar.jacobian(xy, mode)
         np.testing.assert_allclose(
-            task_mass_matrix(fivebar, xy, mode, model), jac.T @ mass @ jac, rtol=1e-12, atol=1e-12
+            fivebar.task_mass_matrix(xy, mode, model), jac.T @ mass @ jac, rtol=1e-12, atol=1e-12
         )
         rest = fivebar.inverse_dynamics(xy, [0, 0], [0, 0], mode, model)
-        np.testing.assert_allclose(gravity_torques(fivebar, xy, mode, model), rest, atol=1e-12)
+        np.testing.assert_allclose(fivebar.gravity_torques(xy, mode, model), rest, atol=1e-12)
         back = fivebar.forward_dynamics(xy, v, tau, mode, model)
         np.testing.assert_allclose(back, turn, atol=1e-10 * np.abs(turn).max())
 
@@ -159,16 +150,16 @@ def test_power_is_the_change_of_energy(model):
 
         def energy(t, fivebar=fivebar, xy=xy, v=v, a=a, mode=mode):
             at = xy + v * t + 0.5 * a * t * t
-            return kinetic_energy(fivebar, at, v + a * t, mode, model) + potential_energy(
-                fivebar, at, mode, model
+            return fivebar.kinetic_energy(at, v + a * t, mode, model) + fivebar.potential_energy(
+                at, mode, model
             )
 
         h = 1e-5
         change = (8 * (energy(h) - energy(-h)) - (energy(2 * h) - energy(-2 * h))) / (12 * h)
-        power = joint_power(fivebar, xy, v, a, mode, model)
+        power = fivebar.joint_power(xy, v, a, mode, model)
         np.testing.assert_allclose(
             power, fivebar.inverse_dynamics(xy, v, a, mode, model)
-            * joint_rates(fivebar, xy, v, mode), rtol=1e-14,
+            * fivebar.joint_rates(xy, v, mode), rtol=1e-14,
         )  # fmt: skip
         assert abs(power.sum() - change) < 1e-6 * max(1.0, np.abs(power).max())
 
@@ -178,11 +169,11 @@ def test_virtual_work_at_rest():
     fivebar = kl.FiveBar.load("isotropic")
     xy, h = np.array([0.08, -0.5]), 1e-6
     slope = [
-        (potential_energy(fivebar, xy + s) - potential_energy(fivebar, xy - s)) / (2 * h)
+        (fivebar.potential_energy(xy + s) - fivebar.potential_energy(xy - s)) / (2 * h)
         for s in h * np.eye(2)
     ]
     expected = np.linalg.solve(fivebar.jacobian(xy).T, slope)
-    np.testing.assert_allclose(gravity_torques(fivebar, xy), expected, atol=1e-8)
+    np.testing.assert_allclose(fivebar.gravity_torques(xy), expected, atol=1e-8)
 
 
 def test_huangs_form_is_the_limit_of_light_rods():
@@ -237,4 +228,4 @@ def test_no_inertia_is_refused_by_forward_dynamics_only():
 
 def test_horizontal_plane_needs_no_holding_torque():
     flat = kl.FiveBar(0.3, 0.5, 0.1, 1.0, 0.1, 0.01, 1.0, 0.2, 0.01, 1.0, gravity=(0, 0))
-    assert np.all(gravity_torques(flat, [[0.1, -0.5], [0.0, -0.6]]) == 0.0)
+    assert np.all(flat.gravity_torques([[0.1, -0.5], [0.0, -0.6]]) == 0.0)

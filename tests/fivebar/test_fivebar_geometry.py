@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import copy
+import dataclasses
+import inspect
+import pickle
+
 import numpy as np
 import pytest
 from fivebars import MODES, bars, random_fivebar, random_state
 
 import kinlab as kl
 from kinlab.errors import MechanismError, OptionError, SingularError, StateError, UnreachableError
-from kinlab.fivebar.geometry import joint_accelerations, joint_rates, mode_of
 
 ISOTROPIC = kl.FiveBar.load("isotropic")
 
@@ -65,7 +69,7 @@ def test_fk_gives_both_assemblies(rng):
         assert np.sign(bars(fivebar, theta, other)[1]) == -assembly
         elbow = np.array([fivebar.e, -fivebar.e]) + fivebar.l1 * np.exp(1j * theta)
         np.testing.assert_allclose(abs(complex(*other) - elbow), fivebar.l2, atol=1e-13)
-        assert mode_of(fivebar, theta, xy) == mode
+        assert fivebar.mode_of(theta, xy) == mode
 
 
 def test_a_plus_c_equal_to_zero_is_an_ordinary_point():
@@ -116,11 +120,11 @@ def test_jacobian_and_bias_are_the_derivatives_of_ik(rng):
         turn = (angles[2] - 2 * angles[1] + angles[0]) / h**2
         scale = np.abs(rate).max() + 1.0
         np.testing.assert_allclose(fivebar.jacobian(xy, mode) @ v, rate, atol=1e-7 * scale**3)
-        np.testing.assert_allclose(joint_rates(fivebar, xy, v, mode), rate, atol=1e-7 * scale**3)
+        np.testing.assert_allclose(fivebar.joint_rates(xy, v, mode), rate, atol=1e-7 * scale**3)
         exact = fivebar.jacobian(xy, mode) @ a + fivebar.acceleration_bias(xy, v, mode)
         np.testing.assert_allclose(exact, turn, atol=2e-5 * scale**4)
         np.testing.assert_allclose(
-            joint_accelerations(fivebar, xy, v, a, mode), exact, rtol=1e-13, atol=1e-13
+            fivebar.joint_accelerations(xy, v, a, mode), exact, rtol=1e-13, atol=1e-13
         )
 
 
@@ -261,3 +265,31 @@ def test_frozen_and_comparable():
         one.e = 0.2
     with pytest.raises(ValueError, match="read-only"):
         one.l1[0] = 1.0
+
+
+def test_methods_are_the_documented_functions():
+    """Every public method has its docstring with its arguments' names, in help() and in dir()."""
+    methods = [
+        n
+        for n in dir(kl.FiveBar)
+        if not n.startswith("_") and callable(getattr(kl.FiveBar, n, None))
+    ]
+    fixed = "ik fk jacobian acceleration_bias inverse_dynamics mass_matrix closed_chain size_servo load save"
+    assert set(fixed.split()) < set(methods)
+    for name in methods:
+        assert inspect.getdoc(getattr(kl.FiveBar, name)), name
+    assert list(inspect.signature(ISOTROPIC.ik).parameters) == ["xy", "mode", "on_unreachable"]
+    given = inspect.signature(kl.FiveBar).parameters
+    needed = [name for name, parameter in given.items() if parameter.default is parameter.empty]
+    assert needed == ["l1", "l2", "e"] and given["gear_ratio"].default == 1.0
+    with pytest.raises(TypeError, match="e"):
+        kl.FiveBar(0.3, 0.5)
+
+
+def test_copies_and_changes():
+    changed = dataclasses.replace(ISOTROPIC, payload=2, rod_mass=(0.1, 0.2))
+    assert changed.payload == 2.0 and changed.rod_mass.tolist() == [0.1, 0.2]
+    np.testing.assert_array_equal(changed.l1, ISOTROPIC.l1)
+    for same in (pickle.loads(pickle.dumps(ISOTROPIC)), copy.deepcopy(ISOTROPIC)):
+        assert same == ISOTROPIC
+        np.testing.assert_array_equal(same.ik([0.1, -0.5]), ISOTROPIC.ik([0.1, -0.5]))

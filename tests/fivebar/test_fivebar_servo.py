@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.drives.cycles import pick_and_place
 from kinlab.drives.motors import Motor, catalogue, read_motors
 from kinlab.errors import (
     FileError,
@@ -17,8 +18,6 @@ from kinlab.errors import (
     SingularError,
     UnreachableError,
 )
-from kinlab.fivebar.geometry import joint_accelerations, joint_rates
-from kinlab.fivebar.trajectory import fit_to_motor, follow, motor_torques, pick_and_place
 
 ISOTROPIC = kl.FiveBar.load("isotropic")
 UNEQUAL = kl.FiveBar.load("unequal")
@@ -49,7 +48,7 @@ def test_worst_case_is_an_upper_bound_that_is_reached(fivebar):
     sizing = fivebar.size_servo(BOX, SPEED, ACCELERATION, motor="SGMAH-08A", efficiency=1.0)
     rotorless = replace(fivebar, rotor_inertia=0.0)
     pairs = {
-        "rate": (sizing.rate.value, lambda xy, v, a: joint_rates(fivebar, xy, v)),
+        "rate": (sizing.rate.value, lambda xy, v, a: fivebar.joint_rates(xy, v)),
         "torque": (sizing.torque.value, fivebar.inverse_dynamics),
         "note": (
             sizing.torque_note.value,
@@ -74,7 +73,7 @@ def test_motor_torque_has_rotor_and_efficiency():
     rotorless = replace(UNEQUAL, rotor_inertia=0.0)
 
     def at_motor(xy, v, a):
-        turn = joint_accelerations(UNEQUAL, xy, v, a)
+        turn = UNEQUAL.joint_accelerations(xy, v, a)
         return rotorless.inverse_dynamics(xy, v, a) / (20 * 0.9) + 0.672e-4 * 20 * turn
 
     worst = brute(UNEQUAL, at_motor).max()
@@ -84,21 +83,64 @@ def test_motor_torque_has_rotor_and_efficiency():
     assert fit.inertia_range[1] == pytest.approx(sizing.load_inertia.largest / 400)
     assert fit.inertia_range[0] == pytest.approx(fit.inertia_range[1] / 3)
     assert fit.margins["peak torque"] == pytest.approx(7.16 / fit.peak)
-    assert fit.limit == min(fit.margins, key=fit.margins.get)
+    assert fit.limit == min(fit.margins, key=fit.margins.get) and fit.limits == (fit.limit,)
 
 
 def test_torque_at_the_shaft_along_a_cycle():
-    """The load through the gear and its losses, the rotor beside them."""
+    """The load through the gear, paying the losses or held by them, and the rotor beside it."""
     motor = catalogue()["SGMAH-08A"]
     path = pick_and_place([0.0, -0.6], 2.0, 30.0)
-    cycle = follow(UNEQUAL, path)
-    load = replace(UNEQUAL, rotor_inertia=0.0).inverse_dynamics(path.xy, path.v, path.a)
-    turn = joint_accelerations(UNEQUAL, path.xy, path.v, path.a)
-    expected = load / (20.0 * 0.8) + 0.672e-4 * 20.0 * turn
-    found = motor_torques(UNEQUAL, cycle, motor, 20.0, 0.8)
+    cycle = UNEQUAL.follow(path)
+    load = replace(UNEQUAL, rotor_inertia=0.0).inverse_dynamics(path.points, path.v, path.a) / 20.0
+    rotor = 0.672e-4 * 20.0 * UNEQUAL.joint_accelerations(path.points, path.v, path.a)
+    driving, driven = load / 0.8 + rotor, load * 0.8 + rotor
+    expected = np.where(abs(driving) >= abs(driven), driving, driven)
+    found = cycle.at_motor(motor, 20.0, 0.8)
     np.testing.assert_allclose(found, expected, atol=1e-12)
+    np.testing.assert_allclose(cycle.at_motor(motor, 20.0, 1.0), load + rotor, atol=1e-12)
     (fit,) = UNEQUAL.size_servo(BOX, 2.0, 30.0, motor, 20.0, efficiency=0.8).fits
     assert fit.rms < fit.peak
+
+
+@pytest.mark.parametrize("efficiency", [0.9, 0.6])
+def test_no_direction_of_power_exceeds_the_peak(efficiency):
+    """The gear divides the load by its efficiency where the motor drives, else multiplies it."""
+    (fit,) = UNEQUAL.size_servo(
+        BOX, SPEED, ACCELERATION, "SGMAH-08A", 20.0, (-1, 1), efficiency
+    ).fits
+    rotorless = replace(UNEQUAL, rotor_inertia=0.0)
+
+    def at_motor(xy, v, a):
+        load = rotorless.inverse_dynamics(xy, v, a)
+        drives = load * UNEQUAL.joint_rates(xy, v) > 0
+        share = np.where(drives, 1.0 / efficiency, efficiency)
+        return share * load / 20 + 0.672e-4 * 20 * UNEQUAL.joint_accelerations(xy, v, a)
+
+    worst = brute(UNEQUAL, at_motor).max()
+    assert 0.95 * fit.peak <= worst <= fit.peak * (1 + 1e-12)
+
+
+def test_fits_are_ordered_as_documented():
+    """Those that fit by their peak torque, the smallest first; then the nearest to fitting."""
+    fits = ISOTROPIC.size_servo(BOX, SPEED, ACCELERATION).fits
+    good = [fit for fit in fits if fit.fits]
+    assert good and list(fits[: len(good)]) == good
+    sizes = [fit.motor.peak_torque for fit in good]
+    margins = [fit.margin for fit in fits[len(good) :]]
+    assert sizes == sorted(sizes) and margins == sorted(margins, reverse=True)
+    assert len(margins) > 1
+
+
+def test_the_ratio_has_the_largest_least_margin_not_the_least_torque():
+    """What is maximised, on a scan of ratios; the ratio of least peak torque is another one."""
+    (fit,) = ISOTROPIC.size_servo(BOX, SPEED, ACCELERATION, "SGMAH-08A").fits
+    scan = [
+        ISOTROPIC.size_servo(BOX, SPEED, ACCELERATION, "SGMAH-08A", j).fits[0]
+        for j in np.geomspace(0.25, 1.0, 25) * fit.gear_ratio_bound
+    ]
+    assert max(each.margin for each in scan) <= fit.margin * 1.001
+    least = min(scan, key=lambda each: each.peak)
+    assert least.peak < 0.99 * fit.peak and least.margin < 0.99 * fit.margin
 
 
 def test_the_notes_torque_is_too_small():
@@ -143,7 +185,7 @@ def test_catalogue_and_short_list():
 
 def test_cycle_goes_where_it_should_within_its_limits():
     path = pick_and_place([0.02, -0.6], 2.0, 30.0, samples=20001)
-    xy = path.xy
+    xy = path.points
     np.testing.assert_allclose(xy[0], [0.02 - 0.1525, -0.6])
     np.testing.assert_allclose(xy[-1], xy[0], atol=1e-15)
     np.testing.assert_allclose(xy[10000], [0.02 + 0.1525, -0.6], atol=1e-12)
@@ -164,45 +206,45 @@ def test_blending_rounds_corners_and_saves_time():
     assert round_.duration < sharp.duration
 
     def corner(path):
-        return np.min(np.linalg.norm(path.xy - [-0.1525, -0.575], axis=1))
+        return np.min(np.linalg.norm(path.points - [-0.1525, -0.575], axis=1))
 
     assert corner(sharp) < 1e-8 < 1e-3 < corner(round_)
 
 
 def test_power_integrates_to_nothing_over_a_cycle():
     """There and back to rest: the motors' work is zero without friction."""
-    cycle = follow(UNEQUAL, pick_and_place([0.0, -0.6], 2.0, 30.0))
-    work = np.trapezoid(cycle.power.sum(axis=1), cycle.path.t)
-    through = np.trapezoid(np.abs(cycle.power).sum(axis=1), cycle.path.t)
+    cycle = UNEQUAL.follow(pick_and_place([0.0, -0.6], 2.0, 30.0))
+    work = np.trapezoid(cycle.power.sum(axis=1), cycle.t)
+    through = np.trapezoid(np.abs(cycle.power).sum(axis=1), cycle.t)
     assert abs(work) < 1e-6 * through
     assert np.all(cycle.rms_torque <= cycle.peak_torque)
-    np.testing.assert_allclose(cycle.power, cycle.tau * cycle.theta_dot)
-    h = cycle.path.t[1]
-    slope = (cycle.theta[2:] - cycle.theta[:-2]) / (2 * h)
-    np.testing.assert_allclose(slope, cycle.theta_dot[1:-1], atol=2e-3)
+    np.testing.assert_allclose(cycle.power, cycle.tau * cycle.v)
+    h = cycle.t[1]
+    slope = (cycle.q[2:] - cycle.q[:-2]) / (2 * h)
+    np.testing.assert_allclose(slope, cycle.v[1:-1], atol=2e-3)
 
 
 def test_cycle_stretched_to_a_motor_reaches_its_limit():
     motor = catalogue()["SGMAH-02A"]
     path = pick_and_place([0.0, -0.6], 4.0, 100.0)
-    fitted = fit_to_motor(ISOTROPIC, path, motor, gear_ratio=30.0)
-    cycle = follow(ISOTROPIC, fitted)
-    torque = np.abs(motor_torques(ISOTROPIC, cycle, motor, 30.0, 0.9)).max()
-    speed = 30.0 * np.abs(cycle.theta_dot).max() * 30 / np.pi
+    fitted = ISOTROPIC.fit_to_motor(path, motor, gear_ratio=30.0)
+    cycle = ISOTROPIC.follow(fitted)
+    torque = np.abs(cycle.at_motor(motor, 30.0, 0.9)).max()
+    speed = 30.0 * np.abs(cycle.v).max() * 30 / np.pi
     assert max(torque / motor.peak_torque, speed / motor.max_speed) == pytest.approx(1.0, abs=1e-9)
     assert torque <= motor.peak_torque * (1 + 1e-9) and speed <= motor.max_speed * (1 + 1e-9)
     with pytest.raises(MotorError, match="cannot hold"):
-        fit_to_motor(ISOTROPIC, path, catalogue()["SGMAH-A3A"], gear_ratio=2.0)
+        ISOTROPIC.fit_to_motor(path, catalogue()["SGMAH-A3A"], gear_ratio=2.0)
 
 
 def test_a_path_that_cannot_be_followed_is_refused_with_its_place():
     with pytest.raises(UnreachableError, match=r"t = .* s, \(.*\) m, leaves the workspace"):
-        follow(ISOTROPIC, pick_and_place([0.0, -0.78], 2.0, 30.0))
+        ISOTROPIC.follow(pick_and_place([0.0, -0.78], 2.0, 30.0))
     with pytest.raises(SingularError, match="type I: .*leg"):
-        follow(ISOTROPIC, pick_and_place([0.0, -0.78648], 2.0, 30.0, travel=0.01))
+        ISOTROPIC.follow(pick_and_place([0.0, -0.78648], 2.0, 30.0, travel=0.01))
     small = kl.FiveBar.load("equal_links")
     with pytest.raises(SingularError, match="type II"):
-        follow(small, pick_and_place([0.0, 0.0745], 1.0, 10.0, lift=0.02, travel=0.02), (1, -1))
+        small.follow(pick_and_place([0.0, 0.0745], 1.0, 10.0, lift=0.02, travel=0.02), (1, -1))
 
 
 @pytest.mark.parametrize(
@@ -267,6 +309,7 @@ def test_presets_load_and_round_trip(tmp_path):
         ("l1 = [", "not TOML"),
         ("l1 = 0.3\nl2 = 0.5\ne = 0.1\nname = 3", "name must be text"),
         ("l1 = [0.3, -1]\nl2 = 0.5\ne = 0.1", "l1 of leg 2 is -1"),
+        ("l1 = [0.3, 0.3, 0.3]\nl2 = 0.5\ne = 0.1", "l1 is a list of 3; a list holds two numbers"),
     ]:
         (tmp_path / "bad.toml").write_text(text, encoding="utf-8")
         with pytest.raises(MechanismError, match=message):

@@ -10,25 +10,7 @@ from hypothesis import strategies as st
 
 import kinlab as kl
 from kinlab.errors import MechanismError, OptionError, StructureError
-from kinlab.fivebar.isotropy import isotropic_poses
-from kinlab.fivebar.loci import type_one, type_two, type_two_contour, type_two_polynomial
-from kinlab.fivebar.metrics import (
-    determinant,
-    passive_angles,
-    pressure_angles,
-    singular_values,
-    stiffness,
-    transmission_angle,
-)
-from kinlab.fivebar.singularity import classify, distances
-from kinlab.fivebar.workspace import (
-    Rectangle,
-    largest_circle,
-    largest_rectangle,
-    reachable_area,
-    room,
-    workspace_map,
-)
+from kinlab.fivebar.workspace import Rectangle
 
 LINKAGES = {
     "isotropic": kl.FiveBar.load("isotropic"),
@@ -50,27 +32,27 @@ def test_metrics_against_svd_and_plain_geometry():
         xy, mode, _ = random_state(fivebar, rng)
         jac = fivebar.jacobian(xy, mode)
         sigma = np.linalg.svd(jac, compute_uv=False)
-        np.testing.assert_allclose(singular_values(fivebar, xy, mode), sigma, rtol=1e-12)
+        np.testing.assert_allclose(fivebar.singular_values(xy, mode), sigma, rtol=1e-12)
         np.testing.assert_allclose(
             fivebar.condition_number(xy, mode), sigma[0] / sigma[1], rtol=1e-11
         )
-        np.testing.assert_allclose(determinant(fivebar, xy, mode), np.linalg.det(jac), rtol=1e-11)
+        np.testing.assert_allclose(fivebar.determinant(xy, mode), np.linalg.det(jac), rtol=1e-11)
         legs, rods = legs_and_rods(fivebar, xy, mode)
-        psi = passive_angles(fivebar, xy, mode)
+        psi = fivebar.passive_angles(xy, mode)
         np.testing.assert_allclose(np.sin(psi), legs, atol=1e-13)
-        np.testing.assert_allclose(np.cos(pressure_angles(fivebar, xy, mode)), abs(legs), atol=1e-9)
-        gamma = transmission_angle(fivebar, xy, mode)
+        np.testing.assert_allclose(np.cos(fivebar.pressure_angles(xy, mode)), abs(legs), atol=1e-9)
+        gamma = fivebar.transmission_angle(xy, mode)
         assert 0 <= gamma <= np.pi and abs(np.sin(gamma) - abs(rods)) < 1e-12
         k = rng.uniform(1, 10, 2)
         np.testing.assert_allclose(
-            stiffness(fivebar, xy, k, mode), jac.T @ np.diag(k) @ jac, rtol=1e-12, atol=1e-12
+            fivebar.stiffness(xy, k, mode), jac.T @ np.diag(k) @ jac, rtol=1e-12, atol=1e-12
         )
 
 
 def test_condition_on_the_axis_follows_from_the_transmission_angle():
     fivebar = LINKAGES["isotropic"]
     xy = np.array([[0.0, -0.45], [0.0, -0.6], [0.0, -0.7]])
-    half = 0.5 * transmission_angle(fivebar, xy)
+    half = 0.5 * fivebar.transmission_angle(xy)
     expected = np.maximum(np.tan(half), 1 / np.tan(half))
     np.testing.assert_allclose(fivebar.condition_number(xy), expected, rtol=1e-12)
 
@@ -79,8 +61,8 @@ def test_condition_on_the_axis_follows_from_the_transmission_angle():
 def test_type_two_curve_by_formula(name):
     """Every point closes with its rods in line, and the sextic of its kind vanishes there."""
     fivebar = LINKAGES[name]
-    for locus in type_two(fivebar, samples=200):
-        assert np.abs(type_two_polynomial(fivebar, locus.points, locus.kind)).max() < 1e-13
+    for locus in fivebar.type_two(samples=200):
+        assert np.abs(fivebar.type_two_polynomial(locus.points, locus.kind)).max() < 1e-13
         for mode in MODES:
             ours = np.all(locus.modes == np.array(mode), axis=1)
             points = locus.points[ours & fivebar.reachable(locus.points)]
@@ -95,11 +77,11 @@ def test_type_two_curve_is_complete():
     for name in ("isotropic", "unequal", "equal_links", "wide"):
         fivebar = LINKAGES[name]
         for mode in MODES:
-            grid = workspace_map(fivebar, mode, 121)
+            grid = fivebar.workspace_map(mode, 121)
             step = grid.x[1] - grid.x[0]
             sign = np.sign(np.ma.filled(grid.rods, 0.0))
             changes = np.argwhere(sign[:, 1:] * sign[:, :-1] < 0)
-            curve = np.concatenate([l.points for l in type_two(fivebar)])
+            curve = np.concatenate([l.points for l in fivebar.type_two()])
             for row, column in changes[::7]:
                 at = np.array([grid.x[column] + 0.5 * step, grid.y[row]])
                 gap = np.linalg.norm(curve - at, axis=1).min()
@@ -108,12 +90,12 @@ def test_type_two_curve_is_complete():
 
 def test_contour_lies_on_the_curve():
     fivebar = LINKAGES["unequal"]
-    curve = np.concatenate([locus.points for locus in type_two(fivebar)])
+    curve = np.concatenate([locus.points for locus in fivebar.type_two()])
     found = 0
     for mode in MODES:
-        for line in type_two_contour(fivebar, mode, 300):
+        for line in fivebar.type_two_contour(mode, 300):
             line = line[fivebar.reachable(line)]
-            away = distances(fivebar, line, mode)
+            away = fivebar.singularity_distances(line, mode)
             clear = np.minimum(away.outer, away.inner).min(axis=1) > 0.02
             for point in line[clear][::10]:
                 found += 1
@@ -123,7 +105,7 @@ def test_contour_lies_on_the_curve():
 
 def test_type_one_circles_are_the_edges():
     for fivebar in LINKAGES.values():
-        for leg, (inner, outer) in enumerate(type_one(fivebar)):
+        for leg, (inner, outer) in enumerate(fivebar.type_one()):
             for circle in (inner, outer):
                 phi = np.linspace(0, 2 * np.pi, 400)
                 way = np.stack([np.cos(phi), np.sin(phi)], axis=1)
@@ -140,15 +122,15 @@ def test_reachable_area_is_that_of_the_points(seed):
     points = rng.uniform(-reach, reach, (20000, 2))
     share = fivebar.reachable(points).mean()
     noise = np.sqrt(share * (1 - share) / 20000) + 1e-4
-    assert abs(share * (2 * reach) ** 2 - reachable_area(fivebar)) < 6 * noise * (2 * reach) ** 2
+    assert abs(share * (2 * reach) ** 2 - fivebar.reachable_area()) < 6 * noise * (2 * reach) ** 2
 
 
 @pytest.mark.parametrize(("mode", "assembly"), [((-1, 1), 1), ((1, 1), 1), ((-1, -1), -1)])
 @pytest.mark.parametrize("name", ["isotropic", "unequal", "equal_links", "wide"])
 def test_largest_circle_and_rectangle_are_free_and_large(name, mode, assembly):
     fivebar = LINKAGES[name]
-    circle = largest_circle(fivebar, mode, assembly, resolution=61)
-    box = largest_rectangle(fivebar, mode, assembly, resolution=61)
+    circle = fivebar.largest_circle(mode, assembly, resolution=61)
+    box = fivebar.largest_rectangle(mode, assembly, resolution=61)
     rng = np.random.default_rng(1)
     phi, r = rng.uniform(0, 2 * np.pi, 3000), circle.radius * np.sqrt(rng.uniform(0, 1, 3000))
     disc = np.array(circle.centre) + 0.999 * r[:, None] * np.stack(
@@ -162,24 +144,24 @@ def test_largest_circle_and_rectangle_are_free_and_large(name, mode, assembly):
             legs, rods = bars(fivebar, theta[k], points[k])
             assert np.sign(rods) == assembly and tuple(np.sign(legs)) == mode
     # no random circle of the same room is larger
-    free = room(fivebar, mode, assembly)
+    free = fivebar.free_region(mode, assembly)
     reach = np.max(fivebar.l1 + fivebar.l2)
     anywhere = free.clearance(rng.uniform(-reach, reach, (4000, 2)))
     assert anywhere.max() <= circle.radius + 1e-6
     assert box.area > 0.5 * 2 * circle.radius**2  # the square in the circle is free as well
     grown = Rectangle(box.x_min - 1e-3, box.x_max + 1e-3, box.y_min - 1e-3, box.y_max + 1e-3)
-    assert free.holds(box) and not free.holds(grown)
+    assert free.contains_rectangle(box) and not free.contains_rectangle(grown)
 
 
 def test_rectangle_with_a_bound_on_the_condition_number():
     fivebar = LINKAGES["isotropic"]
-    box = largest_rectangle(fivebar, max_condition=2.0)
+    box = fivebar.largest_rectangle(max_condition=2.0)
     x, y = np.meshgrid(np.linspace(*box[:2], 30), np.linspace(*box[2:], 30))
     kappa = fivebar.condition_number(np.stack([x.ravel(), y.ravel()], axis=1))
     assert kappa.max() < 2.02
-    assert box.area < largest_rectangle(fivebar).area
+    assert box.area < fivebar.largest_rectangle().area
     with pytest.raises(StructureError, match="no free place"):
-        largest_rectangle(fivebar, max_condition=0.5)
+        fivebar.largest_rectangle(max_condition=0.5)
 
 
 def test_signed_distances():
@@ -188,7 +170,10 @@ def test_signed_distances():
     up = np.array([0.0, 1e-3])
     above, below = stretched + up, stretched - up
     mode = (1, -1)
-    far, near = distances(fivebar, above, mode), distances(fivebar, below, mode)
+    far, near = (
+        fivebar.singularity_distances(above, mode),
+        fivebar.singularity_distances(below, mode),
+    )
     assert np.sign(far.rods) == -np.sign(near.rods) != 0
     assert np.sign(far.type_two) == np.sign(far.rods)
     assert abs(abs(far.type_two) - 1e-3) < 1e-4 and abs(abs(near.type_two) - 1e-3) < 1e-4
@@ -201,19 +186,19 @@ def test_classify():
     fivebar = LINKAGES["equal_links"]
     stretched = [0.0, np.sqrt(0.09**2 - 0.031**2)]
     edge = [0.059 + 0.18 * np.cos(2.0), 0.18 * np.sin(2.0)]
-    kinds = classify(fivebar, [stretched, edge, [0.0, 0.1], [0.0, 1.0]], (1, -1))
+    kinds = fivebar.classify([stretched, edge, [0.0, 0.1], [0.0, 1.0]], (1, -1))
     assert kinds == ["II", "I", "regular", "out of reach"]
     coaxial = kl.FiveBar(0.1, 0.2, 0.0)
-    assert classify(coaxial, [0.0, -0.3]) == ["III"]
+    assert coaxial.classify([0.0, -0.3]) == ["III"]
     with pytest.raises(OptionError, match="sine"):
-        classify(fivebar, [0, 0.1], sine=2.0)
+        fivebar.classify([0, 0.1], sine=2.0)
 
 
 @pytest.mark.parametrize("size", [(0.3, 0.5), (0.1, 0.35), (0.2, 0.21)])
 def test_fully_isotropic_pose(size):
     l1, l2 = size
     fivebar = kl.FiveBar(l1, l2, (l2 - l1) / np.sqrt(2))
-    found = [p for p in isotropic_poses(fivebar) if max(p.pressure) < 1e-6]
+    found = [p for p in fivebar.isotropic_poses() if max(p.pressure) < 1e-6]
     assert len(found) == 1
     # not from kappa: it is flat in x here, and its rounding leaves x open by some 1e-6
     assert abs(found[0].xy[0]) < 1e-12
@@ -227,10 +212,10 @@ def test_isotropic_poses_are_all_found_on_a_fine_map():
     for name in ("unequal", "equal_links", "wide"):
         fivebar = LINKAGES[name]
         for mode in MODES:
-            found = np.array([p.xy for p in isotropic_poses(fivebar, mode)]).reshape(-1, 2)
+            found = np.array([p.xy for p in fivebar.isotropic_poses(mode)]).reshape(-1, 2)
             for place in found:
                 assert abs(fivebar.condition_number(place, mode) - 1.0) < 1e-9
-            grid = workspace_map(fivebar, mode, 201)
+            grid = fivebar.workspace_map(mode, 201)
             rows = np.argwhere(np.ma.filled(grid.condition, np.inf) < 1.02)
             for row, column in rows:
                 at = np.array([grid.x[column], grid.y[row]])
@@ -239,24 +224,24 @@ def test_isotropic_poses_are_all_found_on_a_fine_map():
 
 def test_isotropic_poses_of_a_coaxial_linkage_are_circles():
     fivebar = kl.FiveBar(0.15, 0.2, 0.0)
-    poses = isotropic_poses(fivebar)
+    poses = fivebar.isotropic_poses()
     assert len(poses) == 2
     for pose in poses:
         assert pose.xy[0] == 0.0 and pose.xy[1] < 0
         turned = np.hypot(*pose.xy) * np.array([np.cos(0.7), np.sin(0.7)])
         assert abs(fivebar.condition_number(turned) - 1) < 1e-9
-    assert isotropic_poses(kl.FiveBar.load("minitaur_leg")) == []
+    assert kl.FiveBar.load("minitaur_leg").isotropic_poses() == []
 
 
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
-        (lambda f: type_two_polynomial(f, [0, 0], "flat"), OptionError, "kind 'flat'"),
-        (lambda f: type_two(f, 2), OptionError, "at least 8"),
-        (lambda f: workspace_map(f, resolution=3), OptionError, "at least 8"),
-        (lambda f: room(f, assembly=0), OptionError, "assembly 0"),
-        (lambda f: stiffness(f, [0, -0.5], -1.0), OptionError, "positive"),
-        (lambda f: largest_circle(kl.FiveBar(0.1, 0.2, 0.0), (1, 1)), StructureError, "no free"),
+        (lambda f: f.type_two_polynomial([0, 0], "flat"), OptionError, "kind 'flat'"),
+        (lambda f: f.type_two(2), OptionError, "at least 8"),
+        (lambda f: f.workspace_map(resolution=3), OptionError, "at least 8"),
+        (lambda f: f.free_region(assembly=0), OptionError, "assembly 0"),
+        (lambda f: f.stiffness([0, -0.5], -1.0), OptionError, "positive"),
+        (lambda f: kl.FiveBar(0.1, 0.2, 0.0).largest_circle((1, 1)), StructureError, "no free"),
         (lambda f: kl.FiveBar(0.1, 0.1, 0.2), MechanismError, "cannot close"),
     ],
 )

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from kinlab.fivebar.trajectory import motor_torques
 
 import kinlab as kl
-from kinlab.fivebar.trajectory import motor_torques
 
 BOX = (-0.2, 0.2, -0.65, -0.5)
 

@@ -102,11 +102,24 @@ def test_the_scan_sees_what_is_not_declared():
     ]  # fmt: skip
 
 
+BINDS_FUNCTIONS = {"kinlab.fivebar.linkage"}
+"""Modules of a class that binds functions as methods; the functions know it by its type only."""
+
+
+def types_only(tree: ast.AST) -> set[int]:
+    """Imports under ``if TYPE_CHECKING``, which never run, by identity."""
+    blocks = [n for n in ast.walk(tree) if isinstance(n, ast.If)]
+    guarded = [b for b in blocks if ast.unparse(b.test) == "TYPE_CHECKING"]
+    return {id(node) for block in guarded for line in block.body for node in ast.walk(line)}
+
+
 def reached(tree: ast.AST) -> set[str]:
     """kinlab modules that a module imports, or names in a string for a later import."""
-    found = set()
+    found, guarded = set(), types_only(tree)
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module:
+            if id(node) in guarded and node.module in BINDS_FUNCTIONS:
+                continue
             children = {f"{node.module}.{alias.name}" for alias in node.names}
             found |= children if children <= TREES.keys() else {node.module, *children}
         elif isinstance(node, ast.Import):
@@ -140,3 +153,11 @@ def test_no_module_reaches_itself():
     edges = {module: reached(tree) - {module} for module, tree in TREES.items() if "." in module}
     assert circle(edges) == []
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c", "b"]
+
+
+def test_an_import_for_types_only_is_left_out_of_one_class_alone():
+    guard = "if TYPE_CHECKING:\n    from kinlab.fivebar.{0} import X"
+    assert reached(ast.parse(guard.format("linkage"))) == set()
+    assert reached(ast.parse(guard.format("metrics"))) == {"kinlab.fivebar.metrics"}
+    runs = ast.parse("from kinlab.fivebar.linkage import X")
+    assert reached(runs) == {"kinlab.fivebar.linkage"}

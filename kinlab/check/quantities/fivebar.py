@@ -36,21 +36,21 @@ def numbers(fivebar: FiveBar) -> Loop:
     Raises:
         MechanismError: gravity is not along -y, as the note has it.
     """
-    gravity = np.asarray(fivebar.gravity)
+    gravity = fivebar.gravity
     if gravity[0] != 0.0:
         raise MechanismError(f"{fivebar.name}: the note's formulas need gravity along -y")
     return Loop(
         name=fivebar.name,
-        l1=np.asarray(fivebar.l1),
-        l2=np.asarray(fivebar.l2),
+        l1=fivebar.l1,
+        l2=fivebar.l2,
         e=fivebar.e,
-        crank=np.asarray(fivebar.crank_mass),
-        crank_com=np.asarray(fivebar.crank_com),
-        crank_inertia=np.asarray(fivebar.crank_inertia),
-        rotor=np.square(fivebar.gear_ratio) * np.asarray(fivebar.rotor_inertia),
-        rod=np.asarray(fivebar.rod_mass),
-        rod_com=np.asarray(fivebar.rod_com),
-        rod_inertia=np.asarray(fivebar.rod_inertia),
+        crank=fivebar.crank_mass,
+        crank_com=fivebar.crank_com,
+        crank_inertia=fivebar.crank_inertia,
+        rotor=fivebar.reflected_inertia,
+        rod=fivebar.rod_mass,
+        rod_com=fivebar.rod_com,
+        rod_inertia=fivebar.rod_inertia,
         payload=fivebar.payload,
         g=-float(gravity[1]),
     )
@@ -165,7 +165,7 @@ def _torque(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> A
     return chain.inverse_dynamics(q, qd, chain.joint_accelerations(q, qd, a))
 
 
-def _turn(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
+def _crank_accelerations(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     q = chain.at(xy, mode)
     return chain.joint_accelerations(q, chain.joint_rates(q, v), a)[[*CRANKS]]
 
@@ -195,53 +195,77 @@ def _quantity(
 QUANTITIES = (
     _quantity("fivebar_rod_length", "theta xy", _rod_length, "elbow to tool, m, (2,)"),
     _quantity(
-        "fivebar_projection", "theta xy",
-        _projection, "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
+        "fivebar_projection",
+        "theta xy",
+        _projection,
+        "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
     ),
     _quantity(
-        "fivebar_cranks", "xy mode",
-        lambda c, xy, mode: _bars(c, c.at(xy, mode), CRANKS), "u_1, u_2, (2, 2)",
+        "fivebar_cranks",
+        "xy mode",
+        lambda c, xy, mode: _bars(c, c.at(xy, mode), CRANKS),
+        "u_1, u_2, (2, 2)",
     ),
     _quantity(
-        "fivebar_rods", "xy mode",
-        lambda c, xy, mode: _bars(c, c.at(xy, mode), PASSIVE), "w_1, w_2, (2, 2)",
+        "fivebar_rods",
+        "xy mode",
+        lambda c, xy, mode: _bars(c, c.at(xy, mode), PASSIVE),
+        "w_1, w_2, (2, 2)",
     ),
     _quantity(
-        "fivebar_jacobian", "xy mode",
-        lambda c, xy, mode: c.jacobian(c.at(xy, mode)), "J of theta_dot = J v, rad/m, (2, 2)",
+        "fivebar_jacobian",
+        "xy mode",
+        lambda c, xy, mode: c.jacobian(c.at(xy, mode)),
+        "J of theta_dot = J v, rad/m, (2, 2)",
     ),
-    _quantity("fivebar_turn", "xy v a mode", _turn, "theta_ddot, rad/s², (2,)"),
+    _quantity("fivebar_turn", "xy v a mode", _crank_accelerations, "theta_ddot, rad/s², (2,)"),
     _quantity("fivebar_torque", "xy v a mode", _torque, "crank torques, N m, (2,)"),
     _quantity(
-        "fivebar_torque_massless", "xy v a mode",
-        _torque, "crank torques with massless rods, N m, (2,)", rods=False,
+        "fivebar_torque_massless",
+        "xy v a mode",
+        _torque,
+        "crank torques with massless rods, N m, (2,)",
+        rods=False,
     ),
     _quantity(
-        "fivebar_torque_per_acceleration", "xy mode",
-        _per_acceleration, "G with massless rods, kg m, (2, 2)", rods=False,
+        "fivebar_torque_per_acceleration",
+        "xy mode",
+        _per_acceleration,
+        "G with massless rods, kg m, (2, 2)",
+        rods=False,
     ),
     _quantity(
-        "fivebar_torque_gains", "xy mode",
+        "fivebar_torque_gains",
+        "xy mode",
         lambda c, xy, mode: np.linalg.svd(_per_acceleration(c, xy, mode), compute_uv=False),
-        "singular values of G with massless rods, largest first, kg m, (2,)", rods=False,
+        "singular values of G with massless rods, largest first, kg m, (2,)",
+        rods=False,
     ),
     _quantity(
-        "fivebar_power_massless", "xy v a mode",
-        _power, "power of each crank with massless rods, W, (2,)", rods=False,
+        "fivebar_power_massless",
+        "xy v a mode",
+        _power,
+        "power of each crank with massless rods, W, (2,)",
+        rods=False,
     ),
     _quantity(
-        "fivebar_rate_per_speed", "xy mode",
+        "fivebar_rate_per_speed",
+        "xy mode",
         lambda c, xy, mode: np.linalg.norm(c.jacobian(c.at(xy, mode)), axis=1),
         "worst theta_dot per |v|, rad/m, (2,)",
     ),
     _quantity(
-        "fivebar_load_inertia_massless", "xy mode",
-        _load, "diagonal of the crank-side mass matrix with massless rods, kg m², (2,)",
+        "fivebar_load_inertia_massless",
+        "xy mode",
+        _load,
+        "diagonal of the crank-side mass matrix with massless rods, kg m², (2,)",
         rods=False,
     ),
     _quantity(
-        "fivebar_torque_per_acceleration_worst", "xy mode",
+        "fivebar_torque_per_acceleration_worst",
+        "xy mode",
         lambda c, xy, mode: np.linalg.norm(_per_acceleration(c, xy, mode), axis=1),
-        "worst torque per |a| with massless rods, kg m, (2,)", rods=False,
+        "worst torque per |a| with massless rods, kg m, (2,)",
+        rods=False,
     ),
-)  # fmt: skip
+)
