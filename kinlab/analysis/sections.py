@@ -32,8 +32,9 @@ from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
 _STARTS = 240
 """Starts for the curves of one set of locked joints; a curve needs one of them."""
-_MOST_LOCKED = 4
-"""Joints behind the first up to which limits are taken into account: 3^4 sets of them."""
+_MOST_LOCKED = 3
+"""Joints that move the tool in the section up to which limits are taken into account: 3^3 sets of
+them, some seconds; each joint more takes three times as long."""
 _SIDE = 2e-3
 """Of the section's size: how far beside a curve its sides are tried."""
 _SAMPLES = 60_000
@@ -107,16 +108,13 @@ def workspace_section(robot: Robot, *, step: float = 0.05, seed: int = 0) -> Wor
         )
     lower, upper = search_box(robot)
     start = 0.5 * (lower + upper)
-    axes = Axes.at(robot, start)
-    axis, origin = axes.direction[0], axes.point[0]
-    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
-    origin = origin - axis * float(origin @ axis)
+    origin, axis = _first_axis(robot)
     space = TaskSpace(robot, (0, 1, 2), "position")
-    moving = _moving(robot, origin, axis, start)
+    moving = _moving(robot, origin, axis)
     if len(moving) < 2:
         raise OptionError(
-            f"robot {robot.name!r}: {len(moving)} joints behind the first move the tool within a "
-            "section; two are needed"
+            f"robot {robot.name!r}: the joints behind the first move the tool along one line of "
+            "the section only; planar arms: planar_boundary()"
         )
     rng = np.random.default_rng(seed)
     drawn: list[SectionCurve] = []
@@ -162,11 +160,29 @@ def _section_rows(
     return rows, outward, rho
 
 
-def _moving(robot: Robot, origin: Array, axis: Array, start: Array) -> tuple[int, ...]:
+def takes_limits(robot: Robot) -> bool:
+    """Whether the section of this arm holds the curves of joints at a limit too: all edges."""
+    if robot.n < 3 or not revolute(robot)[0]:
+        return False
+    return 2 <= len(_moving(robot, *_first_axis(robot))) <= _MOST_LOCKED
+
+
+def _first_axis(robot: Robot) -> tuple[Array, Array]:
+    lower, upper = search_box(robot)
+    axes = Axes.at(robot, 0.5 * (lower + upper))
+    axis, origin = axes.direction[0], axes.point[0]
+    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
+    return origin - axis * float(origin @ axis), axis
+
+
+def _moving(robot: Robot, origin: Array, axis: Array) -> tuple[int, ...]:
     lower, upper = search_box(robot)
     states = np.random.default_rng(3).uniform(lower, upper, (8, robot.n))
     rows, _, _ = _section_rows(jacobian(robot, states), fk(robot, states)[:, :3, 3], origin, axis)
     size = np.abs(rows).max(axis=(0, 1))
+    spread = np.linalg.svd(rows, compute_uv=False)
+    if float((spread[:, 1] / np.maximum(spread[:, 0], 1e-300)).max()) < 1e-9:
+        return ()  # a tool that stays in a plane, or on a cone
     return tuple(i for i in range(1, robot.n) if size[i] > 1e-9 * size.max())
 
 

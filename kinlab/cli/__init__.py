@@ -68,8 +68,8 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a terminal without the letters still gets them
             stream.reconfigure(errors="backslashreplace")
-    if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, _stop)
+    in_front = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGTERM, _stop) if in_front else None
     try:
         app()
     except KinlabError as problem:
@@ -84,6 +84,9 @@ def main() -> None:
     except BrokenPipeError:  # the reader of our output has gone, as in `kinlab list | head`
         sys.stderr.close()
         sys.exit(0)
+    finally:
+        if before is not None:
+            signal.signal(signal.SIGTERM, before)
 
 
 def _stop(number: int, frame: Any) -> None:

@@ -74,16 +74,15 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
 
 
 def _section(robot: Robot) -> Any:
-    """The section through the first axis where that is the base's z, else nothing."""
+    """The section through the first axis where that is the base's z and every edge is known (a
+    tool off the wrist's last axes makes that a matter of minutes); else nothing."""
     import numpy as np
 
-    from kinlab.analysis.sections import workspace_section
-    from kinlab.errors import OptionError
+    from kinlab.analysis.sections import takes_limits, workspace_section
 
-    try:
-        section = workspace_section(robot)
-    except OptionError:  # a first joint that slides, or a tool on its axis: there is no section
+    if not takes_limits(robot):
         return None
+    section = workspace_section(robot)
     upright = abs(float(section.axis[2])) > 1.0 - 1e-9
     centred = float(np.linalg.norm(section.origin[:2])) < 1e-9
     if not (upright and centred):

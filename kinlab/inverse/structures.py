@@ -27,6 +27,11 @@ _METHODS = {
     PLANE: "planar", GENERAL: "continuation",
 }  # fmt: skip
 
+_ENDLESS = (
+    "robot {0!r}: its {1} moving joints leave J singular everywhere, so that no pose has a finite "
+    "number of solutions"
+)
+
 _REGULAR = 1e-7
 """sigma_min / sigma_max of J at states in general position below which a task cannot be held."""
 
@@ -141,6 +146,8 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
             "free; hold some with given={joint: value}"
         )
     family, task, solved = _family(arm)
+    if not _moves(solved, task if family in (PLANE, POINT) else POSE):
+        raise StructureError(_ENDLESS.format(robot.name, n))
     turned, centre, centre_tool, marker = False, np.zeros(3), np.zeros(3), np.zeros(3)
     if family == GENERAL:
         found = _six(solved)
@@ -153,10 +160,7 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
     if family == GENERAL:
         generic = generic_solutions(*solved)
         if generic is None:
-            raise StructureError(
-                f"robot {robot.name!r}: its {n} moving joints leave J singular everywhere, so that "
-                "no pose has a finite number of solutions"
-            )
+            raise StructureError(_ENDLESS.format(robot.name, n))
         poses, starts, length = generic.poses, generic.q, generic.length
         count = starts.shape[1]
         most = BOUNDS.get(int(np.sum(solved.prismatic)), 2)
@@ -195,8 +199,19 @@ def _family(arm: Chain) -> tuple[int, int, Chain]:
     return GENERAL, POSE, _with_strangers(arm)
 
 
+def _moves(arm: Chain, task: int) -> bool:
+    """Whether no joint can do what others do: J has independent columns in general position."""
+    n = len(arm.prismatic)
+    return _rank_share(arm, (0, 1, 2) if task == POSITION else (0, 1, 2, 3, 4, 5), n) > _REGULAR
+
+
 def _holds(arm: Chain, rows: tuple[int, ...]) -> bool:
     """Whether J has full rank in these rows at a state in general position."""
+    return _rank_share(arm, rows, len(rows)) > _REGULAR
+
+
+def _rank_share(arm: Chain, rows: tuple[int, ...], rank: int) -> float:
+    """Largest ratio of the rank-th singular value of these rows of J to the first, of some q."""
     n = len(arm.prismatic)
     best = 0.0
     for q in np.random.default_rng(5).uniform(-2.0, 2.0, (6, n)):
@@ -204,10 +219,9 @@ def _holds(arm: Chain, rows: tuple[int, ...]) -> bool:
         frames(arm.fixed, arm.prismatic, q, axes, pose)
         columns(arm.prismatic, axes, pose, jac)
         values = np.linalg.svd(jac[list(rows)], compute_uv=False)
-        best = max(
-            best, float(values[len(rows) - 1] / values[0]) if len(values) >= len(rows) else 0
-        )
-    return best > _REGULAR
+        if len(values) >= rank and values[0] > 0.0:
+            best = max(best, float(values[rank - 1] / values[0]))
+    return best
 
 
 def _with_wrist(arm: Chain) -> Chain:

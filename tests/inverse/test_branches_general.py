@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from arms import built_by_ssik, crx10ia, jaco2, manseur_doty, random_arm, xarm6
+from arms import HALF, built_by_ssik, crx10ia, jaco2, manseur_doty, random_arm, table, xarm6
 
 import kinlab as kl
 from kinlab.errors import NameUnknownError, OptionError, StructureError
@@ -201,3 +201,25 @@ def test_no_finite_answer():
     eight = random_arm(0, 8)
     with pytest.raises(StructureError, match="hold some with given"):
         kl.ik_branches(eight, np.eye(4))
+
+
+@pytest.mark.parametrize("rows", [
+    [(0.3, 0.0, 0, 0), (0.0, 0.0, 0, 0), (0.2, 0.0, 0, 0)],  # axes 2 and 3 are one
+    [(0, HALF, 0.2, 0), (0.3, 0, 0, 0), (0.3, 0, 0, 0), (0, 0, 0.1, 0), (0, 0, 0.1, 0), (0, 0, 0, 0)],
+    [(0.3, HALF, 0, 0), (0.3, HALF, 0, 0), (0.1, 0, 0, 0), (0, HALF, 0, 0), (0, -HALF, 0, 0),
+     (0, -HALF, 0, 0)],
+])  # fmt: skip
+def test_joints_that_do_the_same_are_refused_or_regular(rows):
+    """Never no solution and complete at a pose that the arm takes."""
+    robot = table("idle", "standard", rows)
+    q = np.linspace(0.3, 0.9, len(rows))
+    largest = max(
+        np.linalg.svd(kl.jacobian(robot, s))[1][len(rows) - 1]
+        for s in np.random.default_rng(0).uniform(-2, 2, (5, len(rows)))
+    )
+    if largest < 1e-9:
+        with pytest.raises(StructureError, match="J singular everywhere"):
+            kl.ik_branches(robot, kl.fk(robot, q))
+    else:
+        found = kl.ik_branches(robot, kl.fk(robot, q))
+        assert gaps(q, found.q).min() < 1e-6
