@@ -107,13 +107,8 @@ def rigid_transform(value: ArrayLike, what: str, error: type[KinlabError] = Stat
     return array
 
 
-TIE = 1e-9
-"""Numbers that differ by less than this share of the largest of the list are a tie: rounding,
-which differs from processor to processor, must not decide which of them comes first."""
-
-
 def first_largest(values: ArrayLike) -> int:
-    """Index of the largest number; of several that are equal to :data:`TIE`, the first.
+    """Index of the largest number; of several within ``TOLERANCES.tie``, the first.
 
     Args:
         values: (N,), not empty; infinities may be among them.
@@ -128,7 +123,7 @@ def first_smallest(values: ArrayLike) -> int:
 
 
 def largest_first(values: ArrayLike) -> list[int]:
-    """Indices in falling order; neighbours that are equal to :data:`TIE` keep their own order.
+    """Indices in falling order; neighbours within ``TOLERANCES.tie`` keep their own order.
 
     Args:
         values: (N,), finite.
@@ -145,7 +140,17 @@ def smallest_first(values: ArrayLike) -> list[int]:
 
 
 def _slack(array: Array) -> float:
-    return TIE * float(np.max(np.abs(array), where=np.isfinite(array), initial=0.0))
+    return TOLERANCES.tie * float(np.max(np.abs(array), where=np.isfinite(array), initial=0.0))
+
+
+def set_fields(record: object, **values: Any) -> None:
+    """Sets fields of a frozen dataclass while it is being made: for ``__post_init__`` only.
+
+    What was given is replaced by what was read from it (a list by a frozen array, an int by a
+    float), and fields that follow from the others are filled in.
+    """
+    for name, value in values.items():
+        object.__setattr__(record, name, value)
 
 
 def frozen(array: Array) -> Array:

@@ -60,6 +60,22 @@ class Tolerances:
     """Entries this close to zero, or angles this close to a multiple of 90°, are rounding residue
     of a product of rotations (a few 1e-16) and are printed as the number meant."""
 
+    tie: float = 1e-9
+    """Numbers that differ by less than this share of the largest of the list are a tie: rounding,
+    which differs from processor to processor, must not decide which of them comes first."""
+
+    same_length: float = 1e-12
+    """Relative difference at which a centre of mass counts as a simple fraction of its link's
+    length (or as zero) in a derived formula: a decimal typed in full differs by 1e-16, a centre
+    that is something else in the third digit."""
+
+    right_angle: float = 1e-15
+    """How far a cosine or sine may miss 0 or ±1 and count as a right angle's in a derived formula:
+    the rounding of pi/2 leaves 6e-17, and more would make it another arm's formula."""
+
+    in_plane: float = 1e-9
+    """Share of the largest linear entry of J below which the tool does not leave its plane."""
+
     round_trip: float = 1e-10
     """URDF to DH and back: frames, M and g may move by this much (relative for M and g)."""
 

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.arrays import Array, frozen
+from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.fast.stacks import mass_matrix
 from kinlab.model.robot import Robot, require_inertia
 from kinlab.structure.task_space import read_length, read_task
 

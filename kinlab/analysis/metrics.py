@@ -29,9 +29,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
+from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.fast.stacks import mass_matrix
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import read_length, read_task
 

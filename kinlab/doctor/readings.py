@@ -13,6 +13,7 @@ from kinlab.doctor.changes import Arguments, Case, Engine, Reading
 from kinlab.doctor.robot_readings import gravity_readings, inertia_readings, table_readings
 from kinlab.engine.dynamics import coriolis_matrix
 from kinlab.engine.kinematics import fk, jacobian, statics
+from kinlab.engine.lagrange import christoffel
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot, scratch
 
@@ -308,14 +309,6 @@ def _pseudo(engine: Engine) -> Engine:
         return out
 
     return changed
-
-
-def christoffel(robot: Robot, q: Array) -> Array:
-    """c[:, i, j, k] of Christoffel's C_ij = sum_k c_ijk qd_k, (N, n, n, n): C is linear in qd."""
-    units = np.eye(robot.n)
-    return np.stack(
-        [coriolis_matrix(robot, q, np.broadcast_to(e, q.shape)) for e in units], axis=-1
-    )
 
 
 def mass_slope(robot: Robot, q: Array) -> Array:

@@ -163,7 +163,13 @@ def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Arr
     if not len(first):
         sample = single(robot, *(np.zeros(stack.shape[1:]) for stack in stacks), *rest)
         return np.empty((0, *np.shape(sample)))
-    return np.stack([np.asarray(single(robot, *row, *rest)) for row in zip(*stacks, strict=True)])
+    rows = zip(*stacks, strict=True)
+    answer = np.asarray(single(robot, *next(rows), *rest))
+    out = np.empty((len(first), *answer.shape))
+    out[0] = answer
+    for i, row in enumerate(rows, 1):
+        out[i] = single(robot, *row, *rest)
+    return out
 
 
 def _fk(robot: Robot, q: Array) -> Array:

@@ -3,16 +3,14 @@
 ======================  ==========================================================================
 module                  what it holds
 ======================  ==========================================================================
-``arrays``              A robot's chain and inertias as plain arrays for the compiled kernels;
-                        without numba itself
-``batches``             Many states at once, each quantity by the fastest road there is
-``compiled``            Compiled kernels: one decorator, a word when compilation takes time, and
-                        threads
-``dynamics_kernels``    Kernels of a serial chain's dynamics on plain arrays: M, Christoffel's C
-                        and V of many states
+``arrays``              A robot's chain as plain arrays for the compiled kernels; without numba
+                        itself
+``compiled``            Compiled kernels: one decorator, and a word when compilation takes time
 ``kinematics_kernels``  Kernels of a serial chain on plain arrays: pose, Jacobian, singular
                         values; one or many
-``stacks``              The engine's functions with a faster road for long stacks of states
-``threads``             How many threads a batch may use
+``stacks``              The engine's functions with a faster road for long stacks of states: the
+                        one door to this room
+``threads``             How many threads a batch may use, and handing its rows to them; without
+                        numba
 ======================  ==========================================================================
 """

@@ -1,32 +1,22 @@
-"""Compiled kernels: one decorator, a word when compilation takes time, and threads.
+"""Compiled kernels: one decorator, and a word when compilation takes time.
 
 Importing this module imports numba; import it inside the function that needs it.
 
 Kernels are cached on disk: beside the source where that folder is writable, else in the user's
 cache folder (numba's own order; the environment variable ``NUMBA_CACHE_DIR`` overrides both).
 Where no folder at all is writable they are compiled anew in each process.
-
-Threads are Python's: kernels release the GIL and each works on a range of rows. numba's own
-parallel loops would abort the process when two Python threads enter them at once, and compile
-for several seconds more.
 """
 
 from __future__ import annotations
 
 import logging
-import os
 import pickle
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from functools import cache, partial
 from typing import Any
 
 import numba
 from numba.core import event
-
-from kinlab.errors import OptionError
-from kinlab.fast.threads import available
 
 LOGGER = logging.getLogger("kinlab.fast.compiled")
 """Says at level INFO when kernels are being compiled (once per machine, then cached)."""
@@ -96,63 +86,3 @@ class _Announcer(event.Listener):  # type: ignore[misc]
 
 event_announcer = _Announcer()
 event.register("numba:compile", event_announcer)
-
-
-def wanted_threads(threads: int | None) -> int:
-    """The number of threads to use: what was asked for, or all this process may use.
-
-    Raises:
-        OptionError: not a positive whole number.
-    """
-    if threads is None:
-        return available()
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise OptionError(f"threads is {threads!r}; give a whole number of at least 1")
-    return threads
-
-
-def over_rows(
-    function: Any,
-    rows: int,
-    *arguments: Any,
-    threads: int | None = None,
-    grain: int = 64,
-    then: Callable[[int, int], None] | None = None,
-) -> None:
-    """Calls ``function(*arguments, first, last)`` on ranges of rows, on several threads.
-
-    Args:
-        function: a kernel that writes rows first to last - 1 of its output arrays and nothing
-            else, so that the answer cannot depend on the number of threads.
-        rows: how many rows there are.
-        arguments: passed on.
-        threads: how many; ``None`` for all processors.
-        grain: fewest rows worth handing over.
-        then: called here with (first, last) of each range that is finished, while others run.
-
-    Raises:
-        OptionError: as :func:`thread_count`.
-    """
-    threads = wanted_threads(threads)
-    if threads == 1 or rows < 2 * grain:
-        function(*arguments, 0, rows)
-        if then is not None:
-            then(0, rows)
-        return
-    size = max(grain, -(-rows // (threads * 8)))  # several ranges a thread: rows differ in cost
-    ranges = [(first, min(first + size, rows)) for first in range(0, rows, size)]
-    pool = _pool(threads)
-    waiting = [pool.submit(partial(function, *arguments, *each)) for each in ranges]
-    for each, future in zip(ranges, waiting, strict=True):
-        future.result()
-        if then is not None:
-            then(*each)
-
-
-@cache
-def _pool(threads: int) -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(threads, thread_name_prefix="kinlab")
-
-
-if hasattr(os, "register_at_fork"):  # a child has none of its parent's threads
-    os.register_at_fork(after_in_child=_pool.cache_clear)

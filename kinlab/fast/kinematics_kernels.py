@@ -34,6 +34,9 @@ def frames(fixed, prismatic, q, axes, pose):  # type: ignore[no-untyped-def]
         axes: (k, 6), written: z axis of each joint and the origin of its frame, in the base.
         pose: (12,), written: the tool's [R | p] row by row.
     """
+    # [a | x y z]: the frame reached so far in the base; [b | bx by bz]: the fixed step of joint i;
+    # c = a b. Then the joint: c Rot(z, q), which leaves column 2, or a shift of q along column 2.
+    # Numbers, not arrays, so that they stay in registers: this loop is the whole cost.
     a00, a01, a02, a10, a11, a12, a20, a21, a22 = 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
     x, y, z = 0.0, 0.0, 0.0
     k = prismatic.shape[0]

@@ -1,8 +1,12 @@
-"""The engine's functions with a faster road for long stacks of states.
+"""The engine's functions with a faster road for long stacks of states: the one door to this room.
 
 Short stacks and single states are the engine's own (:mod:`kinlab.engine.kinematics`,
-:mod:`kinlab.engine.dynamics`); long ones go through compiled kernels and Pinocchio's parallel calls
-(:mod:`kinlab.fast.batches`), with the same answers to rounding. Check and doctor do not use this
+:mod:`kinlab.engine.dynamics`); long ones take a faster road, with the same answers to rounding:
+inverse and forward dynamics go through Pinocchio's parallel calls; poses and Jacobians, which it
+has no parallel call for, through the compiled chain. M, C and the energies have no faster road:
+a rigid-body engine of our own was 1.5 to 3.7 times faster than Pinocchio on threads, and a second
+engine is worth that only from 3 times on, at every length of stack. Each state is worked out by
+itself, so the answers do not depend on the number of threads. Check and doctor do not use this
 module: what they call the engine is Pinocchio for any number of states.
 """
 
@@ -12,17 +16,23 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.engine import dynamics, kinematics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors
-from kinlab.fast import batches
-from kinlab.model.robot import Robot, require_inertia
+from kinlab.fast.arrays import chain
+from kinlab.fast.threads import over_rows, thread_count
+from kinlab.model.robot import Robot, model_pool, require_inertia
 
 COMPILED_FROM = 256
 """Stacks at least this long take the faster road. Below, loading the kernels (0.5 s, once a
 process) is out of proportion to a loop of 1 to 2 µs a state."""
+
+PARALLEL_FROM = 32
+"""Stacks at least this long go through Pinocchio's parallel calls, which need no kernels. Below, a
+call's own 15 µs outweigh what it saves over a loop."""
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
@@ -42,7 +52,7 @@ def fk(robot: Robot, q: ArrayLike) -> Array:
     if _long(q):
         stack = joint_vector(robot, q, "q")
         if stack.ndim == 2:
-            return batches.poses(robot, stack)
+            return _poses(robot, stack)
     return kinematics.fk(robot, q)
 
 
@@ -52,7 +62,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
         stack = joint_vector(robot, q, "q")
         kinematics.reference(frame)
         if stack.ndim == 2:
-            return batches.jacobians(robot, stack, frame)
+            return _jacobians(robot, stack, frame)
     return kinematics.jacobian(robot, q, frame)
 
 
@@ -65,34 +75,14 @@ def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") 
     return kinematics.statics(robot, q, wrench, frame)
 
 
-@_documented(dynamics.mass_matrix)
-def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
-    if _long(q):
-        require_inertia(robot)
-        stack = joint_vector(robot, q, "q")
-        if stack.ndim == 2:
-            return batches.mass_matrices(robot, stack)
-    return dynamics.mass_matrix(robot, q)
-
-
-@_documented(dynamics.coriolis_matrix)
-def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
-    if _long(q, v):
-        require_inertia(robot)
-        q, v = joint_vectors(robot, q=q, v=v)
-        if q.ndim == 2:
-            return batches.coriolis_matrices(robot, q, v)
-    return dynamics.coriolis_matrix(robot, q, v)
-
-
 @_documented(dynamics.gravity_torques)
 def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
-    if _long(q):
+    if _long(q, least=PARALLEL_FROM):
         require_inertia(robot)
         stack = joint_vector(robot, q, "q")
         if stack.ndim == 2:
             rest = np.zeros_like(stack)
-            return batches.inverse_dynamics(robot, stack, rest, rest)
+            return _in_parallel(pin.rneaInParallel, robot, stack, rest, rest)
     return dynamics.gravity_torques(robot, q)
 
 
@@ -100,11 +90,11 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
 def inverse_dynamics(
     robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
-    if _long(q, v, a):
+    if _long(q, v, a, least=PARALLEL_FROM):
         require_inertia(robot)
         q, v, a = joint_vectors(robot, q=q, v=v, a=a)
         if q.ndim == 2:
-            tau = batches.inverse_dynamics(robot, q, v, a)
+            tau = _in_parallel(pin.rneaInParallel, robot, q, v, a)
             if wrench is not None:
                 tau = tau + statics(robot, q, wrench)
             return finite_answer(robot, tau, "inverse_dynamics")
@@ -115,42 +105,84 @@ def inverse_dynamics(
 def forward_dynamics(
     robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
-    if _long(q, v, tau):
+    if _long(q, v, tau, least=PARALLEL_FROM):
         require_inertia(robot)
         q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
         if q.ndim == 2:
             if wrench is not None:
                 tau = tau - statics(robot, q, wrench)
-            a = batches.forward_dynamics(robot, q, v, tau)
+            a = _in_parallel(pin.abaInParallel, robot, q, v, tau)
             return finite_answer(robot, a, "forward_dynamics")
     return dynamics.forward_dynamics(robot, q, v, tau, wrench)
 
 
-@_documented(dynamics.kinetic_energy)
-def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
-    if _long(q, v):
-        require_inertia(robot)
-        q, v = joint_vectors(robot, q=q, v=v)
-        return dynamics.moving(robot, mass_matrix(robot, q), v)
-    return dynamics.kinetic_energy(robot, q, v)
+def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
+    """Singular values of some rows of the Jacobian in the base's axes, largest first.
+
+    Args:
+        robot: the robot.
+        q: (N, n).
+        rows: (r,), indices into (v, w).
+
+    Returns:
+        (N, min(r, n)).
+    """
+    from kinlab.fast.kinematics_kernels import singular_value_rows
+
+    out = np.empty((len(q), min(len(rows), robot.n)))
+    _on_threads(singular_value_rows, *chain(robot), q, np.ascontiguousarray(rows), out)
+    return out
 
 
-@_documented(dynamics.potential_energy)
-def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
-    if _long(q):
-        require_inertia(robot)
-        stack = joint_vector(robot, q, "q")
-        if stack.ndim == 2:
-            return batches.potential_energies(robot, stack)
-    return dynamics.potential_energy(robot, q)
-
-
-def _long(*values: Any) -> bool:
-    """Whether one may be a stack worth the kernels; says nothing about its shape."""
+def _long(*values: Any, least: int = COMPILED_FROM) -> bool:
+    """Whether one may be a stack worth the faster road; says nothing about its shape."""
     for value in values:
         try:
-            if len(value) >= COMPILED_FROM:
+            if len(value) >= least:
                 return True
         except TypeError:  # a number, which the engine's function refuses by name
             continue
     return False
+
+
+# -------- The roads. The arguments are checked: q, v, ... are (N, n), float64, finite, contiguous
+
+
+def _poses(robot: Robot, q: Array) -> Array:
+    """Tool pose of each row, (N, 4, 4)."""
+    from kinlab.fast.kinematics_kernels import fk_rows
+
+    out = np.empty((len(q), 4, 4))
+    _on_threads(fk_rows, *chain(robot), q, out)
+    return out
+
+
+def _jacobians(robot: Robot, q: Array, frame: str) -> Array:
+    """Jacobian of each row in a named frame, (N, 6, n)."""
+    from kinlab.fast.kinematics_kernels import jacobian_rows
+
+    out = np.empty((len(q), 6, robot.n))
+    _on_threads(jacobian_rows, *chain(robot), q, out)
+    if frame == "base":
+        return out
+    pose = _poses(robot, q)
+    if frame == "tool":
+        axes = np.swapaxes(pose[:, :3, :3], 1, 2)
+        return np.concatenate([axes @ out[:, :3], axes @ out[:, 3:]], axis=1)
+    out[:, :3] += np.cross(pose[:, :3, 3:], out[:, 3:], axis=1)  # "spatial": v_O = v + p x w
+    return out
+
+
+def _in_parallel(call: Any, robot: Robot, *stacks: Array) -> Array:
+    rows = len(stacks[0])
+    out = np.empty((rows, robot.n))
+    if rows:
+        threads = thread_count(rows)
+        # transposed, since Pinocchio wants one state a column; the memory is the same
+        call(threads, model_pool(robot, threads), *(stack.T for stack in stacks), out.T)
+    return out
+
+
+def _on_threads(function: Any, *arguments: Array) -> None:
+    rows = len(arguments[-1])
+    over_rows(function, rows, *arguments, threads=thread_count(rows))

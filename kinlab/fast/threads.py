@@ -1,9 +1,13 @@
-"""How many threads a batch may use.
+"""How many threads a batch may use, and handing its rows to them; without numba.
 
 A batch splits its states over the processor's cores. Inside the worker of a sweep it must not:
 the workers fill the cores already, so a block of a sweep runs under :func:`one_thread`. Nor may
 it in a process made by ``fork``: the threads of the parent's pools are not there, and those who
 wait for them (OpenMP's too) wait for ever.
+
+Threads are Python's: kernels release the GIL and each works on a range of rows. numba's own
+parallel loops would abort the process when two Python threads enter them at once, and compile
+for several seconds more.
 """
 
 from __future__ import annotations
@@ -11,9 +15,12 @@ from __future__ import annotations
 import os
 import re
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache, partial
+from typing import Any
 
 from kinlab.errors import OptionError
 
@@ -102,3 +109,63 @@ def cores() -> int:
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
+
+
+def wanted_threads(threads: int | None) -> int:
+    """The number of threads to use: what was asked for, or all this process may use.
+
+    Raises:
+        OptionError: not a positive whole number.
+    """
+    if threads is None:
+        return available()
+    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
+        raise OptionError(f"threads is {threads!r}; give a whole number of at least 1")
+    return threads
+
+
+def over_rows(
+    function: Any,
+    rows: int,
+    *arguments: Any,
+    threads: int | None = None,
+    grain: int = 64,
+    then: Callable[[int, int], None] | None = None,
+) -> None:
+    """Calls ``function(*arguments, first, last)`` on ranges of rows, on several threads.
+
+    Args:
+        function: a kernel that writes rows first to last - 1 of its output arrays and nothing
+            else, so that the answer cannot depend on the number of threads.
+        rows: how many rows there are.
+        arguments: passed on.
+        threads: how many; ``None`` for all processors.
+        grain: fewest rows worth handing over.
+        then: called here with (first, last) of each range that is finished, while others run.
+
+    Raises:
+        OptionError: as :func:`wanted_threads`.
+    """
+    threads = wanted_threads(threads)
+    if threads == 1 or rows < 2 * grain:
+        function(*arguments, 0, rows)
+        if then is not None:
+            then(0, rows)
+        return
+    size = max(grain, -(-rows // (threads * 8)))  # several ranges a thread: rows differ in cost
+    ranges = [(first, min(first + size, rows)) for first in range(0, rows, size)]
+    pool = _pool(threads)
+    waiting = [pool.submit(partial(function, *arguments, *each)) for each in ranges]
+    for each, future in zip(ranges, waiting, strict=True):
+        future.result()
+        if then is not None:
+            then(*each)
+
+
+@cache
+def _pool(threads: int) -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(threads, thread_name_prefix="kinlab")
+
+
+if hasattr(os, "register_at_fork"):  # a child has none of its parent's threads
+    os.register_at_fork(after_in_child=_pool.cache_clear)

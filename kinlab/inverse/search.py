@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
 from kinlab.fast.compiled import kernel as compiled
-from kinlab.fast.compiled import over_rows
 from kinlab.fast.stacks import jacobian
+from kinlab.fast.threads import over_rows
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.branch_names import matching
 from kinlab.inverse.branches import IKBranches, ik_branches

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, real_array, rigid_transform, shaped, shown
+from kinlab.arrays import Array, frozen, real_array, rigid_transform, set_fields, shaped, shown
 from kinlab.errors import StateError, TableError
 from kinlab.host.files import write_text
 from kinlab.model import table_files as table_io
@@ -66,7 +66,7 @@ class DHTable:
             raise TableError(f"{place}: tool_name {self.tool_name!r} is the name of a link")
         if not isinstance(self.source, str):
             raise TableError(f"{place}: source is {shown(self.source)}; it must be text")
-        object.__setattr__(self, "convention", read_convention(self.convention, place))
+        convention = read_convention(self.convention, place)
         links = tuple(self.links)
         if not links:
             raise TableError(f"{place}: it has no links")
@@ -75,17 +75,16 @@ class DHTable:
         for i, link in enumerate(links, 1):
             if not isinstance(link, DHLink):
                 raise TableError(f"{place}, link {i}: {type(link).__name__} is not a DHLink")
-        object.__setattr__(self, "links", links)
         names = [link.name or f"joint_{i}" for i, link in enumerate(links, 1)]
         for i, name in enumerate(names, 1):
             if name in names[: i - 1]:
                 raise TableError(f"{place}, link {i}: the name {name!r} is used twice")
+        ends = {}
         for which in ("base", "tool"):
             transform = rigid_transform(getattr(self, which), f"{place}: {which}", TableError)
-            shaped(transform, (4, 4), f"{place}: {which}", TableError)
-            object.__setattr__(self, which, frozen(transform))
-        gravity = shaped(self.gravity, (3,), f"{place}: gravity", TableError)
-        object.__setattr__(self, "gravity", frozen(gravity))
+            ends[which] = frozen(shaped(transform, (4, 4), f"{place}: {which}", TableError))
+        gravity = frozen(shaped(self.gravity, (3,), f"{place}: gravity", TableError))
+        set_fields(self, convention=convention, links=links, gravity=gravity, **ends)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DHTable):

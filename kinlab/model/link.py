@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, shaped, shown
+from kinlab.arrays import Array, frozen, set_fields, shaped, shown
 from kinlab.errors import TableError
 from kinlab.tolerances import TOLERANCES
 
@@ -78,6 +78,9 @@ def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
 
 # -------- One row of a DH table: geometry, limits and inertia of a link and its joint
 
+_GEOMETRY = ("a", "alpha", "d", "theta")
+_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature")
+
 
 @dataclass(frozen=True, eq=False)
 class DHLink:
@@ -131,16 +134,14 @@ class DHLink:
             raise TableError(f"{place}: flip is {self.flip!r}; it must be true or false")
         reach = math.pi if self.joint == "revolute" else 1.0
         defaults = {"lower": -reach, "upper": reach}
-        for column in ("a", "alpha", "d", "theta", "lower", "upper", "velocity", "effort",
-                       "mass", "armature"):  # fmt: skip
+        numbers = {}
+        for column in _NUMBERS:
             value = getattr(self, column)
             value = defaults[column] if value is None and column in defaults else value
-            number = float(shaped(value, (), f"{place}: {column}", TableError))
-            object.__setattr__(self, column, number)
+            numbers[column] = float(shaped(value, (), f"{place}: {column}", TableError))
         com = shaped(self.com, (3,), f"{place}: com", TableError)
         inertia = shaped(self.inertia, (3, 3), f"{place}: inertia", TableError)
-        object.__setattr__(self, "com", frozen(com))
-        object.__setattr__(self, "inertia", frozen(inertia))
+        set_fields(self, **numbers, com=frozen(com), inertia=frozen(inertia))
         self._check_physics(place)
 
     def _check_physics(self, place: str) -> None:

@@ -7,17 +7,16 @@ what does not lie on the way from the root to the tool is locked at zero.
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, frozen, set_fields
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.model import urdf_read
-from kinlab.model import urdf_read as urdf_chain
 from kinlab.model.dh import DHTable
 from kinlab.model.urdf_write import to_urdf
 from kinlab.tolerances import TOLERANCES
@@ -63,17 +62,19 @@ class Robot:
                 f"{self.model.njoints - 1}; every joint must have one degree of freedom (no "
                 "floating base; continuous joints as revolute)"
             )
-        put = object.__setattr__
-        put(self, "n", int(self.model.nv))
-        put(self, "shape", (self.n,))
-        put(self, "lower", frozen(self.model.lowerPositionLimit))
-        put(self, "upper", frozen(self.model.upperPositionLimit))
-        put(self, "singular_mass", _why_singular(self.model, self.name))
+        n = int(self.model.nv)
+        set_fields(
+            self,
+            n=n,
+            shape=(n,),
+            lower=frozen(self.model.lowerPositionLimit),
+            upper=frozen(self.model.upperPositionLimit),
+            singular_mass=_why_singular(self.model, self.name),
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Robot, (
-            self.name, self.model, self.tool, self.urdf, self.table, self.folder, self.source,
-        )  # fmt: skip
+        given = tuple(getattr(self, one.name) for one in fields(self) if one.init)
+        return Robot, given
 
     @property
     def joint_names(self) -> tuple[str, ...]:
@@ -96,7 +97,7 @@ class Robot:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
         text = to_urdf(table)
-        chain = urdf_chain.read(text, f"table {table.name!r}", table.tool_name)
+        chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
     @staticmethod
@@ -120,7 +121,7 @@ class Robot:
             NameUnknownError: no link of that name.
         """
         text, file = urdf_read.load_source(path_or_xml)
-        chain = urdf_chain.read(text, f"urdf {file.name!r}" if file else None, tool)
+        chain = urdf_read.read(text, f"urdf {file.name!r}" if file else None, tool)
         name = chain.name or (file.stem if file else "robot")
         folder = file.resolve().parent if file else None
         source = str(file) if file else "URDF text"

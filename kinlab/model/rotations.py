@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -22,23 +23,26 @@ def rpy_matrix(roll: float, pitch: float, yaw: float) -> Array:
     )
 
 
-def matrix_rpy(rotation: Array) -> tuple[float, float, float]:
-    """The angles of :func:`rpy_matrix`, exact to rounding in gimbal lock too.
+def matrices_rpy(rotations: Iterable[Array]) -> list[tuple[float, float, float]]:
+    """The angles of :func:`rpy_matrix` for each rotation, exact to rounding in gimbal lock too.
 
     Reading the three angles off the matrix one by one loses them where pitch is ±90°: two of
     them become the arctangent of rounding noise. Here yaw is read first, whatever it is, and the
     other two off Rz(-yaw) R, so that noise in yaw is taken back by roll.
 
     Args:
-        rotation: (3, 3).
+        rotations: each (3, 3).
 
     Returns:
-        roll, pitch, yaw in radians.
+        roll, pitch, yaw of each, in radians.
     """
-    yaw = math.atan2(rotation[1, 0], rotation[0, 0])
-    c, s = math.cos(yaw), math.sin(yaw)
-    first = c * rotation[0] + s * rotation[1]
-    second = c * rotation[1] - s * rotation[0]
-    pitch = math.atan2(-rotation[2, 0], first[0])
-    roll = math.atan2(-second[2], second[1])
-    return roll, pitch, yaw
+    angles = []
+    for rotation in rotations:
+        yaw = math.atan2(rotation[1, 0], rotation[0, 0])
+        c, s = math.cos(yaw), math.sin(yaw)
+        first = c * rotation[0] + s * rotation[1]
+        second = c * rotation[1] - s * rotation[0]
+        pitch = math.atan2(-rotation[2, 0], first[0])
+        roll = math.atan2(-second[2], second[1])
+        angles.append((roll, pitch, yaw))
+    return angles

@@ -37,11 +37,11 @@ _ANGLES = ("alpha", "theta")
 _LIMITS = ("lower", "upper")
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _COM = ("com_x", "com_y", "com_z")
-_LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, "velocity", "effort", "mass", "com", "inertia",
-              "armature", "name")  # fmt: skip
+_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature")
+_LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, *_DYNAMICS, "name")
 _TABLE_KEYS = ("name", "convention", "source", "gravity", "base", "tool", "tool_name", "links")
-_CSV_COLUMNS = (*(k for k in _LINK_KEYS if k not in ("com", "inertia")), *_COM, *_TENSOR,
-                "convention")  # fmt: skip
+_PLAIN_KEYS = tuple(k for k in _LINK_KEYS if k not in ("com", "inertia"))
+_CSV_COLUMNS = (*_PLAIN_KEYS, *_COM, *_TENSOR, "convention")
 
 
 def read(path: str | Path, convention: str | None = None) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from kinlab.arrays import Array
 from kinlab.errors import TableError
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
-from kinlab.model.rotations import matrix_rpy
+from kinlab.model.rotations import matrices_rpy
 from kinlab.model.urdf_records import EXTENSION
 
 # -------- Where the joints and links of a DH table stand in URDF's terms
@@ -41,7 +41,7 @@ class LinkPlacement:
 
 
 def placements(table: DHTable) -> list[LinkPlacement]:
-    """The joint origins and tails of every row, by the recipe in the module's docstring."""
+    """The joint origins and tails of every row, by the recipe above."""
     result = []
     behind = np.asarray(table.base)
     for link in table.links:
@@ -100,7 +100,8 @@ def visuals(table: DHTable, places: list[LinkPlacement]) -> list[list[Shape]]:
     Zero lengths draw nothing; signed lengths are drawn on the side they point to.
     """
     radius = _THICKNESS * stretched_length(table)
-    shapes: list[list[Shape]] = [[] for _ in range(table.n + 1)]
+    n = table.n
+    shapes: list[list[Shape]] = [[] for _ in range(n + 1)]
     for i, (link, place) in enumerate(zip(table.links, places, strict=True), 1):
         foot = place.origin @ _shift_z(-link.d)
         if link.joint == "revolute":
@@ -112,8 +113,8 @@ def visuals(table: DHTable, places: list[LinkPlacement]) -> list[list[Shape]]:
             # the rod must reach the joint at the far end of its stroke
             shapes[i] += _segment(np.array([0.0, 0.0, -_far_end(link)]), np.zeros(3), 0.8 * radius)
         # the common normal a lies behind the joint (standard) or in front of the next (modified)
-        end = places[i].origin if i < table.n else place.tail @ np.asarray(table.tool)
-        corner = end @ _shift_z(-table.links[i].d) if i < table.n else end
+        end = places[i].origin if i < n else place.tail @ np.asarray(table.tool)
+        corner = end @ _shift_z(-table.links[i].d) if i < n else end
         shapes[i] += _segment(np.zeros(3), corner[:3, 3], radius)
     first = places[0].origin @ _shift_z(-table.links[0].d)
     shapes[0] += _segment(np.asarray(table.base)[:3, 3], first[:3, 3], radius)
@@ -150,7 +151,7 @@ def _shift_z(d: float) -> Array:
 
 
 # -------- DH table to URDF text, through yourdfpy's own classes
-# The recipe for origins and inertias is in :mod:`kinlab.model.urdf_write`.
+# The recipe for origins and inertias is the first part.
 
 BASE_LINK = "base_link"
 
@@ -181,6 +182,7 @@ def to_urdf(table: DHTable) -> str:
 
     places = placements(table)
     shapes = visuals(table, places)
+    names = table.joint_names
     links = [y.Link(name=BASE_LINK, visuals=_visuals(shapes[0], "even_link", y))]
     joints = []
     parent = BASE_LINK
@@ -195,7 +197,7 @@ def to_urdf(table: DHTable) -> str:
         )
         joints.append(
             y.Joint(
-                name=table.joint_names[i - 1],
+                name=names[i - 1],
                 type=link.joint,
                 parent=parent,
                 child=name,
@@ -211,7 +213,7 @@ def to_urdf(table: DHTable) -> str:
             _fixed(f"dh_{i}", f"dh_joint_{i}", name, place.tail, links, joints, y)
     tool = places[-1].tail @ np.asarray(table.tool)
     _fixed(table.tool_name, f"{table.tool_name}_joint", parent, tool, links, joints, y)
-    return _text(y.URDF(y.Robot(table.name, links, joints), build_scene_graph=False), table)
+    return _text(y.URDF(y.Robot(table.name, links, joints), build_scene_graph=False), table, names)
 
 
 def _inertial(link: DHLink, place: LinkPlacement, y: Any) -> Any:
@@ -243,7 +245,7 @@ def _visuals(shapes: list[Shape], material: str, y: Any) -> list[Any]:
     return drawn
 
 
-def _text(urdf: Any, table: DHTable) -> str:
+def _text(urdf: Any, table: DHTable, names: tuple[str, ...]) -> str:
     from lxml import etree
 
     root = urdf.write_xml().getroot()
@@ -252,9 +254,7 @@ def _text(urdf: Any, table: DHTable) -> str:
     about = "".join(c for c in " ".join(about.split()) if c.isprintable())
     root.insert(0, etree.Comment(f" {about.replace('-', '‐' if '--' in about else '-')} "))
     armatures = {
-        name: link.armature
-        for name, link in zip(table.joint_names, table.links, strict=True)
-        if link.armature
+        name: link.armature for name, link in zip(names, table.links, strict=True) if link.armature
     }
     extension = etree.SubElement(
         root, EXTENSION, gravity=" ".join(repr(float(g)) for g in np.asarray(table.gravity))
@@ -274,6 +274,6 @@ def _write_rotations(root: Any, robot: Any) -> None:
             pairs.append((element.find("inertial"), link.inertial))
         pairs.extend(zip(element.findall("visual"), link.visuals, strict=True))
     pairs.extend(zip(root.findall("joint"), robot.joints, strict=True))
-    for element, record in pairs:
-        angles = matrix_rpy(record.origin[:3, :3])
+    angles_of = matrices_rpy([record.origin[:3, :3] for _, record in pairs])
+    for (element, _), angles in zip(pairs, angles_of, strict=True):
         element.find("origin").set("rpy", " ".join(repr(angle + 0.0) for angle in angles))

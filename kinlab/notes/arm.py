@@ -88,7 +88,7 @@ def apply(matrices: Any, vectors: Any) -> Array:
     return product
 
 
-def turn(matrices: Any) -> Array:
+def transpose(matrices: Any) -> Array:
     """Transpose of the last two axes: the inverse of a rotation."""
     return np.swapaxes(matrices, -1, -2)
 
@@ -139,7 +139,7 @@ def craig(arm: Arm) -> Arm:
         a=before[0],
         alpha=before[1],
         com=apply(tilt, arm.com) + shift,
-        inertia=tilt @ arm.inertia @ turn(tilt),
+        inertia=tilt @ arm.inertia @ transpose(tilt),
         tool=last @ arm.tool,
     )
 
@@ -216,7 +216,7 @@ def geometric_jacobian(arm: Arm, q: Array, points: Array) -> Array:
     revolute = ~arm.prismatic[:, None]
     linear = np.where(revolute, cross(z, points[..., None, :] - p), z)
     angular = np.where(revolute, z, 0.0)
-    return turn(np.concatenate([linear, angular], axis=-1))
+    return transpose(np.concatenate([linear, angular], axis=-1))
 
 
 def tool_pose(arm: Arm, q: Array) -> Array:
@@ -263,7 +263,7 @@ def links(arm: Arm, q: Array) -> Links:
     linear = np.where(revolute, cross(direction, reach), direction)
     return Links(
         centres=r,
-        inertias=rotations @ arm.inertia @ turn(rotations),
+        inertias=rotations @ arm.inertia @ transpose(rotations),
         linear=np.where(moved, linear, 0.0),
         angular=np.where(moved & revolute, direction, 0.0),
     )
@@ -297,8 +297,9 @@ def mass_derivatives(arm: Arm, q: Array) -> Array:
     direction = np.broadcast_to(z[..., None, :, :], reach.shape)
     dp = np.where(behind, np.where(revolute, cross(direction, reach), direction), 0.0)
     # columns of link l: d(z_j x (r_l - p_j)), indices l, j, k
-    turning = cross(dz[..., None, :, :, :], (body.centres[..., :, None, :]
-                    - p[..., None, :, :])[..., None, :])  # fmt: skip
+    turning = cross(
+        dz[..., None, :, :, :], (body.centres[..., :, None, :] - p[..., None, :, :])[..., None, :]
+    )
     carried = body.linear[..., :, None, :, :] - dp[..., None, :, :, :]
     moving = turning + cross(z[..., None, :, None, :], carried)
     is_revolute = ~arm.prismatic[:, None, None]

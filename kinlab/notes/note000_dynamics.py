@@ -19,7 +19,7 @@ from kinlab.notes.arm import (
     geometric_jacobian,
     link_transforms,
     tool_pose,
-    turn,
+    transpose,
 )
 from kinlab.notes.note000_kinematics import tool_jacobian, turn_rows
 
@@ -30,7 +30,7 @@ from kinlab.notes.note000_kinematics import tool_jacobian, turn_rows
 def tip_wrench(arm: Arm, q: Array, wrench: Array) -> tuple[Array, Array]:
     """(f, n) of frame n: the tool's wrench turned into its axes and moved to its origin."""
     last = craig(arm)
-    up = last.tool[:3, :3] @ turn(tool_pose(arm, q)[..., :3, :3])
+    up = last.tool[:3, :3] @ transpose(tool_pose(arm, q)[..., :3, :3])
     force = apply(up, wrench[..., :3])
     return force, apply(up, wrench[..., 3:]) + cross(last.tool[:3, 3], force)
 
@@ -80,7 +80,7 @@ def joint_torques(arm: Arm, q: Array, wrench: Array) -> Array:
 )
 def tool_statics(arm: Arm, q: Array, wrench: Array) -> Array:
     """tau = J^T F with both in tool axes."""
-    return apply(turn(tool_jacobian(arm, q)), wrench)
+    return apply(transpose(tool_jacobian(arm, q)), wrench)
 
 
 def _base_jacobian(arm: Arm, q: Array) -> Array:
@@ -90,7 +90,7 @@ def _base_jacobian(arm: Arm, q: Array) -> Array:
 def _force_only(arm: Arm, q: Array, wrench: Array) -> Array:
     force = apply(tool_pose(arm, q)[..., :3, :3], wrench[..., :3])
     turned = np.concatenate([force, wrench[..., 3:]], axis=-1)
-    return apply(turn(_base_jacobian(arm, q)), turned)
+    return apply(transpose(_base_jacobian(arm, q)), turned)
 
 
 @formula(
@@ -113,7 +113,7 @@ def base_statics(arm: Arm, q: Array, wrench: Array) -> Array:
     """tau = J^T F in base axes, the wrench given in tool axes."""
     rotation = tool_pose(arm, q)[..., :3, :3]
     turned = turn_rows(rotation, wrench[..., None])[..., 0]
-    return apply(turn(_base_jacobian(arm, q)), turned)
+    return apply(transpose(_base_jacobian(arm, q)), turned)
 
 
 # -------- Note 000, dynamics 1 and 2: Newton-Euler outward and inward, the MVG form
@@ -160,7 +160,7 @@ def outward(
     omega, omega_dot, v_dot = still, still, still + lift
     result = []
     for i in range(arm.n):
-        down, p = turn(steps[..., i, :3, :3]), steps[..., i, :3, 3]
+        down, p = transpose(steps[..., i, :3, :3]), steps[..., i, :3, 3]
         rate, pull = rates[..., i, :], pulls[..., i, :]
         v_dot = apply(down, v_dot + cross(omega_dot, p) + cross(omega, cross(omega, p)))
         turned, omega_dot = apply(down, omega), apply(down, omega_dot)

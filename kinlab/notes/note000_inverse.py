@@ -16,7 +16,7 @@ from kinlab.notes.arm import (
     lengths,
     matrix,
     tool_pose,
-    turn,
+    transpose,
     vector,
 )
 from kinlab.notes.note000_kinematics import planar_3r_jacobian
@@ -78,7 +78,7 @@ def _defect(products: Array) -> Array:
 
 def _of_columns(arm: Arm, q: Array) -> Array:
     jacobian = _planar_jacobian(arm, q)
-    return _defect(turn(jacobian) @ jacobian)
+    return _defect(transpose(jacobian) @ jacobian)
 
 
 @formula(
@@ -98,7 +98,7 @@ def _of_columns(arm: Arm, q: Array) -> Array:
 def isotropy_defect(arm: Arm, q: Array) -> Array:
     """How far J is from isotropic: its rows orthogonal and equally long."""
     jacobian = _planar_jacobian(arm, q)
-    return _defect(jacobian @ turn(jacobian))
+    return _defect(jacobian @ transpose(jacobian))
 
 
 @formula(
@@ -218,7 +218,7 @@ def _tool_columns(arm: Arm, q: Array) -> Array:
 
 def _left(arm: Arm, q: Array, twist: Array) -> Array:
     jacobian = _tool_columns(arm, q)
-    across = turn(jacobian)
+    across = transpose(jacobian)
     try:
         inverse = np.linalg.inv(across @ jacobian)
     except np.linalg.LinAlgError:  # exactly singular: the printed form has no value
@@ -243,7 +243,7 @@ def _left(arm: Arm, q: Array, twist: Array) -> Array:
 def right_inverse(arm: Arm, q: Array, twist: Array) -> Array:
     """Shortest joint rates of a redundant arm."""
     jacobian = _tool_columns(arm, q)
-    across = turn(jacobian)
+    across = transpose(jacobian)
     return apply(across @ np.linalg.inv(jacobian @ across), twist)
 
 
@@ -286,7 +286,7 @@ def loss(arm: Arm, q: Array, target: Array) -> Any:
 )
 def loss_gradient(arm: Arm, q: Array, target: Array) -> Array:
     """Gradient of the loss."""
-    return -apply(turn(planar_3r_jacobian(arm, q)), _miss(arm, q, target))
+    return -apply(transpose(planar_3r_jacobian(arm, q)), _miss(arm, q, target))
 
 
 @formula(

@@ -24,7 +24,7 @@ from kinlab.notes.arm import (
     matrix,
     modified_transform,
     tool_pose,
-    turn,
+    transpose,
     vector,
 )
 
@@ -42,7 +42,7 @@ from kinlab.notes.arm import (
 )
 def rotation_inverse(_: None, rotation: Array) -> Array:
     """Rows of R are unit vectors and orthogonal: its inverse is its transpose."""
-    return turn(rotation)
+    return transpose(rotation)
 
 
 @formula(
@@ -198,7 +198,7 @@ def jacobian_by_differentiation(arm: Arm, q: Array) -> Array:
         else:
             generator[0, 1], generator[1, 0] = -arm.sign[i], arm.sign[i]
         slope = poses[..., i + 1, :, :] @ generator @ behind
-        spin = slope[..., :3, :3] @ turn(tool[..., :3, :3])
+        spin = slope[..., :3, :3] @ transpose(tool[..., :3, :3])
         omega = np.stack([spin[..., 2, 1], spin[..., 0, 2], spin[..., 1, 0]], axis=-1)
         result.append(np.concatenate([slope[..., :3, 3], omega], axis=-1))
         behind = steps[..., i, :, :] @ behind
@@ -235,7 +235,7 @@ def propagate(arm: Arm, q: Array, v: Array, slide: Array = Z) -> Array:
     omega = linear = np.zeros((*np.shape(q)[:-1], 3))
     result = []
     for i in range(arm.n):
-        down = turn(steps[..., i, :3, :3])
+        down = transpose(steps[..., i, :3, :3])
         p = steps[..., i, :3, 3]
         linear = apply(down, linear + cross(omega, p))
         omega = apply(down, omega)
@@ -313,14 +313,14 @@ def velocities(arm: Arm, q: Array, v: Array) -> Array:
 def angular_jacobian(arm: Arm, q: Array) -> Array:
     """The angular rows of J are the joint axes."""
     z, _ = axes(arm, q)
-    return turn(np.where(arm.prismatic[:, None], 0.0, z))
+    return transpose(np.where(arm.prismatic[:, None], 0.0, z))
 
 
 def _omega_printed(arm: Arm, q: Array) -> Array:
     arm = craig(arm)
     rotations = frames(arm, q)[..., 1:, :3, :3]
-    back = turn(rotations) @ rotations[..., -1:, :, :]  # ^i_n R
-    return turn(np.where(arm.prismatic[:, None], 0.0, arm.sign[:, None] * back[..., :, 2]))
+    back = transpose(rotations) @ rotations[..., -1:, :, :]  # ^i_n R
+    return transpose(np.where(arm.prismatic[:, None], 0.0, arm.sign[:, None] * back[..., :, 2]))
 
 
 @formula(
@@ -343,8 +343,8 @@ def angular_jacobian_last(arm: Arm, q: Array) -> Array:
     """The angular rows of J in the last link's own axes."""
     arm = craig(arm)
     rotations = frames(arm, q)[..., 1:, :3, :3]
-    down = turn(rotations[..., -1:, :, :]) @ rotations  # ^n_i R
-    return turn(np.where(arm.prismatic[:, None], 0.0, arm.sign[:, None] * down[..., :, 2]))
+    down = transpose(rotations[..., -1:, :, :]) @ rotations  # ^n_i R
+    return transpose(np.where(arm.prismatic[:, None], 0.0, arm.sign[:, None] * down[..., :, 2]))
 
 
 @formula(

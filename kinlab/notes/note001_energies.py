@@ -20,7 +20,7 @@ from kinlab.notes.arm import (
     geometric_jacobian,
     lengths,
     tool_pose,
-    turn,
+    transpose,
     vector,
 )
 from kinlab.notes.note000_dynamics import torques
@@ -39,7 +39,7 @@ def numbers(arm: Arm) -> tuple[float, float, float, float, float]:
 def _contact(arm: Arm, q: Array, wrench: Array) -> Array:
     """J_c^T F_c of a force F_c on the arm: the tool exerts its opposite."""
     jacobian = geometric_jacobian(arm, q, tool_pose(arm, q)[..., :3, 3])
-    return apply(turn(jacobian), -wrench)
+    return apply(transpose(jacobian), -wrench)
 
 
 def _inertial(arm: Arm, q: Array, v: Array, a: Array) -> Array:

@@ -8,11 +8,22 @@ import numpy as np
 
 from kinlab.formulas.record import Printed, formula
 from kinlab.notes import arm as mass
-from kinlab.notes.arm import Arm, Array, apply, geometric_jacobian, tool_pose, turn
+from kinlab.notes.arm import Arm, Array, apply, geometric_jacobian, tool_pose, transpose
 
 _SECTION = "note 002, section 4.6"
-MOVING = ("planar2r", "planar2r_rods", "planar3r", "spatial3r", "scara", "stanford", "puma560",
-          "puma560_modified", "panda", "ur5", "ur10")  # fmt: skip
+MOVING = (
+    "planar2r",
+    "planar2r_rods",
+    "planar3r",
+    "spatial3r",
+    "scara",
+    "stanford",
+    "puma560",
+    "puma560_modified",
+    "panda",
+    "ur5",
+    "ur10",
+)
 """Arms whose mass matrix changes with q; that of the single link is constant."""
 
 _CHRISTOFFEL = (
@@ -39,7 +50,7 @@ def coriolis(arm: Arm, q: Array, v: Array) -> Array:
 def printed_coriolis(arm: Arm, q: Array, v: Array) -> Array:
     """The note's C."""
     one: Array = np.einsum("...ikj,...k->...ij", mass.mass_derivatives(arm, q), v)
-    return 0.5 * (one + turn(one))
+    return 0.5 * (one + transpose(one))
 
 
 def mass_rate(arm: Arm, q: Array, v: Array) -> Array:
@@ -89,7 +100,7 @@ def _twice_coriolis(arm: Arm, q: Array, v: Array) -> Array:
 def mass_rate_by_symmetry(arm: Arm, q: Array, v: Array) -> Array:
     """Mdot is twice the symmetric part of C."""
     found = coriolis(arm, q, v)
-    return np.asarray(found + turn(found))
+    return np.asarray(found + transpose(found))
 
 
 def _printed_torques(arm: Arm, q: Array, v: Array) -> Array:
@@ -211,7 +222,7 @@ def _printed_skew(arm: Arm, q: Array, v: Array) -> Array:
 def skew_matrix(arm: Arm, q: Array, v: Array) -> Array:
     """Mdot - 2C, skew by its form."""
     one: Any = np.einsum("...ikj,...k->...ij", mass.mass_derivatives(arm, q), v)
-    return np.asarray(turn(one) - one)
+    return np.asarray(transpose(one) - one)
 
 
 @formula(
@@ -239,7 +250,7 @@ def no_power(arm: Arm, q: Array, v: Array) -> Any:
 def equation_of_motion(arm: Arm, q: Array, v: Array, a: Array, wrench: Array) -> Array:
     """Joint torques with a disturbance at the tool."""
     point = tool_pose(arm, q)[..., :3, 3]
-    disturbance = apply(turn(geometric_jacobian(arm, q, point)), -wrench)
+    disturbance = apply(transpose(geometric_jacobian(arm, q, point)), -wrench)
     inertia = apply(mass.mass_matrix(arm, q), a)
     velocity = apply(coriolis(arm, q, v), v)
     return inertia + velocity + mass.gravity_torques(arm, q) - disturbance

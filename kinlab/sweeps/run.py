@@ -156,9 +156,17 @@ def sweep(
         FileError: the folder cannot be written.
     """
     work = plan(
-        robot, measure, samples, seed=seed, lower=lower, upper=upper, executor=executor,
-        workers=workers, chunk=chunk, folder=folder,
-    )  # fmt: skip
+        robot,
+        measure,
+        samples,
+        seed=seed,
+        lower=lower,
+        upper=upper,
+        executor=executor,
+        workers=workers,
+        chunk=chunk,
+        folder=folder,
+    )
     with _bar(progress, work.samples.count) as show:
         for done in work.steps:
             show(done)

@@ -14,12 +14,14 @@ import numpy as np
 
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.arrays import Array, frozen, seed_of, whole, word
+from kinlab.engine.dynamics import mass_matrix
 from kinlab.errors import FileError, NameUnknownError, OptionError
-from kinlab.fast.stacks import fk, mass_matrix
+from kinlab.fast.stacks import fk
 from kinlab.host.files import write_bytes
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.sweeps.run import plan
+from kinlab.tolerances import TOLERANCES
 
 Progress = Callable[[int, int], None]
 """Called with (done, total) after every chunk."""
@@ -166,9 +168,18 @@ def sample_workspace(
     points = np.concatenate([part["points"] for part in kept] or [np.empty((0, 3))])
     values = np.concatenate([part["values"] for part in kept] or [np.empty(0)])
     return WorkspaceMap(
-        robot.name, space.name, space.rows, metric, size, frozen(points), frozen(values),
-        sampling, seed, len(values) == len(states), stays_in_plane(space),
-    )  # fmt: skip
+        robot.name,
+        space.name,
+        space.rows,
+        metric,
+        size,
+        frozen(points),
+        frozen(values),
+        sampling,
+        seed,
+        len(values) == len(states),
+        stays_in_plane(space),
+    )
 
 
 @dataclass(frozen=True)
@@ -229,7 +240,7 @@ def binned(chart: WorkspaceMap, cells: int = 0, plane: str = "") -> BinnedMap:
 def stays_in_plane(space: TaskSpace) -> bool:
     """Whether the tool never leaves a plane z = const of the base."""
     linear = np.abs(space.sample[:, :3, :])
-    return bool(linear[:, 2].max() <= 1e-9 * linear.max(initial=1e-300))
+    return bool(linear[:, 2].max() <= TOLERANCES.in_plane * linear.max(initial=1e-300))
 
 
 def _random(robot: Robot, samples: int, seed: int) -> Array:

@@ -15,8 +15,7 @@ from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention
 from kinlab.symbolic.trig import Poly, TrigRing, symbol
 from kinlab.symbolic.vocabulary import Vocabulary, exact, vocabulary
-
-_SNAP = 1e-15
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +133,7 @@ def cos_sin(angle: float) -> tuple[Fraction, Fraction]:
 def snapped(value: float) -> float:
     """0 and ±1 where rounding of a right angle left a residue."""
     nearest = round(value)
-    return float(nearest) if abs(value - nearest) <= _SNAP else value
+    return float(nearest) if abs(value - nearest) <= TOLERANCES.right_angle else value
 
 
 def _parallel(table: DHTable) -> tuple[tuple[int, ...], ...]:
@@ -143,7 +142,7 @@ def _parallel(table: DHTable) -> tuple[tuple[int, ...], ...]:
     runs: list[list[int]] = [[]]
     for i, link in enumerate(table.links):
         twist = table.links[i - shift].alpha if i else 0.0
-        if abs(math.sin(twist)) > _SNAP or link.joint != "revolute":
+        if abs(math.sin(twist)) > TOLERANCES.right_angle or link.joint != "revolute":
             runs.append([])
         if link.joint == "revolute":
             runs[-1].append(i)

@@ -21,8 +21,9 @@ _LARGEST = 3
 
 def _coefficients(a: SymbolicArm) -> Any:
     cube = dynamics.christoffel(a)
-    return sympy.Matrix([[cube[i][j][k] for j in range(a.n) for k in range(a.n)]
-                         for i in range(a.n)])  # fmt: skip
+    return sympy.Matrix(
+        [[cube[i][j][k] for j in range(a.n) for k in range(a.n)] for i in range(a.n)]
+    )
 
 
 WHAT: dict[str, Callable[[SymbolicArm], Any]] = {
@@ -100,8 +101,11 @@ def _lines(made: SymbolicArm, what: str, expression: Any) -> Iterator[str]:
 
 def _where(made: SymbolicArm, expression: Any) -> list[str]:
     """What the names stand for in this table."""
-    used = [f"{s.name} = {float(value):.12g}" for s, value in made.parameters.items()
-            if s in expression.free_symbols]  # fmt: skip
+    used = [
+        f"{s.name} = {float(value):.12g}"
+        for s, value in made.parameters.items()
+        if s in expression.free_symbols
+    ]
     return [f"where {', '.join(used)}"] if used else []
 
 

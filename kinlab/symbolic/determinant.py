@@ -53,8 +53,12 @@ class Determinant:
     @property
     def singular_factors(self) -> tuple[sympy.Expr, ...]:
         """The factors that depend on a joint variable: the arm is singular where one is zero."""
-        joints = {s for factor, _ in self.factors for s in factor.free_symbols
-                  if s.name[0] == "q" and s.name[1:].isdigit()}  # fmt: skip
+        joints = {
+            s
+            for factor, _ in self.factors
+            for s in factor.free_symbols
+            if s.name[0] == "q" and s.name[1:].isdigit()
+        }
         return tuple(f for f, _ in self.factors if f.free_symbols & joints)
 
 
@@ -126,14 +130,14 @@ def _sparsest(arm: SymbolicArm, rows: tuple[int, ...]) -> Grid:
     points = [None, *range(1, arm.n + 1)] if angular else [None]  # v alone moves with the point
     best: tuple[int, Grid] | None = None
     for at in points:
-        moved = base if at is None else kinematics.jacobian_at(
-            arm, kinematics.column(placed[at], 3)
-        )  # fmt: skip
+        moved = (
+            base if at is None else kinematics.jacobian_at(arm, kinematics.column(placed[at], 3))
+        )
         for frame in placed:
-            turn = [[frame[c][r] for c in range(3)] for r in range(3)]
-            grid = kinematics.product(arm, turn, moved[:3])
+            to_frame = [[frame[c][r] for c in range(3)] for r in range(3)]
+            grid = kinematics.product(arm, to_frame, moved[:3])
             if angular:
-                grid = [*grid, *kinematics.product(arm, turn, moved[3:])]
+                grid = [*grid, *kinematics.product(arm, to_frame, moved[3:])]
             size = sum(len(entry) for row in grid for entry in row)
             if best is None or size < best[0]:
                 best = size, grid
@@ -214,8 +218,11 @@ def _half_angles(arm: SymbolicArm, poly: Poly) -> tuple[Poly, dict[int, int], di
         if degree:
             degrees[i] = degree
     circles = {trig.index[f"{f} q{i + 1}"] for i in trig.angles for f in ("cos", "sin")}
-    used = [k for k in range(len(trig.ring.gens))
-            if k not in circles and any(powers[k] for powers in poly)]  # fmt: skip
+    used = [
+        k
+        for k in range(len(trig.ring.gens))
+        if k not in circles and any(powers[k] for powers in poly)
+    ]
     symbols = [trig.ring.symbols[k] for k in used]
     made, *gens = ring([*symbols, *(symbol(f"t{i + 1}") for i in degrees)], sympy.QQ)
     halves = {i: len(used) + k for k, i in enumerate(degrees)}

@@ -92,10 +92,12 @@ def christoffel_cube(arm: SymbolicArm) -> Cube:
     slope = [[[trig.by_joint(mass[i][j], k) for k in range(n)] for j in range(n)] for i in range(n)]
     half = sympy.QQ(1, 2)
     return [
-        [[(slope[i][j][k] + slope[i][k][j] - slope[j][k][i]) * half for k in range(n)]
-         for j in range(n)]
+        [
+            [(slope[i][j][k] + slope[i][k][j] - slope[j][k][i]) * half for k in range(n)]
+            for j in range(n)
+        ]
         for i in range(n)
-    ]  # fmt: skip
+    ]
 
 
 def coriolis_grid(arm: SymbolicArm) -> Grid:

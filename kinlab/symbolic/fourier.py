@@ -53,8 +53,9 @@ def terms(
         for group in groups:
             exponents = tuple((powers[where[i][0]], powers[where[i][1]]) for i in group)
             if any(c or s for c, s in exponents):
-                waves = [(_wave(trig, group, k, odd), f)
-                         for (k, odd), f in _harmonics(exponents).items()]  # fmt: skip
+                waves = [
+                    (_wave(trig, group, k, odd), f) for (k, odd), f in _harmonics(exponents).items()
+                ]
                 product = {p * w: x * f for p, x in product.items() for w, f in waves}
         for expression, x in product.items():
             total[expression] = total.get(expression, 0) + x

@@ -81,8 +81,8 @@ def jacobian_grid(arm: SymbolicArm, frame: str) -> Grid:
         point = [arm.trig.ring.zero] * 3
     rows = jacobian_at(arm, point)
     if frame == "tool":
-        turn = [[tool[c][r] for c in range(3)] for r in range(3)]
-        rows = [*product(arm, turn, rows[:3]), *product(arm, turn, rows[3:])]
+        to_tool = [[tool[c][r] for c in range(3)] for r in range(3)]
+        rows = [*product(arm, to_tool, rows[:3]), *product(arm, to_tool, rows[3:])]
     return rows
 
 

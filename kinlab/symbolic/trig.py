@@ -12,6 +12,8 @@ from typing import Any
 import sympy
 from sympy.polys.rings import ring
 
+from kinlab.arrays import set_fields
+
 Poly = Any
 """A ``sympy.polys.rings.PolyElement``."""
 
@@ -49,12 +51,13 @@ class TrigRing:
         ]
         symbols = [sympy.Symbol(name, real=True) for name in names]
         made, *gens = ring(symbols, sympy.QQ)
-        put = object.__setattr__
-        put(self, "ring", made)
-        put(self, "gens", dict(zip(names, gens, strict=True)))
-        put(self, "index", {name: k for k, name in enumerate(names)})
-        for letter in ("q", "qd", "qdd"):
-            put(self, letter, tuple(symbol(f"{letter}{i + 1}") for i in range(self.n)))
+        numbered = {
+            letter: tuple(symbol(f"{letter}{i + 1}") for i in range(self.n))
+            for letter in ("q", "qd", "qdd")
+        }
+        index = {name: k for k, name in enumerate(names)}
+        gens_by_name = dict(zip(names, gens, strict=True))
+        set_fields(self, ring=made, gens=gens_by_name, index=index, **numbered)
 
     def number(self, value: Any) -> Poly:
         """A rational number as a polynomial."""

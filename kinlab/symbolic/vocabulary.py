@@ -15,11 +15,11 @@ import numpy as np
 
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
+from kinlab.tolerances import TOLERANCES
 
 Linear = tuple[tuple[Fraction, str], ...]
 """A sum of multiples of names; the empty name is the number 1."""
 
-_SAME = 1e-12
 _AXES = "xyz"
 
 
@@ -127,9 +127,9 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
 def _centre(words: Vocabulary, i: int, centre: float, length: float) -> Linear:
     """The centre's distance from joint i as l_i, l_i/2, or a name of its own."""
     for part in (Fraction(1), Fraction(1, 2)):
-        if length and abs(centre - part * length) <= _SAME * abs(length):
+        if length and abs(centre - part * length) <= TOLERANCES.same_length * abs(length):
             return ((part, f"l{i}"),)
-    if abs(centre) <= _SAME * abs(length):
+    if abs(centre) <= TOLERANCES.same_length * abs(length):
         return ()
     words.values[f"lc{i}"] = centre
     return ((Fraction(1), f"lc{i}"),)

@@ -34,7 +34,7 @@ import bench_parties as parties
 import numpy as np
 
 import kinlab as kl
-from kinlab.fast import batches
+from kinlab.fast import stacks
 from kinlab.fast.threads import cores
 from kinlab.host.files import read_text, write_text
 
@@ -135,7 +135,7 @@ def batch() -> list[Row]:
     own = parties.kinlab_single(robot, q, v, a)
     raw = parties.pinocchio_batch(robot, q, v, a, cores())
     own["fk + jacobian"] = lambda: (kl.fk(robot, q), kl.jacobian(robot, q))[1]
-    own["singular values of J"] = lambda: batches.singular_values(robot, q, np.arange(6))
+    own["singular values of J"] = lambda: stacks.singular_values(robot, q, np.arange(6))
     out = []
     for what, call in own.items():
         calls = {"kinlab": call}

@@ -3,7 +3,7 @@
 The slips are made here, from the words that people use for them; nothing is taken from the
 doctor, and what a repaired table is worth is judged by its poses and its mass matrix in Pinocchio.
 
-    python scripts/bench/bench_tables.py                 # 300 single slips, 100 pairs, 10000 equivalents
+    python scripts/bench/bench_tables.py   # 300 singles, 100 pairs, 10000 equivalents
     python scripts/bench/bench_tables.py --singles 60 --pairs 20 --equivalents 500 --seed 3
 """
 

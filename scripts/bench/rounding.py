@@ -2,8 +2,8 @@
 
 Every value of the engine and of the hand formula is multiplied by 1 + 1e-15 times a random
 number; verdict, sentences, kinds and their order must stay, numbers in them to their printed
-digits. ``python scripts/bench/rounding.py`` runs the whole bench of ``bench_doctor.py`` with 20 seeds
-(hours); ``tests/test_rounding.py`` runs a part of it.
+digits. ``python scripts/bench/rounding.py`` runs the whole bench of ``bench_doctor.py`` with
+20 seeds (hours); ``tests/doctor/test_rounding.py`` runs a part of it.
 """
 
 from __future__ import annotations

@@ -9,7 +9,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.doctor.tables.poses import is_poses_file, read_poses
-from kinlab.model.rotations import matrix_rpy, rpy_matrix
+from kinlab.model.rotations import matrices_rpy, rpy_matrix
 
 PUMA = kl.load("puma560").table
 
@@ -92,7 +92,7 @@ def test_every_form_of_a_poses_file_reads_the_same(tmp_path):
     q, T = measured(PUMA, 5)
     names = ",".join(f"q{i}" for i in range(1, 7))
     entries = ",".join(f"T{i}{j}" for i in (1, 2, 3) for j in (1, 2, 3, 4))
-    rpy = [matrix_rpy(pose[:3, :3]) for pose in T]
+    rpy = [matrices_rpy([pose[:3, :3]])[0] for pose in T]
     from scipy.spatial.transform import Rotation
 
     quaternions = Rotation.from_matrix(T[:, :3, :3]).as_quat()  # x, y, z, w

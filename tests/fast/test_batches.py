@@ -12,8 +12,8 @@ from random_tables import random_table
 
 import kinlab as kl
 from kinlab.errors import OptionError, StateError
-from kinlab.fast import batches, threads
 from kinlab.fast import stacks as fast_road
+from kinlab.fast import threads
 
 FUNCTIONS = {
     "fk": (kl.fk, 1),
@@ -108,7 +108,7 @@ def test_mass_matrices_keep_the_digits_of_a_light_hand_far_out():
 @pytest.mark.parametrize("rows", [(0, 1, 2, 3, 4, 5), (0, 1, 2), (0, 1, 5), (3,)])
 def test_singular_values_are_those_of_the_single_jacobians(robot, rows):
     q = stacks(robot, LARGE)[0]
-    got = batches.singular_values(robot, q, np.array(rows))
+    got = fast_road.singular_values(robot, q, np.array(rows))
     for i in range(0, LARGE, 16):
         part = kl.jacobian(robot, q[i])[list(rows)]
         expected = np.linalg.svd(part, compute_uv=False)

@@ -11,7 +11,7 @@ from kinlab.errors import OptionError
 from kinlab.fast import compiled
 from kinlab.fast import kinematics_kernels as kernels
 from kinlab.fast.arrays import chain
-from kinlab.fast.compiled import over_rows, wanted_threads
+from kinlab.fast.threads import over_rows, wanted_threads
 
 ARMS = ["puma560", "stanford", "planar2r", "scara", "erd:talos_arm", "erd:xarm7", "erd:hextilt"]
 

@@ -20,7 +20,7 @@ from kinlab.errors import KinlabError, StateError, StructureError, TableError
 from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
-from kinlab.model.urdf_write import EXTENSION
+from kinlab.model.urdf_records import EXTENSION
 
 STATES = 40
 """Random states at which an arm that is known as a whole is compared."""

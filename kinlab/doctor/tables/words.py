@@ -301,12 +301,12 @@ def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
 
 def pose_text(pose: Array) -> str:
     """A pose as translation and roll, pitch, yaw."""
-    from kinlab.model.rotations import matrix_rpy
+    from kinlab.model.rotations import matrices_rpy
 
     place = ", ".join(number(float(round(x, 9))) for x in pose[:3, 3])
     if np.max(np.abs(pose[:3, :3] - np.eye(3))) < 1e-9:
         return f"shift ({place}) m"
-    turn = ", ".join(f"{math.degrees(x) + 0.0:.6g}" for x in matrix_rpy(pose[:3, :3]))
+    turn = ", ".join(f"{math.degrees(x) + 0.0:.6g}" for x in matrices_rpy([pose[:3, :3]])[0])
     return f"shift ({place}) m, roll, pitch, yaw ({turn}) deg"
 
 
