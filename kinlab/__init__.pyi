@@ -6,11 +6,11 @@ from . import viewer as viewer
 from .analysis.boundary import planar_boundary as planar_boundary
 from .analysis.design import design_isotropic as design_isotropic
 from .analysis.determinant import factored_determinant as factored_determinant
-from .analysis.ellipsoids import ellipsoid as ellipsoid
 from .analysis.isotropy import find_isotropic as find_isotropic
-from .analysis.lengths import characteristic_length as characteristic_length
 from .analysis.loci import singular_loci as singular_loci
+from .analysis.metrics import characteristic_length as characteristic_length
 from .analysis.metrics import dexterity as dexterity
+from .analysis.metrics import ellipsoid as ellipsoid
 from .analysis.metrics import manipulability as manipulability
 from .analysis.nearest import nearest_singularity as nearest_singularity
 from .analysis.redundancy import redundancy as redundancy

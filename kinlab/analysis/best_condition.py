@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.metrics import condition_number, singular_values
+from kinlab.analysis.solver import jacobian_derivative
 from kinlab.arrays import Array
 from kinlab.fast.stacks import jacobian
 from kinlab.structure.task_space import TaskSpace, search_box

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.solver import jacobian_derivative
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap

@@ -4,6 +4,8 @@ Solved as an overdetermined system, not by minimising the condition number: at i
 singular values coincide, where the condition number has a kink and its minimisers stall.
 
 Sources: Salisbury & Craig, IJRR 1(1), 1982; Angeles, IJRR 11(3), 1992; note 000, section 六.
+
+J J^T = a 1 as a system of smooth equations.
 """
 
 from __future__ import annotations
@@ -15,13 +17,12 @@ import numpy as np
 
 from kinlab.analysis.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.isotropy_system import IsotropySystem
-from kinlab.analysis.lengths import OPTIMAL, read_length_choice
-from kinlab.analysis.metrics import condition_number, singular_values
-from kinlab.analysis.solver import solve
+from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
+from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, seed_of, whole
+from kinlab.fast.stacks import jacobian
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
+from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 
 ISOTROPIC = 1e-8
 """Condition number - 1 at and below which a configuration is isotropic."""
@@ -273,3 +274,71 @@ def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     apart = system.q(around) - system.q(x)
     spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
     return around, int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))
+
+
+@dataclass(frozen=True)
+class IsotropySystem:
+    """J J^T / (trace / m) - 1 = 0 in q, and in ln L where the length is open.
+
+    Attributes:
+        space: the task.
+        given: characteristic length in metres, or ``None``.
+    """
+
+    space: TaskSpace
+    given: float | None
+
+    @property
+    def open_length(self) -> bool:
+        """Whether the length is an unknown."""
+        return self.given is None and self.space.mixed
+
+    def start(self, q: Array) -> Array:
+        """Unknowns at q (N, n)."""
+        if not self.open_length:
+            return q
+        return np.concatenate([q, np.full((len(q), 1), np.log(self.space.scale))], axis=1)
+
+    def q(self, x: Array) -> Array:
+        """The joint part of the unknowns, (N, n)."""
+        return x[:, : self.space.robot.n]
+
+    def length(self, x: Array) -> Array:
+        """The lengths, (N,)."""
+        if self.open_length:
+            # the span only stops a runaway start from overflowing
+            return np.exp(np.clip(x[:, -1], -30.0, 30.0))
+        return np.full(len(x), self.given if self.given is not None else 1.0)
+
+    def __call__(self, x: Array) -> tuple[Array, Array]:
+        """Residuals (N, p) and derivatives (N, p, k)."""
+        space = self.space
+        full, sizes = jacobian(space.robot, self.q(x)), self.length(x)
+        matrix = space.select(full, sizes)
+        change = space.select(jacobian_derivative(full), sizes[:, np.newaxis])
+        if self.open_length:
+            change = np.concatenate([change, (-matrix * space.metres)[:, np.newaxis]], axis=1)
+        return isotropy_equations(matrix, change)
+
+
+def isotropy_equations(matrix: Array, change: Array) -> tuple[Array, Array]:
+    """The upper triangle of J J^T / (trace / m) - 1, and its derivative.
+
+    Args:
+        matrix: task Jacobians, (N, m, n).
+        change: their derivatives, (N, k, m, n).
+
+    Returns:
+        (N, p) and (N, p, k), p = m (m + 1) / 2.
+    """
+    m = matrix.shape[1]
+    gram = matrix @ matrix.swapaxes(1, 2)
+    mean = np.trace(gram, axis1=1, axis2=2)[:, np.newaxis, np.newaxis] / m
+    half = change @ matrix.swapaxes(1, 2)[:, np.newaxis]
+    gram_change = half + half.swapaxes(2, 3)
+    mean_change = np.trace(gram_change, axis1=2, axis2=3)[..., np.newaxis, np.newaxis] / m
+    upper = np.triu_indices(m)
+    residual = (gram / mean - np.eye(m))[:, upper[0], upper[1]]
+    slope = gram_change / mean[:, np.newaxis]
+    slope = slope - gram[:, np.newaxis] * mean_change / mean[:, np.newaxis] ** 2
+    return residual, slope[:, :, upper[0], upper[1]].swapaxes(1, 2)

@@ -17,6 +17,21 @@ rows count as zeros, for the ellipsoid is then flat):
 
 Why not det: on exactly singular matrices rounding makes det(J J^T) negative about half of the
 time, and its root wrong by the square root of rounding.
+
+The characteristic length of a mixed task: the one that makes J best conditioned at a q.
+
+Angeles, *Fundamentals of Robotic Mechanical Systems*, section 5.8, and Ranjbaran, Angeles &
+Gonzalez-Palacios, "The mechanical design of a seven-axes manipulator with kinematic isotropy"
+(JIRS 14, 1995): the characteristic length is the L that minimises the condition number of J with
+its entries in metres divided by L.
+
+Velocity, force and dynamic ellipsoids: principal axes and lengths from singular values.
+
+* velocity: tool velocities of joint speeds with |qdot| <= 1; semi-axes sigma_i (Yoshikawa, IJRR
+  4(2), 1985).
+* force: tool forces held by joint torques with |tau| <= 1; the same axes, semi-axes 1 / sigma_i.
+* dynamic: tool accelerations from rest, without gravity, of joint torques with |tau| <= 1;
+  singular values of J M^-1 (Yoshikawa, "Dynamic manipulability of robot manipulators", 1985).
 """
 
 from __future__ import annotations
@@ -28,12 +43,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import Array, frozen, real_array
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.model.robot import Robot
-from kinlab.structure.task_space import read_length, read_task
+from kinlab.model.robot import Robot, require_inertia
+from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 
 def yoshikawa(sigma: Array) -> Array:
@@ -208,3 +223,155 @@ def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.
 
 SINGULAR = 1e-10
 """sigma_min / sigma_max at and below which a configuration counts as singular."""
+
+
+OPTIMAL = "optimal"
+"""In place of a number of metres: the length that minimises the condition number."""
+
+_DECADES = 3.0
+"""The search spans the arm's own length unit times 10^-3 to 10^3."""
+
+
+@dataclass(frozen=True)
+class CharacteristicLength:
+    """Answer of :func:`characteristic_length`.
+
+    Attributes:
+        length: metres, or ``None`` where the condition number depends on no length.
+        condition: condition number of J at that length; infinity at a singularity.
+        task: name of the task.
+        how: ``given``, ``optimal`` or ``none needed``.
+    """
+
+    length: float | None
+    condition: float
+    task: str
+    how: str
+
+
+def characteristic_length(
+    robot: Robot, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
+) -> CharacteristicLength:
+    """The length that minimises the condition number at q, or the effect of a given one.
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,).
+        task: as in :func:`kinlab.manipulability`, or ``"auto"``.
+        length: metres, or ``"optimal"``.
+
+    Raises:
+        StateError, NameUnknownError, OptionError: bad q, unknown task, length <= 0, or a
+            singular q, at which every length is as bad as any other.
+    """
+    space = read_task(robot, task)
+    state = joint_vector(robot, q, "q")
+    if state.ndim != 1:
+        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    given = read_length_choice(length)
+    if not space.mixed:
+        return CharacteristicLength(None, _condition(space, state, 1.0), space.name, "none needed")
+    if given is not None:
+        return CharacteristicLength(given, _condition(space, state, given), space.name, "given")
+    values = singular_values(space.jacobian(state, space.scale))
+    if values[-1] <= 1e-10 * values[0]:
+        raise OptionError(
+            f"robot {robot.name!r}: q is singular for task {space.name}; every length gives an "
+            "infinite condition number"
+        )
+    best = best_length(space, state)
+    return CharacteristicLength(best, _condition(space, state, best), space.name, "optimal")
+
+
+def best_length(space: TaskSpace, q: Array) -> float:
+    """The minimiser of the condition number over L: log kappa is scanned, then bracketed."""
+    from scipy.optimize import minimize_scalar  # `import kinlab` does not wait for scipy
+
+    exponents = np.linspace(-_DECADES, _DECADES, 121)
+
+    def cost(exponent: float) -> float:
+        return float(np.log(_condition(space, q, space.scale * 10.0**exponent)))
+
+    at = int(np.argmin([cost(float(e)) for e in exponents]))
+    around = exponents[max(at - 1, 0)], exponents[min(at + 1, len(exponents) - 1)]
+    found = minimize_scalar(cost, bounds=around, method="bounded", options={"xatol": 1e-12})
+    return float(space.scale * 10.0**found.x)
+
+
+def read_length_choice(length: Any) -> float | None:
+    """A number of metres, or ``None`` for ``"optimal"``.
+
+    Raises:
+        NameUnknownError: another word. OptionError: not a number above zero.
+    """
+    if isinstance(length, str):
+        if length != OPTIMAL:
+            raise NameUnknownError(f'length {length!r} is unknown; give metres or "{OPTIMAL}"')
+        return None
+    return read_length(length)
+
+
+def _condition(space: TaskSpace, q: Array, length: float) -> float:
+    sigma = singular_values(space.jacobian(q, length))
+    return float(sigma[0] / sigma[-1]) if sigma[-1] > 0.0 else float("inf")
+
+
+ELLIPSOIDS = ("velocity", "force", "dynamic")
+
+
+@dataclass(frozen=True)
+class Ellipsoid:
+    """An ellipsoid in task coordinates.
+
+    Attributes:
+        kind: ``velocity``, ``force`` or ``dynamic``.
+        task: the task. suggested: kinlab chose it.
+        length: characteristic length, or ``None`` where the task needs none.
+        axes: unit principal axes as columns, (m, m).
+        lengths: semi-axes, descending, (m,). Zero: flat in that direction. Infinity (force
+            only): a force in that direction needs no torque, as at a singularity.
+    """
+
+    kind: str
+    task: str
+    suggested: bool
+    length: float | None
+    axes: Array
+    lengths: Array
+
+
+def ellipsoid(
+    robot: Robot, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
+) -> Ellipsoid:
+    """An ellipsoid at one q; the three kinds are defined at the top of this module.
+
+    Args:
+        robot: the robot.
+        q: joint positions, (n,).
+        kind: ``"velocity"``, ``"force"`` or ``"dynamic"``.
+        task, length: as in :func:`kinlab.manipulability`, or ``"auto"``.
+
+    Raises:
+        StateError, NameUnknownError, OptionError: bad q, unknown kind or task, length <= 0.
+        InertiaError: ``"dynamic"`` of a robot with a singular mass matrix.
+    """
+    if kind not in ELLIPSOIDS:
+        raise NameUnknownError(f"ellipsoid {kind!r} is unknown; {near(str(kind), ELLIPSOIDS)}")
+    space, size = read_task(robot, task), read_length(length)
+    state = joint_vector(robot, q, "q")
+    if state.ndim != 1:
+        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    matrix = space.jacobian(state, size)
+    if kind == "dynamic":
+        require_inertia(robot)
+        matrix = np.asarray(np.linalg.solve(mass_matrix(robot, state), matrix.T).T, np.float64)
+    left: Array = np.linalg.svd(matrix)[0]
+    sigma: Array = singular_values(matrix)
+    if kind == "force":
+        flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
+        inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
+        left, sigma = left[:, ::-1], inverse[::-1]
+    return Ellipsoid(
+        kind, space.name, space.suggested, size if space.mixed else None, frozen(left),
+        frozen(sigma),
+    )  # fmt: skip

@@ -19,10 +19,9 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis import singular_set as sets
-from kinlab.analysis.derivatives import jacobian_derivative
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
-from kinlab.analysis.solver import solve
+from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import OptionError

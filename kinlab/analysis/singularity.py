@@ -14,7 +14,7 @@ from kinlab.analysis.edge import edge
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.minors import factors
-from kinlab.analysis.supports import holds, pinned, pinned_pairs, supports
+from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -165,13 +165,13 @@ def find_singularities(
 ) -> SingularitySearch:
     """Configurations on the singular set within the joint limits, sheet by sheet.
 
-    A sheet is told by the joints that hold it (:mod:`kinlab.analysis.supports`): its free joints
-    were moved, far, and the arm stayed singular. Points where two sheets cross, and extrema of one,
-    are members of a sheet and no families. Starts are the dips of sigma_min along the line of every
-    joint through several points, each solved to rounding by Newton on the bordered system of
-    :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact, and of a redundant
-    arm every pair of joints is scanned for values that suffice alone. A redundant arm is singular
-    where its rank drops below the number of task rows.
+    A sheet is told by the joints that hold it (:func:`kinlab.analysis.singular_set.supports`): its
+    free joints were moved, far, and the arm stayed singular. Points where two sheets cross, and
+    extrema of one, are members of a sheet and no families. Starts are the dips of sigma_min along
+    the line of every joint through several points, each solved to rounding by Newton on the
+    bordered system of :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact,
+    and of a redundant arm every pair of joints is scanned for values that suffice alone. Such an
+    arm is singular where its rank drops below the number of task rows.
 
     Args:
         robot: the robot.
@@ -273,8 +273,9 @@ def _evidence(space: TaskSpace, effort: Effort, exact: int) -> Evidence:
         searched,
         effort.converged,
         effort.seeds,
-        "every listed configuration is singular, and stays so when its family's free joints move",
-        "that there is no other family"
+        "every listed configuration is singular",
+        "that it stays so wherever its family's free joints are (tried at random states), and that "
+        "there is no other family"
         + ("" if not exact else f"; the last new one came with start {effort.last_new}"),
     )
 

@@ -3,10 +3,10 @@
 ===========  =====================================================================================
 module       what it holds
 ===========  =====================================================================================
-``motors``   Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
-             one's own
-``cycles``   The pick-and-place cycle: a path of the tool, up, across, down, and back
+``cycles``   The pick-and-place cycle: up, across, down, and back, with blended corners
 ``demand``   What a motion asks of the drives over time, at the joints and at the motors' shafts
 ``fitting``  One motor against what its duty asks, and the gear ratio that suits it
+``motors``   Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
+             one's own
 ===========  =====================================================================================
 """

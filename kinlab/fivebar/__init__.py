@@ -3,18 +3,26 @@
 ================  ================================================================================
 module            what it holds
 ================  ================================================================================
-``linkage``       ``FiveBar``: the numbers of a linkage, and the table of its methods
-``arguments``     What the functions are given: points of the plane, modes, how to refuse
-``geometry``      Kinematics in closed form: poses, positions, rates, accelerations
-``dynamics``      Dynamics in closed form: rods of mass, torque, mass matrix, energy, power
-``metrics``       How good a pose is: determinant, condition, angles, stiffness, isotropy
-``singularity``   Where the loci of singular poses are, and how far a pose is from them
-``workspace``     What is reachable, and the regions free of singularities in it
-``servo``         Worst case over a workspace, and the motors that meet it
+``arguments``     What the functions of a five-bar are given: points of the plane, modes, how to
+                  refuse
 ``closed_chain``  The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint
-``simulation``    Forward dynamics and simulation of the closed chain
-``export``        Files for other programs: MJCF with its loop, or URDF with a loop sidecar
+``dynamics``      Dynamics of a five-bar in closed form: rods of mass, torque, mass matrix, energy
+                  and power
+``export``        A five-bar as files for other programs: MJCF with its loop, or URDF with a loop
+                  sidecar
 ``files``         Five-bars as TOML: the presets in ``robots/fivebar/`` and files of one's own
+``geometry``      Kinematics of a five-bar in closed form: positions, rates, accelerations
+``linkage``       ``FiveBar``: the numbers of a five-bar linkage, and the table of its methods
+``metrics``       How good a pose of a five-bar is: determinant, condition, angles, stiffness,
+                  isotropy
+``servo``         Servo sizing of a five-bar: the worst case over a workspace, and the motors that
+                  meet it
+``simulation``    Forward dynamics and simulation of the closed chain with Pinocchio's constraint
+                  solver
+``singularity``   Where a five-bar is singular, and how far a pose is from the three kinds of
+                  singularity
+``workspace``     The workspace of a five-bar: what is reachable, and the regions free of
+                  singularities
 ================  ================================================================================
 
 ``FiveBar`` binds the functions as methods, so ``fivebar.ik(xy)`` is ``geometry.ik(fivebar, xy)``.

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.ellipsoids import ellipsoid
+from kinlab.analysis.metrics import ellipsoid
 from kinlab.arrays import Array
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -43,7 +43,7 @@ def plot_ellipse(
     Args:
         robot: an arm that stays in a plane z = const of the base.
         q: joint positions, (n,).
-        kinds: of :func:`kinlab.analysis.ellipsoids.ellipsoid`. Each ellipse is drawn with its
+        kinds: of :func:`kinlab.analysis.metrics.ellipsoid`. Each ellipse is drawn with its
             longest axis ``size`` of the arm's reach: units differ, shapes compare.
         axes: where to draw; a new figure if left out.
         size: share of the reach.

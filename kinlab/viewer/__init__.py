@@ -13,7 +13,7 @@ module               what it holds
 ``dh_picture``       The picture that teaches DH: frames, z axes, and each row's a, alpha, d,
                      theta on the arm
 ``fivebar_motions``  Motions to show a five-bar with: round, straight, and pick and place, inside
-                     its free room
+                     its free circle
 ``fivebar_page``     The five-bar drawn in its own plane, stood upright: cranks, rods, loci and
                      workspace
 ``live``             The live page: a small server on loopback that shows a page and passes

@@ -11,7 +11,7 @@ from random_tables import random_table
 
 import kinlab as kl
 from kinlab.analysis import metrics
-from kinlab.analysis.derivatives import jacobian_derivative
+from kinlab.analysis.solver import jacobian_derivative
 from kinlab.errors import NameUnknownError, OptionError, StateError
 from kinlab.structure.task_space import read_task
 
