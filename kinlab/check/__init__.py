@@ -5,8 +5,8 @@ module           what it holds
 ===============  =================================================================================
 ``catalogue``    The catalogue: every formula of the notes, run on its robots
 ``compare``      The comparison of a hand formula with the engine over seeded random states
-``finding``      What a report shows of a formula that was taken apart: plain words, LaTeX and
-                 numbers
+``diagnosis``    A hand formula, judged: a verdict, ranked causes with their evidence, the
+                 corrected formula
 ``guest``        A user's file of marked functions, in a process of its own with a limit of time
 ``table_check``  Checks of one arm: its DH table by hand beside Pinocchio and yourdfpy
 ``targets``      What the arguments of ``kinlab check`` mean: robots, files, notes, ids, a user's

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.check.compare import Comparison, compare_stacked
-from kinlab.check.finding import Finding
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.formulas.record import Formula, formulas_in, function_name
 from kinlab.tolerances import TOLERANCES
@@ -42,7 +42,7 @@ class Row:
         corrected: the corrected form beside the engine.
         printed: the printed form beside the engine, where the note has a misprint that shows on
             this robot.
-        finding: what is wrong in a user's formula that differs, where it was looked for.
+        diagnosis: what is wrong in a user's formula that differs, where it was looked for.
         failure: why the function gave no answer at all, or an empty string.
     """
 
@@ -50,7 +50,7 @@ class Row:
     robot: str
     corrected: Comparison
     printed: Comparison | None = None
-    finding: Finding | None = None
+    diagnosis: Diagnosis | None = None
     failure: str = ""
 
     @property

@@ -77,9 +77,11 @@ class Guest:
         context: Any = multiprocessing.get_context(method)
         self._pipe, other = context.Pipe()
         process = context.Process(
-            target=_serve, args=(other, self._pipe if method == "fork" else None, self._path),
-            daemon=True, name="kinlab check",
-        )  # fmt: skip
+            target=_serve,
+            args=(other, self._pipe if method == "fork" else None, self._path),
+            daemon=True,
+            name="kinlab check",
+        )
         sys.stdout.flush()
         sys.stderr.flush()
         with warnings.catch_warnings():
@@ -134,10 +136,13 @@ class _Call:
 
 _ERRORS: dict[str, type[KinlabError]] = {
     name: value
-    for name, value in {**vars(errors), "FormulaError": FormulaError,
-                        "AnswerShapeError": AnswerShapeError}.items()
+    for name, value in {
+        **vars(errors),
+        "FormulaError": FormulaError,
+        "AnswerShapeError": AnswerShapeError,
+    }.items()
     if isinstance(value, type) and issubclass(value, KinlabError)
-}  # fmt: skip
+}
 
 
 def _limit() -> float:
@@ -166,7 +171,7 @@ def _serve(pipe: Any, others: Any, path: str) -> None:
     def load() -> list[Formula]:
         records = formulas_in(_module(Path(path)))
         functions.extend(record.function for record in records)
-        return [replace(record, function=_nothing) for record in records]
+        return [replace(record, function=_without_answer) for record in records]
 
     _reply(pipe, load, f"{path}: ")
     while True:
@@ -193,7 +198,7 @@ def _reply(pipe: Any, work: Any, place: str) -> None:
         pipe.send(("FormulaError", f"{place}the answer cannot be read: {problem}"))
 
 
-def _nothing(*anything: Any) -> None:
+def _without_answer(*anything: Any) -> None:
     """Stands for a function while its record travels."""
 
 

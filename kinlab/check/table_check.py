@@ -57,27 +57,50 @@ def _record(part: str, title: str, quantity: str, function: Function, latex: str
 KINEMATIC = (
     _record("fk", "hand FK beside Pinocchio", "fk", tool_pose, r"\prod_i {}^{i-1}_iT"),
     _record(
-        "fk, yourdfpy", "hand FK beside yourdfpy", "fk_yourdfpy", tool_pose,
-        r"\prod_i {}^{i-1}_iT",
+        "fk, yourdfpy", "hand FK beside yourdfpy", "fk_yourdfpy", tool_pose, r"\prod_i {}^{i-1}_iT"
     ),
     _record(
-        "J", "finite differences of the hand FK beside J", "jacobian", finite_differences,
+        "J",
+        "finite differences of the hand FK beside J",
+        "jacobian",
+        finite_differences,
         r"J \approx \frac{\Delta f}{\Delta q}",
     ),
-)  # fmt: skip
+)
 
 DYNAMIC = (
-    _record("M", "M of the link Jacobians beside crba", "mass_matrix", mass.mass_matrix,
-            r"M = \sum_i m_i J_i^T J_i + J_{\omega i}^T R_i I_i R_i^T J_{\omega i}"),
-    _record("tau", "hand Newton-Euler beside rnea", "inverse_dynamics", _newton_euler,
-            r"\tau_i = n_i \cdot \hat Z"),
-    _record("M a + C v + g", "hand Newton-Euler beside the sum of the terms", "terms",
-            _newton_euler, r"\tau = M \ddot q + C \dot q + g"),
-    _record("M > 0", "M symmetric and positive definite", "mass_matrix_definite", _ones,
-            r"M = M^T > 0"),
-    _record("Mdot - 2C", "Mdot - 2C is skew", "skew_residue", _no_symmetric_part,
-            r"(\dot M - 2C)^T = -(\dot M - 2C)"),
-)  # fmt: skip
+    _record(
+        "M",
+        "M of the link Jacobians beside crba",
+        "mass_matrix",
+        mass.mass_matrix,
+        r"M = \sum_i m_i J_i^T J_i + J_{\omega i}^T R_i I_i R_i^T J_{\omega i}",
+    ),
+    _record(
+        "tau",
+        "hand Newton-Euler beside rnea",
+        "inverse_dynamics",
+        _newton_euler,
+        r"\tau_i = n_i \cdot \hat Z",
+    ),
+    _record(
+        "M a + C v + g",
+        "hand Newton-Euler beside the sum of the terms",
+        "terms",
+        _newton_euler,
+        r"\tau = M \ddot q + C \dot q + g",
+    ),
+    _record(
+        "M > 0", "M symmetric and positive definite", "mass_matrix_definite", _ones, r"M = M^T > 0"
+    ),
+    _record(
+        "Mdot - 2C",
+        "Mdot - 2C is skew",
+        "skew_residue",
+        _no_symmetric_part,
+        r"(\dot M - 2C)^T = -(\dot M - 2C)",
+    ),
+)
 
 
 def table_rows(robot: Robot, samples: int = 200, seed: int = 0) -> list[Row]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from kinlab.check.catalogue import Row
-    from kinlab.check.finding import Finding
+    from kinlab.check.diagnosis import Diagnosis
     from kinlab.check.targets import Task
 
 WHAT = Annotated[
@@ -47,6 +47,9 @@ AGAINST = Annotated[
         "cell of the tables is wrong.",
     ),
 ]
+
+Document = tuple[str, dict[str, Any]]
+"""A path and the TOML document that was read from it."""
 
 
 def register(app: typer.Typer) -> None:
@@ -90,48 +93,56 @@ def check(
         check_report_path(file)
     texts, rest = _formula_files(what or [])
     todo = tasks(rest) if rest or not texts else []
-    findings = _examine(texts, samples, seed)
+    judged = _examine(texts, samples, seed)
     done = []
     for one in _run(todo, samples, seed):
         if isinstance(one, Row):
             done.append(one)
         else:
-            findings.append(one)
+            judged.append(one)
     if json:
-        _print_json(done, findings)
+        _print_json(done, judged)
     else:
-        _print_all(done, findings, rows)
+        _print_all(done, judged, rows)
     for file in report or ():
-        write_report(file, done, findings)
+        write_report(file, done, judged)
         echo(f"wrote {file}", err=json)
-    if not all(row.ok for row in done) or not all(one.agrees for one in findings):
+    if not all(row.ok for row in done) or not all(one.agrees for one in judged):
         raise typer.Exit(1)
 
 
-def _formula_files(what: list[str]) -> tuple[list[str], list[str]]:
-    """Files of formulas as text, and the other arguments."""
-    candidates = [w for w in what if w.lower().endswith(".toml")]
-    if not candidates:
+def _formula_files(what: list[str]) -> tuple[list[Document], list[str]]:
+    """Files of formulas as text with what they hold, and the other arguments."""
+    if not any(w.lower().endswith(".toml") for w in what):
         return [], what
-    from kinlab.doctor.file import is_formula_file
+    from kinlab.doctor.file import formula_document
 
-    texts = [w for w in candidates if is_formula_file(w)]
-    return texts, [w for w in what if w not in texts]
+    texts: list[Document] = []
+    rest = []
+    for path in what:
+        document = formula_document(path)
+        if document is None:
+            rest.append(path)
+        else:
+            texts.append((path, document))
+    return texts, rest
 
 
-def _examine(files: list[str], samples: int, seed: int) -> list[Finding]:
-    if not files:
+def _examine(texts: list[Document], samples: int, seed: int) -> list[Diagnosis]:
+    if not texts:
         return []
-    from kinlab.doctor.findings import of_file
+    from kinlab.doctor.report import of_file
+    from kinlab.formulas.text import formula_file
 
-    return [finding for file in files for finding in of_file(file, samples, seed)]
+    files = [formula_file(document, path) for path, document in texts]
+    return [found for file in files for found in of_file(file, samples, seed)]
 
 
-def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Finding]:
+def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Diagnosis]:
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
     columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
-    done: list[Row | Finding] = []
+    done: list[Row | Diagnosis] = []
     with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=len(todo))
         for task in todo:
@@ -141,28 +152,28 @@ def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Finding]:
     return done
 
 
-def _one(task: Task, samples: int, seed: int) -> Row | Finding:
+def _one(task: Task, samples: int, seed: int) -> Row | Diagnosis:
     if not task.file:
         return task.run(samples, seed)
-    from kinlab.doctor.findings import of_task
+    from kinlab.doctor.report import of_task
 
     return of_task(task, samples, seed)
 
 
-def _print_json(done: Sequence[Row], findings: Sequence[Finding]) -> None:
+def _print_json(done: Sequence[Row], judged: Sequence[Diagnosis]) -> None:
     import json
 
     from kinlab.check.report.summary import as_data
 
-    data = as_data(done, findings)
+    data = as_data(done, judged)
     echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
 
 
-def _print_all(done: Sequence[Row], findings: Sequence[Finding], each: bool) -> None:
+def _print_all(done: Sequence[Row], judged: Sequence[Diagnosis], each: bool) -> None:
     if done:
         _print_table(done, each)
-    for k, finding in enumerate(findings):
-        echo(("\n" if k or done else "") + finding.text)
+    for k, found in enumerate(judged):
+        echo(("\n" if k or done else "") + str(found))
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:
@@ -197,24 +208,24 @@ def _print_failures(console: Screen, done: Sequence[Row]) -> None:
         if not row.corrected.agrees:
             told = row.verdict if row.failure else row.corrected
             console.print(f"\n{row.formula.key}: {told}", style="red")
-            if row.finding is not None:
-                _print_finding(console, row.finding)
+            if row.diagnosis is not None:
+                _print_diagnosis(console, row.diagnosis)
 
 
-def _print_finding(console: Screen, finding: Finding) -> None:
+def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
     from kinlab.check.report.summary import size
 
     def line(text: str) -> None:
-        console.print(text, style="bold" if finding.known else "", highlight=False,
+        console.print(text, style="bold" if found.known else "", highlight=False,
                       soft_wrap=True)  # fmt: skip
 
-    line(f"diagnosis: {finding.sentence}")
-    if finding.known:
-        before, after = size(finding.error_before), size(finding.error_after)
+    line(f"diagnosis: {found.sentence}")
+    if found.known:
+        before, after = size(found.error_before), size(found.error_after)
         line(f"  relative error before {before}, after {after}")
-        for name, text in finding.data["causes"][0]["corrected"].items():
+        for name, text in found.causes[0].corrected.items():
             line(f"  correct: {name} = {text}")
-    for text in finding.others:
+    for text in found.others:
         line(f"  or: {text}")
 
 

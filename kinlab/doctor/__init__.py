@@ -7,19 +7,18 @@ module              what it holds
                     one does
 ``derived``         The engine's quantities as derived formulas, entry by entry, for arms with a
                     DH table
-``diagnosis``       What the doctor answers: a verdict, ranked causes with their evidence, the
-                    corrected formula
 ``edits``           Every slip of the pen at one place of a formula: sign, factor, power, index,
                     function,
 ``examine``         The examination: compare, try the readings, look for slips in the entries,
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
-``findings``        Diagnoses as findings: with the formulas typeset and the differences marked,
-                    for a report
+``otherwise``       What the engine says if asked otherwise: another frame, another split of
+                    C, terms left out
 ``readings``        The table of known confusions: every reading that makes sense for a quantity
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
+``report``          Diagnoses for a report: with the formulas typeset and the differences marked
 ``robot_readings``  Readings of the robot itself: convention, offsets, base and tool, gravity,
                     inertias
 ``search``          Finds the one or two edits that turn one formula into another, by their effect

@@ -73,10 +73,10 @@ def tip_speed_squared(a: SymbolicArm) -> Poly:
 def _rate(a: SymbolicArm, poly: Poly) -> Poly:
     """The time derivative along a motion."""
     total = a.trig.ring.zero
-    for i, (speed, turn) in enumerate(zip(a.qd, a.qdd, strict=True)):
+    for i, (speed, acceleration) in enumerate(zip(a.qd, a.qdd, strict=True)):
         moving = a.trig.gens[speed.name]
         total += a.trig.by_joint(poly, i) * moving
-        total += poly.diff(moving) * a.trig.gens[turn.name]
+        total += poly.diff(moving) * a.trig.gens[acceleration.name]
     return a.trig.reduce(total)
 
 
@@ -105,7 +105,7 @@ def _planar_pose(a: SymbolicArm) -> Any:
     return [pose[0][3], pose[1][3], pose[0][0], pose[1][0]]
 
 
-def _circling(a: SymbolicArm) -> Any:
+def _coriolis_torques(a: SymbolicArm) -> Any:
     speeds = [[a.trig.gens[s.name]] for s in a.qd]
     return _column(kinematics.product(a, dynamics.coriolis_grid(a), speeds))
 
@@ -121,7 +121,7 @@ _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
 _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "mass_matrix": dynamics.mass_grid,
     "coriolis_matrix": dynamics.coriolis_grid,
-    "coriolis_torques": _circling,
+    "coriolis_torques": _coriolis_torques,
     "gravity_torques": lambda a: _column(dynamics.gravity_column(a)),
     "inverse_dynamics": lambda a: _column(dynamics.torque_column(a)),
     "kinetic_energy": dynamics.kinetic_poly,

@@ -15,12 +15,12 @@ import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import relative_errors
+from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor import terms
 from kinlab.doctor.changes import Case, Reading
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.diagnosis import Cause, Diagnosis
 from kinlab.doctor.readings import readings
 from kinlab.doctor.terms import Entry, Slip, entries, split_name
 from kinlab.errors import KinlabError, OptionError
@@ -111,10 +111,18 @@ def examine(
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
-        quantity, label, name, False, worst, tuple(ranked), partial if not ranked else (), where,
+        quantity,
+        label,
+        name,
+        False,
+        worst,
+        tuple(ranked),
+        partial if not ranked else (),
+        where,
         {n: stack[k] for n, stack in case.arguments.items()},
-        values[(k, *furthest)], engine[(k, *furthest)],
-    )  # fmt: skip
+        values[(k, *furthest)],
+        engine[(k, *furthest)],
+    )
 
 
 def _hidden(case: Case, engine: Array, written: dict[str, Node]) -> tuple[list[Cause], float]:
@@ -204,8 +212,14 @@ def _in_pairs(case: Case, tried: list[Reading]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
     answers = [r for r in tried if r.stage == "answer"]
     before = [r for r in tried if r.stage != "answer"]
-    yield from _found(case, ((one, two) for one, two in combinations(answers, 2)
-                             if _apart(one, two) and _seems(few, (one, two))))  # fmt: skip
+    yield from _found(
+        case,
+        (
+            (one, two)
+            for one, two in combinations(answers, 2)
+            if _apart(one, two) and _seems(few, (one, two))
+        ),
+    )
     for k, first in enumerate(before):
         changed, rest = _begun(few, first)
         if changed is None:
@@ -243,9 +257,12 @@ def _found(case: Case, chosen: Iterable[tuple[Reading, ...]]) -> Iterator[Cause]
 def _as_cause(chosen: tuple[Reading, ...], error: float) -> Cause:
     told = " and ".join(r.sentence for r in chosen)
     return Cause(
-        f"the formula {told}", tuple(r.kind for r in chosen), tuple(r.place for r in chosen),
-        error, sum(r.cost for r in chosen),
-    )  # fmt: skip
+        f"the formula {told}",
+        tuple(r.kind for r in chosen),
+        tuple(r.place for r in chosen),
+        error,
+        sum(r.cost for r in chosen),
+    )
 
 
 def _slips(
@@ -276,10 +293,13 @@ def _varied(found: list[Slip]) -> list[Slip]:
 
 def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
     return Cause(
-        "; ".join(s.sentence for s in slips), tuple(k for s in slips for k in s.kinds),
-        tuple(s.entry for s in slips), max(s.error for s in slips), sum(s.cost for s in slips),
+        "; ".join(s.sentence for s in slips),
+        tuple(k for s in slips for k in s.kinds),
+        tuple(s.entry for s in slips),
+        max(s.error for s in slips),
+        sum(s.cost for s in slips),
         {s.entry: s.corrected for s in slips if s.corrected},
-    )  # fmt: skip
+    )
 
 
 def _of_entry(case: Case, entry: Entry, text: Node | None) -> list[Slip]:
@@ -293,8 +313,16 @@ def _of_entry(case: Case, entry: Entry, text: Node | None) -> list[Slip]:
         found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
-        found = terms.in_function(entry.label, entry.hand, entry.engine, derived, poly, arguments,
-                                  case.arguments, others[:12])  # fmt: skip
+        found = terms.in_function(
+            entry.label,
+            entry.hand,
+            entry.engine,
+            derived,
+            poly,
+            arguments,
+            case.arguments,
+            others[:12],
+        )
     good = []
     for slip in found:
         left = entry.engine if slip.repaired else entry.hand
@@ -322,13 +350,25 @@ def _reading_and_slips(case: Case, tried: list[Reading], engine: Array) -> Itera
         for cause in _slips(changed, off, {})[0]:
             yield Cause(
                 f"the formula {reading.sentence}, and then {cause.sentence}",
-                (reading.kind, *cause.kinds), (reading.place, *cause.places), cause.error_after,
-                reading.cost + cause.cost, cause.corrected,
-            )  # fmt: skip
+                (reading.kind, *cause.kinds),
+                (reading.place, *cause.places),
+                cause.error_after,
+                reading.cost + cause.cost,
+                cause.corrected,
+            )
 
 
-_UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order",
-           "row sign", "column sign", "rows swapped"}  # fmt: skip
+_UNDONE = {
+    "sign",
+    "transposed",
+    "row order",
+    "inverse",
+    "rotation transposed",
+    "joint order",
+    "row sign",
+    "column sign",
+    "rows swapped",
+}
 """Readings of the answer that are their own inverse."""
 
 

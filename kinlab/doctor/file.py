@@ -6,20 +6,21 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS
-from kinlab.doctor.diagnosis import Diagnosis
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas import tree
 from kinlab.formulas.evaluate import plain_values
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, read_file
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text, read_toml
 from kinlab.model.dh import DHTable
@@ -30,22 +31,31 @@ from kinlab.symbolic.vocabulary import is_planar, vocabulary
 # -------- What the names in a formula file claim to be: tau1, g2, M12, C11, J11, x, T, V
 
 _VECTORS = {
-    "tau": "inverse_dynamics", "Q": "inverse_dynamics", "torque": "inverse_dynamics",
-    "g": "gravity_torques", "G": "gravity_torques", "D": "gravity_torques",
-    "c": "coriolis_torques", "h": "coriolis_torques", "V": "coriolis_torques",
-    "b": "coriolis_torques",
-}  # fmt: skip
+    "inverse_dynamics": "tau Q torque",
+    "gravity_torques": "g G D",
+    "coriolis_torques": "c h V b",
+}
 _MATRICES = {
-    "M": "mass_matrix", "D": "mass_matrix", "H": "mass_matrix", "B": "mass_matrix",
-    "C": "coriolis_matrix", "J": "jacobian", "T": "fk", "R": "fk", "r": "fk",
-}  # fmt: skip
+    "mass_matrix": "M D H B",
+    "coriolis_matrix": "C",
+    "jacobian": "J",
+    "fk": "T R r",
+}
 _NUMBERS = {
-    "x": "fk[0,3]", "y": "fk[1,3]", "z": "fk[2,3]",
-    "px": "fk[0,3]", "py": "fk[1,3]", "pz": "fk[2,3]",
-    "T": "kinetic_energy", "K": "kinetic_energy", "kinetic": "kinetic_energy",
-    "V": "potential_energy", "U": "potential_energy", "P": "potential_energy",
-    "potential": "potential_energy",
-}  # fmt: skip
+    "fk[0,3]": "x px",
+    "fk[1,3]": "y py",
+    "fk[2,3]": "z pz",
+    "kinetic_energy": "T K kinetic",
+    "potential_energy": "V U P potential",
+}
+"""Each quantity with the letters that its vectors, matrices and numbers go by."""
+
+
+def _by_letter(table: dict[str, str]) -> dict[str, str]:
+    return {letter: name for name, letters in table.items() for letter in letters.split()}
+
+
+_VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
 _VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
 _MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
 
@@ -63,48 +73,47 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     plain = entry.split("[")[0].strip()
     if plain in quantities():
         return entry.strip()
-    if entry in _NUMBERS:
-        return _NUMBERS[entry]
+    if entry in _NUMBER_OF:
+        return _NUMBER_OF[entry]
     matrix = _MATRIX.fullmatch(entry)
-    if matrix and matrix.group(1) in _MATRICES:
-        name = _MATRICES[matrix.group(1)]
+    if matrix and matrix.group(1) in _MATRIX_OF:
+        name = _MATRIX_OF[matrix.group(1)]
         if name == "jacobian" and table is not None and is_planar(table):
             name = "planar_jacobian"
         return f"{name}[{int(matrix.group(2)) - 1},{int(matrix.group(3)) - 1}]"
     vector = _VECTOR.fullmatch(entry)
-    if vector and vector.group(1) in _VECTORS:
-        return f"{_VECTORS[vector.group(1)]}[{int(vector.group(2)) - 1}]"
+    if vector and vector.group(1) in _VECTOR_OF:
+        return f"{_VECTOR_OF[vector.group(1)]}[{int(vector.group(2)) - 1}]"
     choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
     raise ExpressionError(f"{entry!r} names no quantity; {choices}")
 
 
 # -------- A file of formulas as text, examined entry by entry
 
+_FILE_LIMIT = 1 << 20
 _SAME = 1e-9
 _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
 
 
-def is_formula_file(path: str | Path) -> bool:
-    """Whether a TOML file holds formulas (it names a robot) and not a DH table.
+def formula_document(path: str | Path) -> dict[str, Any] | None:
+    """The TOML document of a file of formulas (it names a robot); None of any other file.
 
     Raises:
         FileError: the file cannot be read.
     """
     if Path(path).suffix.lower() != ".toml":
-        return False
+        return None
     try:
-        document = read_toml(read_text(path, limit=1 << 20), str(path), ExpressionError)
+        document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), ExpressionError)
     except ExpressionError:
-        return False
-    return "links" not in document and ("robot" in document or "formulas" in document)
+        return None
+    holds = "links" not in document and ("robot" in document or "formulas" in document)
+    return document if holds else None
 
 
 def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
-    """Judges every formula of a file (:func:`kinlab.formulas.text.read_file` has the format).
-
-    Entries that make up a whole quantity are judged together, so that a confusion of the whole
-    (a frame, gravity's sign) is seen; others each for itself.
+    """Judges every formula of a file; :func:`kinlab.formulas.text.formula_file` has the format.
 
     Args:
         path: the TOML file.
@@ -114,8 +123,27 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         FileError, ExpressionError: the file, an expression or a name cannot be read.
         NameUnknownError: no such robot.
     """
-    file = read_file(path)
-    robot = robot_of(file)
+    document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), FileError)
+    file = formula_file(document, str(path))
+    return examine_formulas(file, robot_of(file), samples, seed)
+
+
+def examine_formulas(
+    file: FormulaFile, robot: Robot, samples: int = 200, seed: int = 0
+) -> list[Diagnosis]:
+    """Judges formulas that are read already, of a robot that is loaded.
+
+    Entries that make up a whole quantity are judged together, so that a confusion of the whole
+    (a frame, gravity's sign) is seen; others each for itself.
+
+    Args:
+        file: the formulas.
+        robot: from :func:`robot_of`.
+        samples, seed: the states, as in :func:`kinlab.diagnose`.
+
+    Raises:
+        ExpressionError: a name that means nothing.
+    """
     wanted: dict[str, dict[str, Node]] = {}
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
@@ -127,7 +155,7 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         if any(isinstance(k, slice) for k in index):
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
-        wanted.setdefault(plain, {})[label] = meant(text, file, robot, entry)
+        wanted.setdefault(plain, {})[label] = in_robot_names(text, file, robot, entry)
         titles[label] = entry
     done: list[Diagnosis] = []
     for plain, formulas in wanted.items():
@@ -153,12 +181,17 @@ def _of_quantity(
                 f"{file.path}: {titles[label]}: {label} does not exist; {plain} has shape {shape}"
             )
     if plain in _MIRRORED:
-        mirrored = {f"{plain}[{j},{i}]": formulas[f"{plain}[{i},{j}]"]
-                    for i, j in np.ndindex(shape) if f"{plain}[{i},{j}]" in formulas}  # fmt: skip
+        mirrored = {
+            f"{plain}[{j},{i}]": formulas[f"{plain}[{i},{j}]"]
+            for i, j in np.ndindex(shape)
+            if f"{plain}[{i},{j}]" in formulas
+        }
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
-    values = {label: _values(node, case, file, _entry_of(label, titles))
-              for label, node in formulas.items()}  # fmt: skip
+    values = {
+        label: _values(node, case, file, _entry_of(label, titles))
+        for label, node in formulas.items()
+    }
     if len(formulas) == len(labels):
         hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
         shown = ", ".join(titles[label] for label in labels if label in titles)
@@ -186,7 +219,7 @@ def robot_of(file: FormulaFile) -> Robot:
         raise FileError(f"{file.path}: robot: {problem}") from None
 
 
-def meant(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
+def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
     """A formula with the robot's own names in place of the user's.
 
     Raises:
@@ -229,11 +262,7 @@ def _refuse_large(
 
 
 def _resolved(
-    text: Node,
-    file: FormulaFile,
-    words: dict[str, float],
-    known: set[str],
-    place: str,
+    text: Node, file: FormulaFile, words: dict[str, float], known: set[str], place: str
 ) -> Node:
     mapping = {}
     for name in sorted(tree.names(text)):

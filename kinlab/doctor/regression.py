@@ -131,8 +131,9 @@ def _terms(entry: Node) -> tuple[Node, ...]:
 def _joint_part(term: Node, names: Names) -> Node:
     factors = term.args if term.op == "mul" else (term,)
     parameters = set(names.parameters)
-    return tree.mul(tree.num(1), *(f for f in factors if f.op != "num"
-                                   and not tree.names(f) <= parameters))  # fmt: skip
+    return tree.mul(
+        tree.num(1), *(f for f in factors if f.op != "num" and not tree.names(f) <= parameters)
+    )
 
 
 def _waves(part: Node) -> list[Node]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,14 @@ from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
 
-_DIRECTIONS = {"+x": (1, 0, 0), "-x": (-1, 0, 0), "+y": (0, 1, 0), "-y": (0, -1, 0),
-               "+z": (0, 0, 1), "-z": (0, 0, -1)}  # fmt: skip
+_DIRECTIONS = {
+    "+x": (1, 0, 0),
+    "-x": (-1, 0, 0),
+    "+y": (0, 1, 0),
+    "-y": (0, -1, 0),
+    "+z": (0, 0, 1),
+    "-z": (0, 0, -1),
+}
 
 
 def table_readings(robot: Robot) -> Iterator[Reading]:
@@ -26,9 +33,11 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
         return
     other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
     yield _table(
-        "convention", f"reads the {table.convention} table as {other}",
-        lambda t: replace(t, convention=other), cost=1.05,
-    )  # fmt: skip
+        "convention",
+        f"reads the {table.convention} table as {other}",
+        lambda t: replace(t, convention=other),
+        cost=1.05,
+    )
     for which in ("base", "tool"):
         if not np.array_equal(getattr(table, which), np.eye(4)):
             yield _table(which, f"leaves the {which} transform out", _setting(which, np.eye(4)))
@@ -39,9 +48,12 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
     yield from _column_readings(table)
     for i, link in enumerate(table.links):
         yield _table(
-            "turning sense", f"turns joint {i + 1} the other way",
-            _linked(i, flip=not link.flip), cost=1.3, place=f"joint {i + 1}",
-        )  # fmt: skip
+            "turning sense",
+            f"turns joint {i + 1} the other way",
+            _linked(i, flip=not link.flip),
+            cost=1.3,
+            place=f"joint {i + 1}",
+        )
         for column in ("theta", "d", "a", "alpha"):
             yield from _entry_readings(i, link, column)
         if table.convention is Convention.STANDARD and np.any(link.com) and (link.a or link.alpha):
@@ -49,30 +61,29 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
             yield _inertial(
                 "centre's frame",
                 f"measures the centre of mass of link {i + 1} in the frame at its joint, not at "
-                "its far end", i, _placed(com, tensor), cost=1.15,
-            )  # fmt: skip
+                "its far end",
+                i,
+                _placed(com, tensor),
+                cost=1.15,
+            )
 
 
 def _column_readings(table: DHTable) -> Iterator[Reading]:
     for column, words in (("theta", "theta offsets"), ("d", "d offsets")):
         changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
         if len(changed) > 1:
-            yield _table(
-                "offset", f"forgets all {words}",
-                _emptied(column),
-            )  # fmt: skip
+            yield _table("offset", f"forgets all {words}", _emptied(column))
     if any(link.alpha for link in table.links):
         yield _table(
-            "alpha sign", "has every alpha with the opposite sign",
-            lambda t: replace(t, links=[replace(k, alpha=-k.alpha) for k in t.links]), cost=1.2,
-        )  # fmt: skip
+            "alpha sign",
+            "has every alpha with the opposite sign",
+            lambda t: replace(t, links=[replace(k, alpha=-k.alpha) for k in t.links]),
+            cost=1.2,
+        )
     for shift, words in ((1, "the row before"), (-1, "the row behind")):
         a = np.roll([link.a for link in table.links], shift)
         alpha = np.roll([link.alpha for link in table.links], shift)
-        yield _table(
-            "row shift", f"takes a and alpha of {words}",
-            _shifted(a, alpha), cost=1.4,
-        )  # fmt: skip
+        yield _table("row shift", f"takes a and alpha of {words}", _shifted(a, alpha), cost=1.4)
 
 
 def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Reading]:
@@ -80,12 +91,16 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Reading]:
     if not value:
         return
     kind = "offset" if column in ("theta", "d") else "table entry"
-    yield _table(kind, f"forgets {column} of {place}", _linked(i, **{column: 0.0}),
-                 cost=1.2, place=place)  # fmt: skip
     yield _table(
-        f"{column} sign", f"has {column} of {place} with the opposite sign",
-        _linked(i, **{column: -value}), cost=1.3, place=place,
-    )  # fmt: skip
+        kind, f"forgets {column} of {place}", _linked(i, **{column: 0.0}), cost=1.2, place=place
+    )
+    yield _table(
+        f"{column} sign",
+        f"has {column} of {place} with the opposite sign",
+        _linked(i, **{column: -value}),
+        cost=1.3,
+        place=place,
+    )
 
 
 def gravity_readings(robot: Robot) -> Iterator[Reading]:
@@ -109,8 +124,13 @@ def inertia_readings(robot: Robot) -> Iterator[Reading]:
         yield _model("rotor inertia", "leaves all rotor inertias out", _armature(None))
         for i in np.flatnonzero(model.armature).tolist():
             if np.count_nonzero(model.armature) > 1:
-                yield _model("rotor inertia", f"leaves the rotor inertia of joint {i + 1} out",
-                             _armature(i), cost=1.2, place=f"joint {i + 1}")  # fmt: skip
+                yield _model(
+                    "rotor inertia",
+                    f"leaves the rotor inertia of joint {i + 1} out",
+                    _armature(i),
+                    cost=1.2,
+                    place=f"joint {i + 1}",
+                )
     for kind, words, change, cost in _BODY_CHANGES:
         touched = [i for i in range(robot.n) if _changes(model.inertias[i + 1], change)]
         if len(touched) > 1:
@@ -158,7 +178,7 @@ def _no_mass(old: Any) -> tuple[float, Array, Array]:
     return 0.0, old.lever, old.inertia
 
 
-def _nothing(old: Any) -> tuple[float, Array, Array]:
+def _without_mass(old: Any) -> tuple[float, Array, Array]:
     return 0.0, old.lever, np.zeros((3, 3))
 
 
@@ -175,22 +195,34 @@ def _double_centre(old: Any) -> tuple[float, Array, Array]:
 
 
 _BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
-    ("inertia point", "takes the inertia of {} about the joint and adds m c² again", _about_joint,
-     1.0),
-    ("inertia point", "leaves m c² out for {}: the inertia about the centre stands for that about "
-     "the joint", _about_centre, 1.0),
+    (
+        "inertia point",
+        "takes the inertia of {} about the joint and adds m c² again",
+        _about_joint,
+        1.0,
+    ),
+    (
+        "inertia point",
+        "leaves m c² out for {}: the inertia about the centre stands for that about the joint",
+        _about_centre,
+        1.0,
+    ),
     ("inertia left out", "leaves the inertia tensor of {} out", _no_tensor, 1.1),
-    ("products of inertia", "has the products of inertia of {} with the opposite sign", _products,
-     1.1),
+    (
+        "products of inertia",
+        "has the products of inertia of {} with the opposite sign",
+        _products,
+        1.1,
+    ),
     ("products of inertia", "leaves the products of inertia of {} out", _no_products, 1.2),
     ("centre", "puts the centre of mass of {} at the joint", _at_joint, 1.2),
     ("centre", "measures the centre of mass of {} to the other side", _mirrored, 1.2),
     ("centre", "has the centre of mass of {} at half its distance", _half_centre, 1.3),
     ("centre", "has the centre of mass of {} at twice its distance", _double_centre, 1.3),
     ("mass left out", "leaves the mass of {} out", _no_mass, 1.2),
-    ("link left out", "leaves {} out of the dynamics", _nothing, 1.3),
+    ("link left out", "leaves {} out of the dynamics", _without_mass, 1.3),
     ("mass", "counts the mass of {} twice", _double_mass, 1.4),
-)  # fmt: skip
+)
 
 
 def _changes(old: Any, change: Callable[[Any], tuple[float, Array, Array]]) -> bool:
@@ -211,9 +243,15 @@ def _table(
 ) -> Reading:
     def apply(robot: Robot) -> Robot:
         assert robot.table is not None
-        return Robot.from_dh(change(robot.table))
+        return _built(change(robot.table))
 
     return Reading(kind, sentence, "robot", apply, cost, place)
+
+
+@lru_cache(maxsize=128)
+def _built(table: DHTable) -> Robot:
+    """The robot of a changed table: entries of one file and pairs of readings ask for it again."""
+    return Robot.from_dh(table)
 
 
 def _setting(which: str, value: Array) -> Callable[[DHTable], DHTable]:

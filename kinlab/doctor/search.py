@@ -244,8 +244,10 @@ class Climber:
     def __init__(self, root: Node, at: dict[str, Array]) -> None:
         self.root = root
         self.count = len(next(iter(at.values())))
-        self.values = {path: np.broadcast_to(tree.evaluate(node, at), (self.count,))
-                       for path, node in tree.nodes(root)}  # fmt: skip
+        self.values = {
+            path: np.broadcast_to(tree.evaluate(node, at), (self.count,))
+            for path, node in tree.nodes(root)
+        }
         self.nodes = dict(tree.nodes(root))
         self.others: dict[tuple[int, ...], Array] = {}
 

@@ -105,9 +105,11 @@ _POINTS = 24
 _CLOSE = 1e-9
 
 _TURNED = {
-    "extra term": "missing term", "missing term": "extra term",
-    "extra factor": "missing factor", "missing factor": "extra factor",
-}  # fmt: skip
+    "extra term": "missing term",
+    "missing term": "extra term",
+    "extra factor": "missing factor",
+    "missing factor": "extra factor",
+}
 """A kind of edit of the engine's formula, told as a slip of the user's."""
 
 
@@ -267,11 +269,7 @@ def _by_effect(
 
 
 def _as_terms(
-    label: str,
-    right: Node,
-    found: list[regression.Term],
-    names: Names,
-    at: dict[str, Array],
+    label: str, right: Node, found: list[regression.Term], names: Names, at: dict[str, Array]
 ) -> Slip:
     pieces = []
     total = tree.evaluate(right, at)

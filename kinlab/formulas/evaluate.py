@@ -15,6 +15,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.formulas import tree
+from kinlab.formulas.arithmetic import Meaning, read
 
 _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
@@ -27,12 +29,6 @@ _BINARY: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
         np.power(base, exponent),  # numpy has nan**0 = 1
     ),
 }
-_FUNCTIONS: dict[str, Callable[..., Any]] = {
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt, "abs": np.abs, "exp": np.exp,
-    "log": np.log, "sign": np.sign, "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan,
-    "atan2": np.arctan2, "arcsin": np.arcsin, "arccos": np.arccos, "arctan": np.arctan,
-    "arctan2": np.arctan2, "ln": np.log, "Abs": np.abs,
-}  # fmt: skip
 
 
 def plain_values(text: str, meaning: Callable[[str], Array], count: int) -> Array:
@@ -48,26 +44,21 @@ def plain_values(text: str, meaning: Callable[[str], Array], count: int) -> Arra
     """
     known: dict[str, Array] = {}
 
-    def value(node: ast.expr) -> Any:
-        match node:
-            case ast.Constant(value=number):
-                return np.float64(number)  # type: ignore[arg-type]
-            case ast.Name(id="pi"):
-                return np.float64(math.pi)
-            case ast.Name(id=name):
-                if name not in known:
-                    known[name] = meaning(name)
-                return known[name]
-            case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return -value(operand)
-            case ast.UnaryOp(operand=operand):
-                return value(operand)
-            case ast.BinOp(left=left, op=op, right=right):
-                return _BINARY[type(op)](value(left), value(right))
-            case ast.Call(func=ast.Name(id=name), args=args):
-                return _FUNCTIONS[name](*(value(part) for part in args))
-        raise AssertionError(f"{type(node).__name__} was let through")  # pragma: no cover
+    def value(name: str) -> Any:
+        if name == "pi":
+            return np.float64(math.pi)
+        if name not in known:
+            known[name] = meaning(name)
+        return known[name]
 
+    parts: Meaning[Any] = Meaning(
+        number=np.float64,
+        name=value,
+        negative=operator.neg,
+        binary=lambda op, left, right: _BINARY[type(op)](left, right),
+        call=lambda name, args: tree.FUNCTIONS[tree.SYNONYMS.get(name, name)](*args),
+        admit=lambda node, depth: None,
+    )
     with np.errstate(all="ignore"):
-        result = value(ast.parse(text, mode="eval").body)
+        result = read(ast.parse(text, mode="eval").body, parts)
     return np.array(np.broadcast_to(result, (count,)), dtype=float)

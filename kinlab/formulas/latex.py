@@ -14,14 +14,13 @@ _LENGTH = 20_000
 _NESTING = 40
 
 _TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+")
-_SPACE = {r"\,", r"\;", r"\:", r"\!", r"\ ", r"\quad", r"\qquad", "~", r"\left", r"\right", r"\big",
-          r"\Big", r"\bigl", r"\bigr", r"\Bigl", r"\Bigr", r"\displaystyle"}  # fmt: skip
+_BLANKS = r"\, \; \: \! \quad \qquad ~ \left \right \big \Big \bigl \bigr \Bigl \Bigr \displaystyle"
+_SPACE = {"\\ ", *_BLANKS.split()}
 _TIMES = {"*", r"\cdot", r"\times"}
 _FRACTIONS = {r"\frac", r"\dfrac", r"\tfrac"}
 _FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan"}
-_GREEK = {rf"\{name}": name for name in (
-    "alpha", "beta", "gamma", "delta", "theta", "lambda", "mu", "phi", "psi", "omega", "rho", "tau",
-)}  # fmt: skip
+_LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
+_GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 
@@ -82,9 +81,8 @@ class _Reader:
 
     def unread(self, wanted: str = "") -> ExpressionError:
         found = repr(self.next) if self.next else "the end"
-        remedy = f"{wanted!r} was expected" if wanted else (
-            r"write names, numbers, + - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
-        )  # fmt: skip
+        allowed = r"names, numbers, + - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
+        remedy = f"{wanted!r} was expected" if wanted else f"write {allowed}"
         near = "".join(self.tokens[max(0, self.at - 6) : self.at])[-40:]
         behind = f" after {near}" if near else ""
         return ExpressionError(f"{self.place}: LaTeX: {found}{behind} cannot be read; {remedy}")

@@ -14,6 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinlab.errors import ExpressionError
+from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
 
 _MAX_LENGTH = 200
 _CONSTANTS = {"pi": math.pi, "π": math.pi}
@@ -120,7 +121,7 @@ def _evaluate(text: str) -> float:
         )
     try:
         tree = ast.parse(text.strip(), mode="eval")
-        return _walk(tree.body, text)
+        return _read(tree.body, text)
     except (SyntaxError, RecursionError, MemoryError):
         message = f"cannot read {text!r}; write a number or arithmetic such as 'pi/2' or '-90 deg'"
         raise ExpressionError(message) from None
@@ -130,19 +131,29 @@ def _evaluate(text: str) -> float:
         raise ExpressionError(f"cannot evaluate {text!r}: {error}") from None
 
 
-def _walk(node: ast.expr, text: str) -> float:
-    match node:
-        case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-            return float(number)
-        case ast.Name(id=name) if name in _CONSTANTS:
-            return _CONSTANTS[name]
-        case ast.UnaryOp(op=ast.USub(), operand=operand):
-            return -_walk(operand, text)
-        case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-            return _walk(operand, text)
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
-            return _BINARY[type(op)](_walk(left, text), _walk(right, text))
-        case ast.Call(func=ast.Name(id=name), args=[argument], keywords=[]) if name in _FUNCTIONS:
-            return _FUNCTIONS[name](_walk(argument, text))
-    allowed = ", ".join([*_CONSTANTS, *_FUNCTIONS])
-    raise ExpressionError(f"cannot read {text!r}: only numbers, + - * / ( ) and {allowed}")
+def _read(node: ast.expr, text: str) -> float:
+    def admit(part: ast.expr, depth: int) -> None:
+        match part:
+            case ast.Name(id=name) if name not in _CONSTANTS:
+                known = False
+            case ast.BinOp(op=op):
+                known = type(op) in _BINARY
+            case ast.Call(func=ast.Name(id=name), args=[_]) if name in _FUNCTIONS:
+                known = is_arithmetic(part)
+            case ast.Call():
+                known = False
+            case _:
+                known = is_arithmetic(part)
+        if not known:
+            allowed = ", ".join([*_CONSTANTS, *_FUNCTIONS])
+            raise ExpressionError(f"cannot read {text!r}: only numbers, + - * / ( ) and {allowed}")
+
+    meaning: Meaning[float] = Meaning(
+        number=float,
+        name=lambda name: _CONSTANTS[name],
+        negative=operator.neg,
+        binary=lambda op, left, right: _BINARY[type(op)](left, right),
+        call=lambda name, args: _FUNCTIONS[name](*args),
+        admit=admit,
+    )
+    return read(node, meaning)

@@ -1,6 +1,6 @@
 r"""Formulas as text, read by a whitelist over Python's syntax tree. Nothing is ever evaluated.
 
-A file looks like this (see :func:`read_file`)::
+A file looks like this (see :func:`formula_file`)::
 
     robot = "planar2r"
 
@@ -21,18 +21,17 @@ from __future__ import annotations
 import ast
 import math
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from pathlib import Path
 from typing import Any
 
 from kinlab.errors import ExpressionError, FileError, near
 from kinlab.formulas import tree
+from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
 from kinlab.formulas.latex import expression
 from kinlab.formulas.tree import Node
-from kinlab.host.files import read_text, read_toml
 
-_FILE_LIMIT = 1 << 20
 _LENGTH = 20_000
 MOST_NODES = 5_000
 _DEPTH = 60
@@ -45,17 +44,12 @@ _FORMULAS = 200
 SHORTHAND = re.compile(r"([cs])([1-9]+)")
 """c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 
-_JOINT = (
-    (re.compile(r"(?:theta|th|q)_?([1-9]\d?)"), "q"),
-    (re.compile(r"(?:dtheta|thetad|dth|thd|qd|dq|theta_dot_?|q_dot_?|qdot_?)_?([1-9]\d?)"), "qd"),
-    (re.compile(r"(?:ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_ddot_?|q_ddot_?|qddot_?)_?([1-9]\d?)"),
-     "qdd"),
-)  # fmt: skip
-
-_SYNONYMS = {
-    "arcsin": "asin", "arccos": "acos", "arctan": "atan", "arctan2": "atan2", "Abs": "abs",
-    "ln": "log",
-}  # fmt: skip
+_DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_dot_?|q_dot_?|qdot_?"
+_TWICE_DOTTED = r"ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_ddot_?|q_ddot_?|qddot_?"
+_JOINT = tuple(
+    (re.compile(rf"(?:{heads})_?([1-9]\d?)"), letter)
+    for heads, letter in (("theta|th|q", "q"), (_DOTTED, "qd"), (_TWICE_DOTTED, "qdd"))
+)
 
 
 @dataclass(frozen=True)
@@ -79,23 +73,22 @@ class FormulaFile:
     symbol_texts: dict[str, str]
 
 
-def read_file(path: str | Path) -> FormulaFile:
-    """Reads a TOML file of formulas.
+def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
+    """Reads the formulas of a TOML document.
 
     Args:
-        path: the file. ``robot`` is required; ``[symbols]`` gives numbers or other names to the
-            user's symbols; every entry of ``[formulas]`` (or of the top level) is a formula:
-            its name says what it claims to be (``tau1``, ``g2``, ``M12``, ``C11``, ``J11``,
-            ``x``, or a quantity such as ``"fk[0,3]"``). Entries of ``[latex]`` are LaTeX
-            (:mod:`kinlab.formulas.latex`).
+        document: as it was read. ``robot`` is required; ``[symbols]`` gives numbers or other
+            names to the user's symbols; every entry of ``[formulas]`` (or of the top level) is a
+            formula: its name says what it claims to be (``tau1``, ``g2``, ``M12``, ``C11``,
+            ``J11``, ``x``, or a quantity such as ``"fk[0,3]"``). Entries of ``[latex]`` are
+            LaTeX (:mod:`kinlab.formulas.latex`).
+        place: the file, for messages.
 
     Raises:
-        FileError: missing, too large, no TOML.
+        FileError: the document holds no formulas, or what is none.
         ExpressionError: an expression that is no arithmetic, with the entry's name.
     """
-    text = read_text(path, limit=_FILE_LIMIT)
-    document = read_toml(text, str(path), FileError)
-    place = str(path)
+    document = dict(document)
     robot = document.pop("robot", None)
     if not isinstance(robot, str) or not robot:
         raise FileError(f'{place}: robot is missing; write robot = "planar2r" or a path')
@@ -122,9 +115,11 @@ def read_file(path: str | Path) -> FormulaFile:
         {name: _symbol(value, f"{place}: symbol {name!r}") for name, value in symbols.items()},
         {name: _formula(value, f"{place}: {name}") for name, value in entries.items()},
         {name: tidied(value) for name, value in entries.items()},
-        {name: tidied(value if isinstance(value, str) else repr(float(value)))
-         for name, value in symbols.items()},
-    )  # fmt: skip
+        {
+            name: tidied(value if isinstance(value, str) else repr(float(value)))
+            for name, value in symbols.items()
+        },
+    )
 
 
 def parse(text: str, place: str = "expression") -> Node:
@@ -151,7 +146,7 @@ def parse(text: str, place: str = "expression") -> Node:
         raise ExpressionError(f"{place}: nested too deep") from None
     if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:
         raise ExpressionError(f"{place}: more than {MOST_NODES} terms and factors")
-    return _Reader(place).read(parsed.body, 0)
+    return _Reader(place).read(parsed.body)
 
 
 def tidied(text: str) -> str:
@@ -178,33 +173,26 @@ class _Reader:
     def __init__(self, place: str) -> None:
         self.place = place
 
-    def read(self, node: ast.expr, depth: int) -> Node:
+    def read(self, node: ast.expr) -> Node:
+        meaning: Meaning[Node] = Meaning(
+            number=lambda number: tree.num(self._number(number)),
+            name=lambda name: tree.num(Fraction(repr(math.pi))) if name == "pi" else tree.sym(name),
+            negative=lambda value: tree.mul(tree.num(-1), value),
+            binary=self._binary,
+            call=self._call,
+            admit=self._admit,
+        )
+        return read(node, meaning)
+
+    def _admit(self, node: ast.expr, depth: int) -> None:
         if depth > _DEPTH + _CHAIN:
             raise ExpressionError(f"{self.place}: nested deeper than {_DEPTH}")
-        match node:
-            case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
-                return tree.num(self._number(number))
-            case ast.Name(id="pi"):
-                return tree.num(Fraction(repr(math.pi)))
-            case ast.Name(id=name):
-                return tree.sym(name)
-            case ast.UnaryOp(op=ast.USub(), operand=operand):
-                return tree.mul(tree.num(-1), self.read(operand, depth + 1))
-            case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-                return self.read(operand, depth + 1)
-            case ast.BinOp(op=ast.Pow(), left=left, right=right):
-                return self._power(self.read(left, depth + 1), self.read(right, depth + 1))
-            case ast.BinOp(op=ast.Add() | ast.Sub() | ast.Mult() | ast.Div() as op):
-                return self._binary(
-                    op, self.read(node.left, depth + 1), self.read(node.right, depth + 1)
-                )
-            case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
-                return self._call(name, [self.read(a, depth + 1) for a in args])
-        kind = type(node).__name__
-        raise ExpressionError(
-            f"{self.place}: {kind} is not arithmetic; write numbers, names, + - * / ** ( ) and "
-            f"functions such as sin, cos, sqrt"
-        )
+        if not is_arithmetic(node):
+            kind = type(node).__name__
+            raise ExpressionError(
+                f"{self.place}: {kind} is not arithmetic; write numbers, names, + - * / ** ( ) and "
+                f"functions such as sin, cos, sqrt"
+            )
 
     def _number(self, number: float) -> Fraction:
         if not math.isfinite(number):
@@ -218,6 +206,8 @@ class _Reader:
         return value
 
     def _binary(self, op: ast.operator, left: Node, right: Node) -> Node:
+        if isinstance(op, ast.Pow):
+            return self._power(left, right)
         if isinstance(op, ast.Div):
             if right.op == "num" and right.value == 0:
                 raise ExpressionError(f"{self.place}: division by zero")
@@ -252,9 +242,9 @@ class _Reader:
         return made
 
     def _call(self, name: str, args: list[Node]) -> Node:
-        plain = _SYNONYMS.get(name, name)
+        plain = tree.SYNONYMS.get(name, name)
         if plain not in tree.FUNCTIONS:
-            choices = near(name, [*tree.FUNCTIONS, *_SYNONYMS])
+            choices = near(name, [*tree.FUNCTIONS, *tree.SYNONYMS])
             raise ExpressionError(f"{self.place}: function {_short(name)!r} is unknown; {choices}")
         wanted = 2 if plain == "atan2" else 1
         if len(args) != wanted:

@@ -18,10 +18,28 @@ import sympy
 from kinlab.arrays import Array
 
 FUNCTIONS = {
-    "sin": np.sin, "cos": np.cos, "tan": np.tan, "sqrt": np.sqrt, "atan2": np.arctan2,
-    "asin": np.arcsin, "acos": np.arccos, "atan": np.arctan, "abs": np.abs, "exp": np.exp,
-    "log": np.log, "sign": np.sign,
-}  # fmt: skip
+    "sin": np.sin,
+    "cos": np.cos,
+    "tan": np.tan,
+    "sqrt": np.sqrt,
+    "atan2": np.arctan2,
+    "asin": np.arcsin,
+    "acos": np.arccos,
+    "atan": np.arctan,
+    "abs": np.abs,
+    "exp": np.exp,
+    "log": np.log,
+    "sign": np.sign,
+}
+SYNONYMS = {
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "arctan2": "atan2",
+    "Abs": "abs",
+    "ln": "log",
+}
+"""Other names that people write for these functions."""
 
 Path = tuple[int, ...]
 """Way from the root: which child to take at each level."""

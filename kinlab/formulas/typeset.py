@@ -86,10 +86,7 @@ def _fenced(text: str) -> str:
         text,
     )
     grow = '<mo stretchy="true" fence="true" form='
-    for name, opening, closing in (
-        ("round", "&#x00028;", "&#x00029;"),
-        ("square", "[", "]"),
-    ):
+    for name, opening, closing in (("round", "&#x00028;", "&#x00029;"), ("square", "[", "]")):
         text = text.replace(f'<mrow>{grow}"prefix">{opening}</mo>', f'<mrow class="{name}">')
         text = text.replace(f'{grow}"postfix">{closing}</mo></mrow>', "</mrow>")
     return text
@@ -105,14 +102,21 @@ def plain(latex: str) -> str:
 _LINE = 76
 """Visible characters of one line of a long sum."""
 
-_GREEK = {
-    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "lambda", "mu", "nu",
-    "xi", "rho", "sigma", "tau", "phi", "psi", "omega", "pi",
-}  # fmt: skip
+_LETTERS = (
+    "alpha beta gamma delta epsilon zeta eta theta lambda mu nu xi rho sigma tau phi psi omega pi"
+)
+_GREEK = set(_LETTERS.split())
 _JOINT = re.compile(r"(d{0,2})(theta|th|q)(d{1,2}(?![a-z])|_?dot|_?ddot)?_?([1-9]\d?)")
-_NAMED = {"asin": r"\arcsin", "acos": r"\arccos", "atan": r"\arctan", "log": r"\ln",
-          "atan2": r"\operatorname{atan2}", "sign": r"\operatorname{sign}", "exp": r"\exp",
-          "abs": r"\operatorname{abs}"}  # fmt: skip
+_NAMED = {
+    "asin": r"\arcsin",
+    "acos": r"\arccos",
+    "atan": r"\arctan",
+    "log": r"\ln",
+    "atan2": r"\operatorname{atan2}",
+    "sign": r"\operatorname{sign}",
+    "exp": r"\exp",
+    "abs": r"\operatorname{abs}",
+}
 
 
 @dataclass(frozen=True)

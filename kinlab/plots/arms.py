@@ -80,9 +80,13 @@ def plot_ellipse(
         colour, line = _STYLES[shape.kind]
         note = ", flat" if lengths[1] <= 1e-9 * lengths[0] else f" {lengths[1] / lengths[0]:.3g}"
         axes.plot(
-            corners[-1, 0] + ring[0], corners[-1, 1] + ring[1], line, color=colour, lw=1.8,
+            corners[-1, 0] + ring[0],
+            corners[-1, 1] + ring[1],
+            line,
+            color=colour,
+            lw=1.8,
             label=f"{shape.kind}: axis ratio{note}",
-        )  # fmt: skip
+        )
     axes.plot(*corners[-1], "o", color=RED, ms=5, zorder=4)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set_xlabel("x [m]")

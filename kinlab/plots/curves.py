@@ -45,9 +45,14 @@ def plot_singular_values(
     floor = 1e-16 * max(float(sigma.max()), 1e-300)
     for i, values in enumerate(sigma.T):
         last = i == sigma.shape[1] - 1
-        axes.semilogy(along, np.maximum(values, floor), lw=2.0 if last else 1.2,
-                      color=RED if last else BLUE, alpha=1.0 if last else 0.9 - 0.12 * i,
-                      label=f"σ{i + 1}")  # fmt: skip
+        axes.semilogy(
+            along,
+            np.maximum(values, floor),
+            lw=2.0 if last else 1.2,
+            color=RED if last else BLUE,
+            alpha=1.0 if last else 0.9 - 0.12 * i,
+            label=f"σ{i + 1}",
+        )
     axes.set_ylim(max(floor, 0.3 * float(sigma[sigma > 0.0].min(initial=1.0))), None)
     axes.set_xlabel("way in joint space [rad or m]")
     axes.set_ylabel(f"singular value (length {size:g} m)" if space.mixed else "singular value")

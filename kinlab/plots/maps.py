@@ -14,9 +14,13 @@ from kinlab.plots.canvas import RED, new_axes
 from kinlab.sweeps.workspace import BinnedMap, WorkspaceMap, binned
 
 _LABELS = {"x": "x [m]", "y": "y [m]", "z": "z [m]", "r": "distance from the z axis [m]"}
-_METRICS = {"inverse_condition": "inverse condition number 1/κ", "yoshikawa": "Yoshikawa's measure",
-            "min_singular": "smallest singular value", "asada": "Asada's measure",
-            "isotropy": "isotropy index"}  # fmt: skip
+_METRICS = {
+    "inverse_condition": "inverse condition number 1/κ",
+    "yoshikawa": "Yoshikawa's measure",
+    "min_singular": "smallest singular value",
+    "asada": "Asada's measure",
+    "isotropy": "isotropy index",
+}
 
 
 def plot_map(
@@ -47,9 +51,14 @@ def plot_map(
         part = "" if chart.complete else ", stopped early"
         axes = new_axes(f"{chart.robot}: task {chart.task}, {len(chart.values)} samples{part}")
     shown = axes.pcolormesh(
-        flat.u, flat.v, np.ma.masked_where(flat.count == 0, flat.best).T,
-        cmap="viridis", vmin=0.0, shading="flat", rasterized=True,
-    )  # fmt: skip
+        flat.u,
+        flat.v,
+        np.ma.masked_where(flat.count == 0, flat.best).T,
+        cmap="viridis",
+        vmin=0.0,
+        shading="flat",
+        rasterized=True,
+    )
     axes.figure.colorbar(shown, ax=axes, label=f"best {_METRICS[chart.metric]}", shrink=0.85)
     _lines(axes, flat, boundary, curves)
     if section is not None:
@@ -74,8 +83,9 @@ def plot_cloud(chart: WorkspaceMap, *, most: int = 6000, axes: Any = None) -> An
     behind = np.flatnonzero(~((chart.points[:, 0] > 0.0) & (chart.points[:, 1] < 0.0)))
     chosen = behind[:: max(1, len(behind) // most)]
     x, y, z = chart.points[chosen].T
-    shown = axes.scatter(x, y, z, c=chart.values[chosen], s=6, depthshade=False,
-                          cmap="viridis", vmin=0.0, lw=0)  # fmt: skip
+    shown = axes.scatter(
+        x, y, z, c=chart.values[chosen], s=6, depthshade=False, cmap="viridis", vmin=0.0, lw=0
+    )
     axes.figure.colorbar(shown, ax=axes, label=_METRICS[chart.metric], shrink=0.7, pad=0.1)
     axes.set_aspect("equal")
     axes.set_xlabel("x [m]")
@@ -89,13 +99,18 @@ def _lines(
 ) -> None:
     labelled = False
     for curve in curves:
-        axes.plot(*_in_plane(curve, flat.plane), color=RED, lw=1.6,
-                  label=None if labelled else "singular locus")  # fmt: skip
+        axes.plot(
+            *_in_plane(curve, flat.plane),
+            color=RED,
+            lw=1.6,
+            label=None if labelled else "singular locus",
+        )
         labelled = True
     if boundary is not None:
         for i, arc in enumerate(boundary.arcs):
-            axes.plot(*arc.points(200).T, color="black", lw=1.4, ls="--",
-                      label=None if i else "boundary")  # fmt: skip
+            axes.plot(
+                *arc.points(200).T, color="black", lw=1.4, ls="--", label=None if i else "boundary"
+            )
     if labelled or boundary is not None:
         axes.figure.legend(loc="outside lower center", ncols=2, fontsize=9, frameon=False)
 

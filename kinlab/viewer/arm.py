@@ -85,9 +85,14 @@ def draw_ghost(scene: Any, robot: Robot, q: Array, root: str, color: int) -> Non
 
 
 def _draw(
-    scene: Any, robot: Robot, q: Array, visuals: Any, bare: set[int], root: str,
+    scene: Any,
+    robot: Robot,
+    q: Array,
+    visuals: Any,
+    bare: set[int],
+    root: str,
     rgba: list[float] | None,
-) -> None:  # fmt: skip
+) -> None:
     pictured = NestedVisualizer(robot.model, visuals, root)
     pictured.initViewer(viewer=scene)
     pictured.loadViewerModel(rootNodeName=root, visual_color=rgba)

@@ -73,9 +73,12 @@ def draw_dh(scene: Any, robot: Robot, table: DHTable) -> DHPicture:
         group = f"dh{i - 1}"
         _common_normal(scene, picture, x_path, link.a, link.alpha, number, group, size)
         shapes.rod(
-            scene[f"{path}/d/rod"], np.zeros(3), np.array([0.0, 0.0, 1.0]), 0.005 * size,
+            scene[f"{path}/d/rod"],
+            np.zeros(3),
+            np.array([0.0, 0.0, 1.0]),
+            0.005 * size,
             shapes.flat(shapes.BLUE),
-        )  # fmt: skip
+        )
         around = [
             carriers.axes[i - 1],
             carriers.axes[i],
@@ -162,9 +165,15 @@ def _frame(
 
 
 def _common_normal(
-    scene: Any, picture: DHPicture, path: str, a: float, alpha: float, number: int, group: str,
+    scene: Any,
+    picture: DHPicture,
+    path: str,
+    a: float,
+    alpha: float,
+    number: int,
+    group: str,
     size: float,
-) -> None:  # fmt: skip
+) -> None:
     """a as a rod along x, alpha as an arc about x from the one z axis to the next."""
     red = shapes.flat(shapes.RED)
     end = np.array([a, 0.0, 0.0])

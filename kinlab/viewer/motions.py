@@ -184,9 +184,7 @@ def _comfortable(robot: Robot, rows: list[int]) -> Array:
     return best[:20]
 
 
-def _track(
-    robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array
-) -> Array | None:  # fmt: skip
+def _track(robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array) -> Array | None:
     """Follows a path of positions by IK; None where it cannot be had on one branch."""
     goals = np.tile(pose, (len(offsets), 1, 1))
     goals[:, :3, 3] += offsets

@@ -99,10 +99,13 @@ ELLIPSOID_SIZE = 0.2
 
 _SCALE = np.array(
     [
-        (0.267, 0.005, 0.329), (0.231, 0.322, 0.546), (0.128, 0.567, 0.551),
-        (0.369, 0.789, 0.383), (0.993, 0.906, 0.144),
+        (0.267, 0.005, 0.329),
+        (0.231, 0.322, 0.546),
+        (0.128, 0.567, 0.551),
+        (0.369, 0.789, 0.383),
+        (0.993, 0.906, 0.144),
     ]
-)  # fmt: skip
+)
 """Five knots of the colour map viridis, which stays readable in grey and to the colour-blind."""
 
 
@@ -273,9 +276,7 @@ def set_stage(vis: Any, size: float) -> None:
     floor(vis["/meshcat/floor"], 1.2 * size, round_step(size))
 
 
-def empty_spec(
-    title: str, subtitle: str, camera: Camera, root: str = "/meshcat"
-) -> dict[str, Any]:  # fmt: skip
+def empty_spec(title: str, subtitle: str, camera: Camera, root: str = "/meshcat") -> dict[str, Any]:
     """A page of nothing but its title; the mechanisms fill in the rest.
 
     Args:

@@ -143,21 +143,34 @@ def _around_half_a_swing(
 
 QUANTITIES = (
     Quantity(
-        "action_variation", ("q", "v", "a", "dq"), variation_between_fixed_ends,
-        "dS/d(eps) of q + v t + ½ a t² under dq sin²(pi t/T), T = 0.4 s, J s, a number", SERIAL,
+        "action_variation",
+        ("q", "v", "a", "dq"),
+        variation_between_fixed_ends,
+        "dS/d(eps) of q + v t + ½ a t² under dq sin²(pi t/T), T = 0.4 s, J s, a number",
+        SERIAL,
     ),
     Quantity(
-        "action_variation_free_ends", ("q", "v", "a", "dq"), variation_with_free_ends,
-        "the same under dq (1 + t/T), J s, a number", SERIAL,
+        "action_variation_free_ends",
+        ("q", "v", "a", "dq"),
+        variation_with_free_ends,
+        "the same under dq (1 + t/T), J s, a number",
+        SERIAL,
     ),
     Quantity(
-        "action_variation_of_motion", ("q", "v", "dq"), variation_of_true_motion,
-        "dS/d(eps) of a simulated free motion, relative to its parts, a number", SERIAL,
+        "action_variation_of_motion",
+        ("q", "v", "dq"),
+        variation_of_true_motion,
+        "dS/d(eps) of a simulated free motion, relative to its parts, a number",
+        SERIAL,
         scale=1.0,
     ),
     Quantity(
-        "excess_action_sign", ("duration",), excess_action_sign,
-        "sign of S(varied) - S(true) of a hanging one-joint arm, +1 or -1", SERIAL,
-        sample=_around_half_a_swing, joints=1,
+        "excess_action_sign",
+        ("duration",),
+        excess_action_sign,
+        "sign of S(varied) - S(true) of a hanging one-joint arm, +1 or -1",
+        SERIAL,
+        sample=_around_half_a_swing,
+        joints=1,
     ),
-)  # fmt: skip
+)

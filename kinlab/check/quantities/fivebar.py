@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, frozen
 from kinlab.check.quantities.quantity import Domain, Quantity
 from kinlab.errors import MechanismError, NameUnknownError, UnreachableError, near
 from kinlab.fivebar import FiveBar
@@ -114,7 +114,7 @@ def _label(fivebar: FiveBar) -> str:
     return fivebar.name
 
 
-FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample)
+FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample, DRAWS)
 
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
@@ -122,15 +122,48 @@ FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample)
 Answer = Callable[..., Any]
 
 
-def _engine(answer: Answer, *, rods: bool) -> Answer:
-    """Runs ``answer(chain, *one state)`` over the states; without the rods' mass if asked."""
+def _engine(answer: Answer) -> Answer:
+    """Runs ``answer(chain, *one state)`` over the states."""
 
     def engine(fivebar: FiveBar, *stacks: Any) -> Array:
-        light = fivebar if rods else replace(fivebar, rod_mass=0.0, rod_inertia=0.0)
-        chain = light.closed_chain()
+        chain = _chain(fivebar)
         return np.array([answer(chain, *state) for state in zip(*stacks, strict=True)])
 
     return engine
+
+
+def _posed(answer: Answer, *, rods: bool) -> Answer:
+    """Runs ``answer(chain, q, ...)`` with the tool at xy; without the rods' mass if asked."""
+
+    def engine(fivebar: FiveBar, xy: Any, *stacks: Any) -> Array:
+        chain = _chain(fivebar if rods else _without_rods(fivebar))
+        *motion, modes = stacks
+        places = zip(np.asarray(xy).tolist(), np.asarray(modes).tolist(), strict=True)
+        poses = [_pose(fivebar, *point, *mode) for point, mode in places]
+        return np.array([answer(chain, *state) for state in zip(poses, *motion, strict=True)])
+
+    return engine
+
+
+# A pose hangs on the bars' lengths alone, and finding one takes longer than all that is asked of
+# it: each is found once, for every quantity, with and without the rods' mass.
+
+
+@lru_cache(maxsize=1 << 14)
+def _pose(fivebar: FiveBar, x: float, y: float, first: float, second: float) -> Array:
+    """The joint angles with the tool at (x, y) in a working mode, (4,), rad, read-only."""
+    return frozen(_chain(fivebar).at((x, y), (first, second)))  # type: ignore[arg-type]
+
+
+@lru_cache(maxsize=64)
+def _chain(fivebar: FiveBar) -> ClosedChain:
+    return fivebar.closed_chain()
+
+
+@lru_cache(maxsize=64)
+def _without_rods(fivebar: FiveBar) -> FiveBar:
+    """The five-bar with massless rods."""
+    return replace(fivebar, rod_mass=0.0, rod_inertia=0.0)
 
 
 def _bars(chain: ClosedChain, q: Array, joints: tuple[int, ...]) -> Array:
@@ -159,37 +192,36 @@ def _projection(chain: ClosedChain, theta: Array, xy: Array) -> Any:
     return 2.0 * np.sum((base - xy) * (elbow - base), axis=1)
 
 
-def _torque(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Array:
-    q = chain.at(xy, mode)
+def _torque(chain: ClosedChain, q: Array, v: Array, a: Array) -> Array:
     qd = chain.joint_rates(q, v)
     return chain.inverse_dynamics(q, qd, chain.joint_accelerations(q, qd, a))
 
 
-def _crank_accelerations(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
-    q = chain.at(xy, mode)
+def _crank_accelerations(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
     return chain.joint_accelerations(q, chain.joint_rates(q, v), a)[[*CRANKS]]
 
 
-def _power(chain: ClosedChain, xy: Array, v: Array, a: Array, mode: Array) -> Any:
-    rate = chain.joint_rates(chain.at(xy, mode), v)[[*CRANKS]]
-    return _torque(chain, xy, v, a, mode) * rate
+def _power(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
+    return _torque(chain, q, v, a) * chain.joint_rates(q, v)[[*CRANKS]]
 
 
-def _per_acceleration(chain: ClosedChain, xy: Array, mode: Array) -> Any:
+def _per_acceleration(chain: ClosedChain, q: Array) -> Any:
     still = np.zeros(2)
-    held = _torque(chain, xy, still, still, mode)
-    columns = [_torque(chain, xy, still, unit, mode) - held for unit in np.eye(2)]
+    held = _torque(chain, q, still, still)
+    columns = [_torque(chain, q, still, unit) - held for unit in np.eye(2)]
     return np.stack(columns, axis=1)
 
 
-def _load(chain: ClosedChain, xy: Array, mode: Array) -> Any:
-    return np.diag(chain.mass_matrix(chain.at(xy, mode)))
+def _load(chain: ClosedChain, q: Array) -> Any:
+    return np.diag(chain.mass_matrix(q))
 
 
 def _quantity(
     name: str, arguments: str, answer: Answer, about: str, *, rods: bool = True
 ) -> Quantity:
-    return Quantity(name, tuple(arguments.split()), _engine(answer, rods=rods), about, FIVEBAR)
+    names = tuple(arguments.split())
+    engine = _posed(answer, rods=rods) if "mode" in names else _engine(answer)
+    return Quantity(name, names, engine, about, FIVEBAR)
 
 
 QUANTITIES = (
@@ -200,22 +232,12 @@ QUANTITIES = (
         _projection,
         "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
     ),
-    _quantity(
-        "fivebar_cranks",
-        "xy mode",
-        lambda c, xy, mode: _bars(c, c.at(xy, mode), CRANKS),
-        "u_1, u_2, (2, 2)",
-    ),
-    _quantity(
-        "fivebar_rods",
-        "xy mode",
-        lambda c, xy, mode: _bars(c, c.at(xy, mode), PASSIVE),
-        "w_1, w_2, (2, 2)",
-    ),
+    _quantity("fivebar_cranks", "xy mode", lambda c, q: _bars(c, q, CRANKS), "u_1, u_2, (2, 2)"),
+    _quantity("fivebar_rods", "xy mode", lambda c, q: _bars(c, q, PASSIVE), "w_1, w_2, (2, 2)"),
     _quantity(
         "fivebar_jacobian",
         "xy mode",
-        lambda c, xy, mode: c.jacobian(c.at(xy, mode)),
+        lambda c, q: c.jacobian(q),
         "J of theta_dot = J v, rad/m, (2, 2)",
     ),
     _quantity("fivebar_turn", "xy v a mode", _crank_accelerations, "theta_ddot, rad/s², (2,)"),
@@ -237,7 +259,7 @@ QUANTITIES = (
     _quantity(
         "fivebar_torque_gains",
         "xy mode",
-        lambda c, xy, mode: np.linalg.svd(_per_acceleration(c, xy, mode), compute_uv=False),
+        lambda c, q: np.linalg.svd(_per_acceleration(c, q), compute_uv=False),
         "singular values of G with massless rods, largest first, kg m, (2,)",
         rods=False,
     ),
@@ -251,7 +273,7 @@ QUANTITIES = (
     _quantity(
         "fivebar_rate_per_speed",
         "xy mode",
-        lambda c, xy, mode: np.linalg.norm(c.jacobian(c.at(xy, mode)), axis=1),
+        lambda c, q: np.linalg.norm(c.jacobian(q), axis=1),
         "worst theta_dot per |v|, rad/m, (2,)",
     ),
     _quantity(
@@ -264,7 +286,7 @@ QUANTITIES = (
     _quantity(
         "fivebar_torque_per_acceleration_worst",
         "xy mode",
-        lambda c, xy, mode: np.linalg.norm(_per_acceleration(c, xy, mode), axis=1),
+        lambda c, q: np.linalg.norm(_per_acceleration(c, q), axis=1),
         "worst torque per |a| with massless rods, kg m, (2,)",
         rods=False,
     ),

@@ -44,9 +44,9 @@ DRAWS: dict[str, Callable[[int, np.random.Generator], Array]] = {
 
 
 def _sample(
-    nothing: Any, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+    mechanism: Any, arguments: tuple[str, ...], count: int, rng: np.random.Generator
 ) -> tuple[Array, ...]:
-    del nothing
+    del mechanism
     return tuple(DRAWS[name](count, rng) for name in arguments)
 
 
@@ -56,13 +56,13 @@ def _load(name: Any) -> None:
 
 
 IDENTITY = Domain(
-    "identity", _load, lambda nothing: "identity", lambda nothing: None, lambda n: (n,), _sample
+    "identity", _load, lambda mechanism: "identity", lambda mechanism: None, lambda n: (n,), _sample
 )
 
 
-def elementary(nothing: None, theta: Array, d: Array, a: Array, alpha: Array) -> Array:
+def elementary(mechanism: None, theta: Array, d: Array, a: Array, alpha: Array) -> Array:
     """Rz(theta), Tz(d), Tx(a), Rx(alpha) by Pinocchio's SE3, (N, 4, 4, 4)."""
-    del nothing
+    del mechanism
     still = np.zeros(3)
     return np.stack(
         [
@@ -77,9 +77,9 @@ def elementary(nothing: None, theta: Array, d: Array, a: Array, alpha: Array) ->
     )
 
 
-def point_inertia(nothing: None, points: Array, masses: Array) -> Array:
+def point_inertia(mechanism: None, points: Array, masses: Array) -> Array:
     """Inertia tensor of point masses about the origin, by adding up Pinocchio's inertias."""
-    del nothing
+    del mechanism
     tensors = []
     for body, weights in zip(points, masses, strict=True):
         total = pin.Inertia.Zero()
@@ -89,20 +89,20 @@ def point_inertia(nothing: None, points: Array, masses: Array) -> Array:
     return np.stack(tensors)
 
 
-def turning_energy(nothing: None, points: Array, masses: Array, omega: Array) -> Array:
+def turning_energy(mechanism: None, points: Array, masses: Array, omega: Array) -> Array:
     """½ Σ m |omega x r|², point by point."""
-    del nothing
+    del mechanism
     speeds = np.cross(omega[:, None, :], points)
     energy: Array = 0.5 * np.einsum("ap,api,api->a", masses, speeds, speeds)
     return energy
 
 
-def _length(nothing: None, rotation: Array, point: Array) -> Any:
+def _length(mechanism: None, rotation: Array, point: Array) -> Any:
     turned = np.einsum("aij,aj->ai", rotation, point)
     return np.sqrt(np.einsum("ai,ai->a", turned, turned))
 
 
-def _cross_norm(nothing: None, point: Array, other: Array) -> Any:
+def _cross_norm(mechanism: None, point: Array, other: Array) -> Any:
     product = np.stack([pin.skew(p) @ o for p, o in zip(point, other, strict=True)])
     return np.einsum("ai,ai->a", product, product)
 

@@ -9,19 +9,10 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.serial import SERIAL
-from kinlab.engine import (
-    dynamics,
-    links,
-)
-from kinlab.engine import (
-    lagrange as energies,
-)
-from kinlab.engine import (
-    lagrange as mass_derivatives,
-)
-from kinlab.engine import (
-    links as link_forces,
-)
+from kinlab.engine import dynamics, links
+from kinlab.engine import lagrange as energies
+from kinlab.engine import lagrange as mass_derivatives
+from kinlab.engine import links as link_forces
 from kinlab.model.robot import Robot
 
 
@@ -64,18 +55,24 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ("link_poses", "q", links.link_poses, "poses of the link frames in the base, (n, 4, 4)"),
     ("link_velocities", "q v", links.link_velocities, "(v, omega), link axes, (n, 6)"),
     (
-        "link_accelerations", "q v a", links.link_accelerations,
+        "link_accelerations",
+        "q v a",
+        links.link_accelerations,
         "(v_dot, omega_dot), link axes, without gravity, (n, 6)",
     ),
     ("com_positions", "q", links.com_positions, "centres of mass in the base, m, (n, 3)"),
     ("com_jacobians", "q", links.com_jacobians, "of each centre, base axes, (n, 6, n)"),
     ("com_accelerations", "q v a", links.com_accelerations, "link axes, m/s², (n, 3)"),
     (
-        "joint_wrenches", "q v a wrench", link_forces.joint_wrenches,
+        "joint_wrenches",
+        "q v a wrench",
+        link_forces.joint_wrenches,
         "(f_i, n_i) through joint i, link axes; the tool exerts a wrench, (n, 6)",
     ),
     (
-        "static_wrenches", "q wrench", link_forces.static_wrenches,
+        "static_wrenches",
+        "q wrench",
+        link_forces.static_wrenches,
         "the same at rest without gravity, (n, 6)",
     ),
     ("inertial_wrenches", "q v a", link_forces.inertial_wrenches, "(F_i, N_i) at C_i, (n, 6)"),
@@ -83,7 +80,9 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ("link_potential_energies", "q", link_forces.link_potential_energies, "u_i, J, (n,)"),
     ("christoffel", "q", mass_derivatives.christoffel, "D_ijk, (n, n, n)"),
     (
-        "mass_matrix_derivatives", "q", mass_derivatives.mass_matrix_derivatives,
+        "mass_matrix_derivatives",
+        "q",
+        mass_derivatives.mass_matrix_derivatives,
         "dM_ij/dq_k, (n, n, n)",
     ),
     ("mass_matrix_dot", "q v", mass_derivatives.mass_matrix_dot, "Mdot, (n, n)"),
@@ -91,11 +90,15 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ("skew_matrix", "q v", skew_matrix, "Mdot - 2C, (n, n)"),
     ("mass_rate_power", "q v", mass_rate_power, "v^T (Mdot - 2C) v over its parts' size"),
     (
-        "coriolis_coefficients", "q", mass_derivatives.coriolis_coefficients,
+        "coriolis_coefficients",
+        "q",
+        mass_derivatives.coriolis_coefficients,
         "B of the MVG form, (n, n(n-1)/2)",
     ),
     (
-        "centrifugal_coefficients", "q", mass_derivatives.centrifugal_coefficients,
+        "centrifugal_coefficients",
+        "q",
+        mass_derivatives.centrifugal_coefficients,
         "C of the MVG form, (n, n)",
     ),
     ("lagrangian", "q v", energies.lagrangian, "L = T - V, J, a number"),
@@ -104,14 +107,13 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ("lagrangian_gradient", "q v", energies.lagrangian_gradient, "dL/dq, N m, (n,)"),
     ("kinetic_gradient", "q v", half_velocity_gradient, "dT/dq, N m, (n,)"),
     (
-        "lagrange_torques", "q v a", energies.lagrange_torques,
+        "lagrange_torques",
+        "q v a",
+        energies.lagrange_torques,
         "tau by differentiation of the energies, N m, (n,)",
     ),
-    (
-        "inverse_without_gravity", "q v a", inverse_without_gravity,
-        "M a + C v, N m, (n,)",
-    ),
-)  # fmt: skip
+    ("inverse_without_gravity", "q v a", inverse_without_gravity, "M a + C v, N m, (n,)"),
+)
 
 _SCALES = {"mass_rate_power": 1.0}
 

@@ -32,6 +32,8 @@ class Domain:
             name stands for itself.
         sample: draws ``count`` random states: (mechanism, argument names, count, generator) to
             one stack per argument.
+        draws: arguments that every state is drawn with, whichever of them are asked for; these
+            are drawn once for all quantities.
     """
 
     name: str
@@ -40,6 +42,7 @@ class Domain:
     numbers: Callable[[Any], Any]
     members: Callable[[str], tuple[str, ...]]
     sample: Sampler
+    draws: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,11 @@ class Quantity:
                 f"quantity {self.name!r} is for {self.joints} joints; "
                 f"{self.domain.label(mechanism)!r} has {mechanism.n}"
             )
-        return _drawn(self.sample or self.domain.sample, mechanism, self.arguments, samples, seed)
+        draw, drawn = self.sample or self.domain.sample, self.arguments
+        if self.sample is None and set(drawn) <= set(self.domain.draws):
+            drawn = self.domain.draws
+        stacks = dict(zip(drawn, _drawn(draw, mechanism, drawn, samples, seed), strict=True))
+        return tuple(stacks[name] for name in self.arguments)
 
     def answers(self, mechanism: Any, samples: int, seed: int) -> Array:
         """The engine's answers at :meth:`states`, (samples, ...)."""

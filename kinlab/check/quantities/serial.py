@@ -208,11 +208,15 @@ QUANTITIES = (
     _serial("fk", "q", kinematics.fk, "pose of the tool in the base, (4, 4)"),
     _serial("jacobian", "q", kinematics.jacobian, "twist of the tool per qdot, base axes, (6, n)"),
     _serial(
-        "jacobian_tool", "q", lambda r, q: kinematics.jacobian(r, q, "tool"),
+        "jacobian_tool",
+        "q",
+        lambda r, q: kinematics.jacobian(r, q, "tool"),
         "twist of the tool per qdot, tool axes, (6, n)",
     ),
     _serial(
-        "jacobian_spatial", "q", lambda r, q: kinematics.jacobian(r, q, "spatial"),
+        "jacobian_spatial",
+        "q",
+        lambda r, q: kinematics.jacobian(r, q, "spatial"),
         "spatial Jacobian: base axes, reference point the base origin, (6, n)",
     ),
     _serial("jacobian_dot", "q v", kinematics.jacobian_dot, "its time derivative, base, (6, n)"),
@@ -220,11 +224,15 @@ QUANTITIES = (
     _serial("planar_jacobian", "q", planar_jacobian, "rows vx, vy, wz of the Jacobian, (3, n)"),
     _serial("tip_speed_squared", "q v", tip_speed_squared, "|v|² of the tool, m²/s², a number"),
     _serial(
-        "statics", "q wrench", kinematics.statics,
+        "statics",
+        "q wrench",
+        kinematics.statics,
         "joint torques J^T F of a wrench (f, n) that the tool exerts, base axes, (n,)",
     ),
     _serial(
-        "statics_tool", "q wrench", lambda r, q, w: kinematics.statics(r, q, w, "tool"),
+        "statics_tool",
+        "q wrench",
+        lambda r, q, w: kinematics.statics(r, q, w, "tool"),
         "the same, with the wrench in tool axes, (n,)",
     ),
     _serial("mass_matrix", "q", dynamics.mass_matrix, "M, kg m² (kg for a slide), (n, n)"),
@@ -233,10 +241,12 @@ QUANTITIES = (
     _serial("gravity_torques", "q", dynamics.gravity_torques, "g = dV/dq, N m, (n,)"),
     _serial("inverse_dynamics", "q v a", dynamics.inverse_dynamics, "tau of a motion, N m, (n,)"),
     _serial(
-        "inverse_dynamics_loaded", "q v a wrench", dynamics.inverse_dynamics,
+        "inverse_dynamics_loaded",
+        "q v a wrench",
+        dynamics.inverse_dynamics,
         "tau of a motion while the tool exerts a wrench (f, n), base axes, (n,)",
     ),
     _serial("forward_dynamics", "q v tau", dynamics.forward_dynamics, "qddot, rad/s², (n,)"),
     _serial("kinetic_energy", "q v", dynamics.kinetic_energy, "T, J, a number"),
     _serial("potential_energy", "q", dynamics.potential_energy, "V, J, zero at the origin"),
-)  # fmt: skip
+)

@@ -197,18 +197,27 @@ def _well_conditioned(robot: Robot, arguments: Any, count: int, rng: np.random.G
 
 _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     (
-        "link_transforms", "q", link_transforms,
-        "^{i-1}T_i of every DH row in the table's own convention, (n, 4, 4)", None,
+        "link_transforms",
+        "q",
+        link_transforms,
+        "^{i-1}T_i of every DH row in the table's own convention, (n, 4, 4)",
+        None,
     ),
     ("dh_poses", "q", dh_poses, "poses of the DH frames in the base, (n, 4, 4)", None),
     ("common_normals", "q", common_normals, "projectors on x_{i-1}, (n, 3, 3)", None),
     (
-        "angular_jacobian_last", "q", angular_jacobian_last,
-        "angular rows of J in the last link's axes, (3, n)", None,
+        "angular_jacobian_last",
+        "q",
+        angular_jacobian_last,
+        "angular rows of J in the last link's axes, (3, n)",
+        None,
     ),
     (
-        "singular_jacobian", "q", kinematics.jacobian,
-        "Jacobian at poses with theta2 = 0 or pi, (6, n)", _with_second_joint(0.0, np.pi),
+        "singular_jacobian",
+        "q",
+        kinematics.jacobian,
+        "Jacobian at poses with theta2 = 0 or pi, (6, n)",
+        _with_second_joint(0.0, np.pi),
     ),
     ("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz", None),
     ("planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy", None),
@@ -219,7 +228,8 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number", None),
     ("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number", None),
     (
-        "isotropic_jacobian", "q",
+        "isotropic_jacobian",
+        "q",
         lambda robot, q: kinematics.jacobian(robot, q, "tool")[:, :2],
         "rows vx, vy in tool axes at theta2 = ±135°, (2, 2)",
         _with_second_joint(0.75 * np.pi, -0.75 * np.pi),
@@ -230,7 +240,7 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ("loss_gradient", "q target", loss_gradient, "its gradient, (3,)", _with_target),
     ("gradient_step", "q target", gradient_step, "q - 0.1 gradient, (3,)", _with_target),
     ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", _well_conditioned),
-)  # fmt: skip
+)
 
 _JOINTS = {
     "singular_jacobian": 3,

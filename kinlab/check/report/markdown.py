@@ -4,21 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from kinlab.check.finding import Finding
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
 from kinlab.formulas.typeset import plain
 
 
-def text(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
+def text(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
     """The whole report.
 
     Args:
         groups: from :func:`kinlab.check.report.summary.grouped`.
-        findings: formulas that were taken apart.
+        judged: formulas that were taken apart.
     """
-    how = f"{HOW} {TAKEN_APART}" if findings else HOW
-    lines = ["# Hand formulas beside the engine", "", lead(groups, findings), "", how, ""]
+    how = f"{HOW} {TAKEN_APART}" if judged else HOW
+    lines = ["# Hand formulas beside the engine", "", lead(groups, judged), "", how, ""]
     section = None
     for group in groups:
         name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
@@ -26,11 +26,11 @@ def text(groups: Sequence[Group], findings: Sequence[Finding] = ()) -> str:
             lines += [f"## {name}", ""]
             section = name
         lines += _formula(group)
-    for finding in findings:
-        if finding.source != section:
-            lines += [f"## {finding.source}: your formulas", ""]
-            section = finding.source
-        lines += _entry(finding)
+    for found in judged:
+        if found.source != section:
+            lines += [f"## {found.source}: your formulas", ""]
+            section = found.source
+        lines += _entry(found)
     return "\n".join([*lines, origin(groups)]) + "\n"
 
 
@@ -53,26 +53,26 @@ def _formula(group: Group) -> list[str]:
         lines.append(f"| {row.robot} | {row.corrected.samples} | {error} | {printed} |")
     lines.append("")
     for row in group.rows:
-        if row.finding is not None:
-            lines += [f"On {row.robot}:", "", *_diagnosis(row.finding)]
+        if row.diagnosis is not None:
+            lines += [f"On {row.robot}:", "", *_diagnosis(row.diagnosis)]
     return lines
 
 
-def _entry(finding: Finding) -> list[str]:
-    mark = "" if finding.agrees else " **DIFFERS**"
-    lines = [f"### `{finding.title}`{mark}", "", f"`{finding.quantity}` of {finding.robot}", ""]
-    for left, right in finding.given:
+def _entry(found: Diagnosis) -> list[str]:
+    mark = "" if found.agrees else " **DIFFERS**"
+    lines = [f"### `{found.function}`{mark}", "", f"`{found.quantity}` of {found.robot}", ""]
+    for left, right in found.given:
         lines += [f"$${plain(f'{left} = {right}')}$$", ""]
-    return lines + _diagnosis(finding)
+    return lines + _diagnosis(found)
 
 
-def _diagnosis(finding: Finding) -> list[str]:
-    lines = [f"**{finding.verdict.capitalize()}**: {finding.sentence}. {errors(finding)}.", ""]
-    for text in finding.evidence:
+def _diagnosis(found: Diagnosis) -> list[str]:
+    lines = [f"**{found.verdict.capitalize()}**: {found.sentence}. {errors(found)}.", ""]
+    for text in found.evidence:
         lines += [f"{text}.", ""]
-    lines += [f"- or: {text}" for text in finding.others] + ([""] if finding.others else [])
-    if finding.corrected:
+    lines += [f"- or: {text}" for text in found.others] + ([""] if found.others else [])
+    if found.corrected:
         lines += ["Should be:", ""]
-    for left, right in finding.corrected:
+    for left, right in found.corrected:
         lines += [f"$${plain(f'{left} = {right}')}$$", ""]
     return lines

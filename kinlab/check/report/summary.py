@@ -11,7 +11,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.catalogue import Row
-from kinlab.check.finding import Finding
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.formulas.record import Formula
 
 
@@ -80,17 +80,17 @@ def grouped(rows: Iterable[Row]) -> list[Group]:
     return [Group(several[0].formula, tuple(several)) for several in found.values()]
 
 
-def as_data(rows: Iterable[Row], findings: Iterable[Finding] = ()) -> dict[str, Any]:
-    """The rows and findings as plain data; an infinite error is null.
+def as_data(rows: Iterable[Row], judged: Iterable[Diagnosis] = ()) -> dict[str, Any]:
+    """The rows and diagnoses as plain data; an infinite error is null.
 
     Returns:
         ``{"ok": bool, "rows": [...], "formulas": [...]}``.
     """
-    listed, judged = list(rows), list(findings)
+    listed, judged = list(rows), list(judged)
     return {
         "ok": all(row.ok for row in listed) and all(one.agrees for one in judged),
         "rows": [_row(row) for row in listed],
-        "formulas": [one.data for one in judged],
+        "formulas": [_diagnosis(one) for one in judged],
     }
 
 
@@ -112,9 +112,13 @@ def _row(row: Row) -> dict[str, Any]:
         "misprint": record.printed.misprint if record.printed and row.printed else None,
         "remark": record.remark,
         "verdict": row.verdict,
-        "diagnosis": None if row.finding is None else row.finding.data,
+        "diagnosis": None if row.diagnosis is None else _diagnosis(row.diagnosis),
         "ok": row.ok,
     }
+
+
+def _diagnosis(found: Diagnosis) -> dict[str, Any]:
+    return {"file": found.source, "ok": found.agrees, **found.as_dict()}
 
 
 def _number(value: float) -> float | None:

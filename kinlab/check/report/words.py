@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.finding import Finding
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report.summary import Group, size
 from kinlab.tolerances import TOLERANCES
 
@@ -36,28 +36,28 @@ TAKEN_APART = (
 )
 
 
-def lead(groups: Sequence[Group], findings: Sequence[Finding]) -> str:
+def lead(groups: Sequence[Group], judged: Sequence[Diagnosis]) -> str:
     """What was found, in a sentence or two."""
-    parts = [counts(groups)] if groups or not findings else []
-    if findings:
-        right = sum(one.agrees for one in findings)
-        named = sum(one.known and not one.agrees for one in findings)
-        told = f"Formulas in files: {right} of {len(findings)} right"
+    parts = [counts(groups)] if groups or not judged else []
+    if judged:
+        right = sum(one.agrees for one in judged)
+        named = sum(one.known and not one.agrees for one in judged)
+        told = f"Formulas in files: {right} of {len(judged)} right"
         told += f", what is wrong is known of {named}" if named else ""
-        unknown = len(findings) - right - named
+        unknown = len(judged) - right - named
         parts.append(told + (f", unknown of {unknown}." if unknown else "."))
     return " ".join(parts)
 
 
-def errors(finding: Finding) -> str:
+def errors(found: Diagnosis) -> str:
     """How far off a formula is, and how far once it is repaired."""
-    if not math.isfinite(finding.error_before):
+    if not math.isfinite(found.error_before):
         text = "The answer has another shape, or is no number"
     else:
-        text = f"Largest relative error {size(finding.error_before)}"
-    if finding.error_after is None:
+        text = f"Largest relative error {size(found.error_before)}"
+    if found.error_after is None:
         return text
-    return f"{text}; {size(finding.error_after)} once repaired"
+    return f"{text}; {size(found.error_after)} once repaired"
 
 
 def counts(groups: Sequence[Group]) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from kinlab.check.catalogue import Row
-from kinlab.check.finding import Finding
+from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report import html as report_html
 from kinlab.check.report import markdown as report_md
 from kinlab.check.report.summary import grouped
@@ -29,16 +29,16 @@ def check_report_path(path: str | Path) -> None:
         raise FileError(f"{file}: the folder {str(file.parent)!r} does not exist")
 
 
-def write_report(path: str | Path, rows: Sequence[Row], findings: Sequence[Finding] = ()) -> None:
+def write_report(path: str | Path, rows: Sequence[Row], judged: Sequence[Diagnosis] = ()) -> None:
     """Writes a report.
 
     Args:
         path: ends in .html or .md.
         rows: what :func:`kinlab.check.catalogue.run` gave.
-        findings: formulas that were taken apart, from :mod:`kinlab.doctor.findings`.
+        judged: formulas that were taken apart, from :mod:`kinlab.doctor.report`.
 
     Raises:
         FileError: another kind of file, or it cannot be written; an old one stays whole.
     """
     check_report_path(path)
-    write_text(path, _WRITERS[Path(path).suffix.lower()](grouped(rows), findings))
+    write_text(path, _WRITERS[Path(path).suffix.lower()](grouped(rows), judged))

@@ -1,4 +1,8 @@
-"""What the doctor answers: a verdict, ranked causes with their evidence, the corrected formula."""
+"""A hand formula, judged: a verdict, ranked causes with their evidence, the corrected formula.
+
+The doctor, which stands above this room, makes them; :func:`kinlab.diagnose` answers with one, and
+the reports show them.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+
+Typeset = tuple[str, str]
+"""A name and a formula, both as LaTeX."""
+
+_OTHERS = 3
+"""Causes that are told beside the first."""
 
 
 @dataclass(frozen=True)
@@ -44,6 +54,9 @@ class Diagnosis:
         worst_entry: the entry that is furthest off.
         worst_state: the state where, by argument.
         hand, engine: both answers there.
+        source: the file the formula is from, where it is from one.
+        given, corrected: for a report, the formulas as written, and as they should be where that
+            is known.
     """
 
     quantity: str
@@ -57,6 +70,32 @@ class Diagnosis:
     worst_state: dict[str, Array] = field(default_factory=dict, repr=False)
     hand: Array | None = field(default=None, repr=False)
     engine: Array | None = field(default=None, repr=False)
+    source: str = field(default="", repr=False)
+    given: tuple[Typeset, ...] = field(default=(), repr=False)
+    corrected: tuple[Typeset, ...] = field(default=(), repr=False)
+
+    @property
+    def known(self) -> bool:
+        """Whether what is wrong is known."""
+        return bool(self.causes)
+
+    @property
+    def error_after(self) -> float | None:
+        """The relative error that the first cause leaves once it is repaired."""
+        return self.causes[0].error_after if self.causes else None
+
+    @property
+    def others(self) -> tuple[str, ...]:
+        """What explains the difference equally well, in sentences."""
+        return tuple(cause.sentence for cause in self.causes[1 : _OTHERS + 1])
+
+    @property
+    def evidence(self) -> tuple[str, ...]:
+        """What is explained, the worst entry and its state, where the cause is unknown."""
+        if self.agrees or self.causes:
+            return ()
+        worst = f"Worst entry {self.worst_entry} at {self._at_worst(200)}"
+        return (*(f"Explained: {text}" for text in self.partial), worst)
 
     @property
     def verdict(self) -> str:
@@ -85,14 +124,18 @@ class Diagnosis:
                 f"  relative error before {self.error_before:.3g}, after {best.error_after:.2g}"
             )
             lines += [f"  correct: {name} = {text}" for name, text in best.corrected.items()]
-            lines += [f"  or: {cause.sentence}" for cause in self.causes[1:4]]
+            lines += [f"  or: {text}" for text in self.others]
             return "\n".join(lines)
         lines += [f"  explained: {text}" for text in self.partial]
-        with np.printoptions(precision=6, suppress=True, linewidth=100):
-            state = ", ".join(f"{name} = {value}" for name, value in self.worst_state.items())
-            lines.append(f"  relative error {self.error_before:.3g}; worst entry {self.worst_entry}"
-                         f" at {state}: hand {self.hand}, engine {self.engine}")  # fmt: skip
+        error = f"relative error {self.error_before:.3g}"
+        lines.append(f"  {error}; worst entry {self.worst_entry} at {self._at_worst(100)}")
         return "\n".join(lines)
+
+    def _at_worst(self, width: int) -> str:
+        """The worst state and both answers there."""
+        with np.printoptions(precision=6, suppress=True, linewidth=width):
+            state = ", ".join(f"{name} = {value}" for name, value in self.worst_state.items())
+            return f"{state}: hand {self.hand}, engine {self.engine}"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""

@@ -1,61 +1,65 @@
-"""Diagnoses as findings: with the formulas typeset and the differences marked, for a report."""
+"""Diagnoses for a report: with the formulas typeset and the differences marked."""
 
 from __future__ import annotations
 
-import pathlib
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from kinlab.check.catalogue import Row
-from kinlab.check.finding import Finding, Typeset
+from kinlab.check.diagnosis import Diagnosis, Typeset
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import Task
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.diagnosis import Diagnosis
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_file, meant, quantity_of, robot_of
+from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of, robot_of
 from kinlab.doctor.terms import split_name
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError
-from kinlab.formulas.text import FormulaFile, parse, read_file
+from kinlab.formulas.text import FormulaFile, parse
 from kinlab.formulas.tree import Node, Path, names, sym
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.model.robot import Robot
 
 FEWEST = 10
 """States that a diagnosis needs at least."""
-_OTHERS = 3
 _NONE: frozenset[Path] = frozenset()
 _SHORT = 40
 """Terms up to which a derived formula is worth showing."""
 
 _LETTERS = {
-    "inverse_dynamics": "tau", "gravity_torques": "g", "coriolis_torques": "c",
-    "mass_matrix": "M", "coriolis_matrix": "C", "jacobian": "J", "planar_jacobian": "J",
-    "fk": "T", "kinetic_energy": "T", "potential_energy": "V",
-}  # fmt: skip
+    "inverse_dynamics": "tau",
+    "gravity_torques": "g",
+    "coriolis_torques": "c",
+    "mass_matrix": "M",
+    "coriolis_matrix": "C",
+    "jacobian": "J",
+    "planar_jacobian": "J",
+    "fk": "T",
+    "kinetic_energy": "T",
+    "potential_energy": "V",
+}
 """What a quantity is called where the user gave no name."""
 
 
-def of_file(path: str | pathlib.Path, samples: int = 200, seed: int = 0) -> list[Finding]:
-    """Judges a file of formulas; see :func:`kinlab.doctor.file.examine_file`.
+def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
+    """Judges a file of formulas; see :func:`kinlab.doctor.file.examine_formulas`.
 
     Args:
-        path: the TOML file.
+        file: the formulas.
         samples, seed: the states; at least :data:`FEWEST` are taken.
 
     Raises:
         FileError, ExpressionError, NameUnknownError: what cannot be used, with its place.
     """
-    judged = examine_file(path, max(samples, FEWEST), seed)
-    file = read_file(path)
     robot = robot_of(file)
+    judged = examine_formulas(file, robot, max(samples, FEWEST), seed)
     return [_of_text(diagnosis, file, robot) for diagnosis in judged]
 
 
-def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
+def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Diagnosis:
     """Runs one row, and looks for what is wrong where it is a user's formula that differs.
 
     Args:
@@ -63,7 +67,7 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
         samples, seed: the states.
 
     Returns:
-        The row, with its finding; the finding alone where the answer has the wrong shape, so
+        The row, with its diagnosis; the diagnosis alone where the answer has the wrong shape, so
         that nothing can be compared, and the doctor knows why.
 
     Raises:
@@ -73,10 +77,10 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
     try:
         row = task.run(samples, seed)
     except AnswerShapeError:
-        finding = _of_function(task, samples, seed) if task.file and serial else None
-        if finding is None or not finding.known:
+        found = _of_function(task, samples, seed) if task.file and serial else None
+        if found is None or not found.known:
             raise
-        return finding
+        return found
     if row.corrected.agrees or row.failure or not task.file or not serial:
         return row
     return Row(
@@ -84,7 +88,7 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Finding:
     )
 
 
-def _of_function(task: Task, samples: int, seed: int) -> Finding:
+def _of_function(task: Task, samples: int, seed: int) -> Diagnosis:
     record = task.record
     plain, index = split_name(record.quantity)
     case, engine = prepare(task.robot, plain, index, max(samples, FEWEST), seed)
@@ -93,10 +97,10 @@ def _of_function(task: Task, samples: int, seed: int) -> Finding:
     found = examine(case, hand, engine, record.quantity, record.id, {})
     right = _corrected(found)
     corrected = tuple(equation(_name(label), parse(text)) for label, text in right.items())
-    return _finding(found, task.file, (), corrected)
+    return replace(found, source=task.file, corrected=corrected)
 
 
-def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Finding:
+def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Diagnosis:
     pointed = _corrected(found)
     right = pointed or _derived(found, robot)
     given: list[Typeset] = []
@@ -111,7 +115,7 @@ def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Finding:
         wrong, fixed = differences(written, formula, meaning) if pointed else (_NONE, _NONE)
         given.append(equation(entry, written, Marks("wrong", wrong)))
         corrected.append(equation(entry, formula, Marks("fixed", fixed)))
-    return _finding(found, file.path, tuple(given), tuple(corrected))
+    return replace(found, source=file.path, given=tuple(given), corrected=tuple(corrected))
 
 
 def _corrected(found: Diagnosis) -> dict[str, str]:
@@ -139,7 +143,7 @@ def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
 
 
 def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:
-    return meant(sym(name), file, robot, entry)
+    return in_robot_names(sym(name), file, robot, entry)
 
 
 def _entries(found: Diagnosis, file: FormulaFile, robot: Robot) -> Iterator[tuple[str, str]]:
@@ -156,32 +160,3 @@ def _name(label: str) -> str:
     if plain not in _LETTERS or not all(isinstance(k, int) and 0 <= k < 9 for k in index):
         return label
     return _LETTERS[plain] + "".join(str(k + 1) for k in index)
-
-
-def _finding(
-    found: Diagnosis, source: str, given: tuple[Typeset, ...], corrected: tuple[Typeset, ...]
-) -> Finding:
-    evidence: list[str] = []
-    if not found.agrees and not found.causes:
-        evidence = [f"Explained: {text}" for text in found.partial]
-        with np.printoptions(precision=6, suppress=True, linewidth=200):
-            state = ", ".join(f"{name} = {value}" for name, value in found.worst_state.items())
-            evidence.append(f"Worst entry {found.worst_entry} at {state}: hand {found.hand}, "
-                            f"engine {found.engine}")  # fmt: skip
-    return Finding(
-        title=found.function,
-        source=source,
-        quantity=found.quantity,
-        robot=found.robot,
-        agrees=found.agrees,
-        known=bool(found.causes),
-        sentence=found.sentence,
-        error_before=found.error_before,
-        error_after=found.causes[0].error_after if found.causes else None,
-        others=tuple(cause.sentence for cause in found.causes[1 : _OTHERS + 1]),
-        evidence=tuple(evidence),
-        given=given,
-        corrected=corrected,
-        text=str(found),
-        data={"file": source, "ok": found.agrees, **found.as_dict()},
-    )

@@ -1,0 +1,177 @@
+"""What the engine says if asked otherwise: another frame, another split of C, terms left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+
+from kinlab.arrays import Array
+from kinlab.doctor.changes import Arguments, Engine
+from kinlab.engine.dynamics import coriolis_matrix
+from kinlab.engine.kinematics import fk, jacobian, statics
+from kinlab.engine.lagrange import christoffel
+from kinlab.model.robot import Robot, scratch
+
+
+def in_frame(frame: str) -> Callable[[Engine], Engine]:
+    def changed(robot: Robot, x: Arguments) -> Array:
+        return jacobian(robot, x["q"], frame)
+
+    return lambda engine: changed
+
+
+def without_tool(engine: Engine) -> Engine:
+    def changed(robot: Robot, x: Arguments) -> Array:
+        jac = jacobian(robot, x["q"])
+        if robot.table is None:
+            return jac
+        arm = robot.table.frames(x["q"])[:, -1, :3, 3] - fk(robot, x["q"])[:, :3, 3]
+        jac[:, :3] += np.cross(jac[:, 3:], arm[:, :, None], axis=1)
+        return jac
+
+    return changed
+
+
+def wrench_in(frame: str) -> Callable[[Engine], Engine]:
+    def changed(robot: Robot, x: Arguments) -> Array:
+        return statics(robot, x["q"], x["wrench"], frame)
+
+    return lambda engine: changed
+
+
+def pseudo_inverse(engine: Engine) -> Engine:
+    def changed(robot: Robot, x: Arguments) -> Array:
+        out: Array = np.einsum("nij,nj->ni", np.linalg.pinv(jacobian(robot, x["q"])), x["wrench"])
+        return out
+
+    return changed
+
+
+def mass_slope(robot: Robot, q: Array) -> Array:
+    """dM_ij/dq_k at [:, i, j, k]: Mdot = C + C^T for each unit velocity."""
+    c = christoffel(robot, q)
+    return c + np.swapaxes(c, 1, 2)
+
+
+def _from_slope(form: Callable[[Array], Array]) -> Callable[[Engine], Engine]:
+    def apply(engine: Engine) -> Engine:
+        def changed(robot: Robot, x: Arguments) -> Array:
+            out: Array = np.einsum("nijk,nk->nij", form(mass_slope(robot, x["q"])), x["v"])
+            return out
+
+        return changed
+
+    return apply
+
+
+def _symmetric_form(slope: Array) -> Array:
+    """½ (dM_ik/dq_j + dM_jk/dq_i) at [i, j, k]."""
+    form: Array = 0.5 * (np.einsum("nikj->nijk", slope) + np.einsum("njki->nijk", slope))
+    return form
+
+
+symmetric = _from_slope(_symmetric_form)
+unskewed = _from_slope(lambda slope: slope - 0.5 * np.einsum("njki->nijk", slope))
+mass_rate = _from_slope(lambda slope: slope)
+half_mass_rate = _from_slope(lambda slope: 0.5 * slope)
+
+Extra = Callable[[Robot, Array, Array], Array]
+
+
+def added(extra: Extra) -> Callable[[Engine], Engine]:
+    def apply(engine: Engine) -> Engine:
+        return lambda robot, x: engine(robot, x) + extra(robot, x["q"], x["v"])
+
+    return apply
+
+
+def symmetric_extra(robot: Robot, q: Array, v: Array) -> Array:
+    form = _symmetric_form(mass_slope(robot, q)) - christoffel(robot, q)
+    out: Array = np.einsum("nijk,nj,nk->ni", form, v, v)
+    return out
+
+
+def mass_rate_extra(robot: Robot, q: Array, v: Array) -> Array:
+    form = mass_slope(robot, q) - christoffel(robot, q)
+    out: Array = np.einsum("nijk,nj,nk->ni", form, v, v)
+    return out
+
+
+def centrifugal(factor: float) -> Extra:
+    def extra(robot: Robot, q: Array, v: Array) -> Array:
+        out: Array = factor * np.einsum("nijj,nj->ni", christoffel(robot, q), v**2)
+        return out
+
+    return extra
+
+
+def coriolis_torques(factor: float) -> Extra:
+    def extra(robot: Robot, q: Array, v: Array) -> Array:
+        out: Array = factor * np.einsum("nij,nj->ni", coriolis_matrix(robot, q, v), v)
+        return out
+
+    return extra
+
+
+def joint_products(factor: float) -> Extra:
+    def extra(robot: Robot, q: Array, v: Array) -> Array:
+        return coriolis_torques(factor)(robot, q, v) - centrifugal(factor)(robot, q, v)
+
+    return extra
+
+
+def gyroscopic(robot: Robot, q: Array, v: Array) -> Array:
+    """-sum Jw^T (w x I w), each link in its own axes."""
+    out = np.zeros_like(q)
+    data = scratch(robot)
+    for row, (position, speed) in enumerate(zip(q, v, strict=True)):
+        pin.computeJointJacobians(robot.model, data, position)
+        for i in range(1, robot.model.njoints):
+            jac = pin.getJointJacobian(robot.model, data, i, pin.ReferenceFrame.LOCAL)
+            turning = jac.reshape(6, -1)[3:]  # one column comes flat
+            spin = turning @ speed
+            out[row] -= turning.T @ np.cross(spin, robot.model.inertias[i].inertia @ spin)
+    return out
+
+
+Tensors = Callable[[Robot, Array, int], tuple[Array, Array]]
+"""Robot, one q and a link from 0: the tensor, and the rotation of its axes in the base."""
+
+
+def joint_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
+    data = scratch(robot)
+    return robot.model.inertias[i + 1].inertia, data.oMi[i + 1].rotation
+
+
+def table_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
+    """A standard table's frame i is turned against the joint's by alpha."""
+    assert robot.table is not None
+    frame = robot.table.frames(q[None])[0, i, :3, :3]
+    return np.asarray(robot.table.links[i].inertia), frame
+
+
+def in_link_axes(name: str, axes: Tensors) -> Callable[[Engine], Engine]:
+    def extra(robot: Robot, q: Array) -> Array:
+        """sum Jw^T (I - R I R^T) Jw with Jw in base axes."""
+        out = np.zeros((len(q), robot.n, robot.n))
+        data = scratch(robot)
+        for row, position in enumerate(q):
+            pin.computeJointJacobians(robot.model, data, position)
+            for i in range(robot.n):
+                turning = pin.getJointJacobian(
+                    robot.model, data, i + 1, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
+                ).reshape(6, -1)[3:]
+                tensor, turn = axes(robot, position, i)
+                out[row] += turning.T @ (tensor - turn @ tensor @ turn.T) @ turning
+        return out
+
+    def apply(engine: Engine) -> Engine:
+        if name == "mass_matrix":
+            return lambda robot, x: engine(robot, x) + extra(robot, x["q"])
+        return lambda robot, x: (
+            engine(robot, x) + 0.5 * np.einsum("ni,nij,nj->n", x["v"], extra(robot, x["q"]), x["v"])
+        )
+
+    return apply
