@@ -13,8 +13,8 @@ module              what it holds
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
-``otherwise``       What the engine says if asked otherwise: another frame, another split of
-                    C, terms left out
+``otherwise``       What the engine says if asked otherwise: another frame, another split of C,
+                    terms left out
 ``readings``        The table of known confusions: every reading that makes sense for a quantity
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms

@@ -1,19 +1,22 @@
 """Formulas as text: the record of a hand formula, one tree, its readers and writers.
 
-==============  ====================================================================================
+==============  ==================================================================================
 module          what it holds
-==============  ====================================================================================
+==============  ==================================================================================
 ``arithmetic``  The one walk over Python's syntax tree of arithmetic: a whitelist, whatever the
                 signs mean
-``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered
-                or cancelled
-``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist then reads
+``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered or
+                cancelled
+``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
+                reads
 ``marks``       Where a formula and its corrected form differ, for the eye
 ``numbers``     Numbers and angles written as text: ``"pi/2"``, ``"-90 deg"``, ``"sqrt(2)*0.3"``
 ``record``      The record of one hand formula, and the decorators that make it
-``text``        Formulas as text, and files of them, as trees
+``text``        Formulas as text, read by a whitelist over Python's syntax tree. Nothing is ever
+                evaluated
 ``tree``        Formulas as small trees that keep the writer's own form, so that a repair can
                 point at it
-``typeset``     Trees as LaTeX in the order of the writer, and LaTeX as MathML
-==============  ====================================================================================
+``typeset``     Formulas as LaTeX and MathML: the records' own LaTeX, and trees in the order of
+                the writer
+==============  ==================================================================================
 """

@@ -104,7 +104,13 @@ def test_installed_wheel_finds_its_robots(tmp_path):
     wheel = next(tmp_path.glob("kinlab-*.whl"))
     site = tmp_path / "site"
     zipfile.ZipFile(wheel).extractall(site)
-    files = ("py.typed", "__init__.pyi", "viewer/page.js", "viewer/page.css", "check/report/base.html.j2")
+    files = (
+        "py.typed",
+        "__init__.pyi",
+        "viewer/page.js",
+        "viewer/page.css",
+        "check/report/base.html.j2",
+    )
     for file in files:
         assert (site / "kinlab" / file).is_file(), file
     code = (

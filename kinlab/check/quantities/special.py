@@ -222,8 +222,11 @@ _ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
     ("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz", None),
     ("planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy", None),
     (
-        "isotropy_defect", "q", isotropy_defect,
-        "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy", None,
+        "isotropy_defect",
+        "q",
+        isotropy_defect,
+        "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy",
+        None,
     ),
     ("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number", None),
     ("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number", None),
