@@ -19,7 +19,7 @@ from kinlab.notes.arm import (
     transpose,
     vector,
 )
-from kinlab.notes.note000_kinematics import planar_3r_jacobian
+from kinlab.notes.note000_kinematics import linear_jacobian, planar_3r_jacobian
 
 # -------- Note 000, sections 5 and 6: singular and isotropic poses of planar arms
 
@@ -60,14 +60,6 @@ def tip_jacobian(arm: Arm, q: Array) -> Array:
     return matrix([l1 * np.sin(q2), 0.0], [l1 * np.cos(q2) + l2, l2])
 
 
-def _planar_jacobian(arm: Arm, q: Array) -> Array:
-    """Rows vx, vy of a planar arm of any number of links, (..., 2, n)."""
-    angles = np.cumsum(q, axis=-1)
-    steps = np.stack(lengths(arm)) * np.stack([-np.sin(angles), np.cos(angles)])
-    columns_: Array = np.moveaxis(np.cumsum(steps[..., ::-1], axis=-1)[..., ::-1], 0, -2)
-    return columns_
-
-
 def _defect(products: Array) -> Array:
     """Square of how far a matrix of products is from a multiple of 1, over that multiple."""
     size = products.shape[-1]
@@ -77,7 +69,7 @@ def _defect(products: Array) -> Array:
 
 
 def _of_columns(arm: Arm, q: Array) -> Array:
-    jacobian = _planar_jacobian(arm, q)
+    jacobian = linear_jacobian(arm, q)[..., :2, :]
     return _defect(transpose(jacobian) @ jacobian)
 
 
@@ -97,7 +89,7 @@ def _of_columns(arm: Arm, q: Array) -> Array:
 )
 def isotropy_defect(arm: Arm, q: Array) -> Array:
     """How far J is from isotropic: its rows orthogonal and equally long."""
-    jacobian = _planar_jacobian(arm, q)
+    jacobian = linear_jacobian(arm, q)[..., :2, :]
     return _defect(jacobian @ transpose(jacobian))
 
 

@@ -23,7 +23,7 @@ from kinlab.check.catalogue import NOTES, catalogue, plan
 from kinlab.check.compare import relative_errors
 from kinlab.check.quantities.registry import quantity
 
-HELPERS = ("kinlab.notes.arm", "kinlab.notes.arm", "kinlab.notes.arm", "kinlab.notes.loop")
+HELPERS = ("kinlab.notes.arm", "kinlab.notes.loop")
 TELLING = ("stanford", "spatial3r", "panda", "planar2r", "planar2r_rods", "planar3r", "single_link")
 SAMPLES = 12
 

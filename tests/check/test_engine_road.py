@@ -106,6 +106,11 @@ def test_statics_of_a_long_stack(frame):
 
 
 def test_the_two_roads_have_one_description():
+    fast = [name for name in ENGINE if hasattr(stacks, name)]
+    assert {"fk", "jacobian", "inverse_dynamics", "forward_dynamics"} <= set(fast)
     for name, (function, _) in ENGINE.items():
-        assert getattr(stacks, name).__doc__ == function.__doc__
-        assert getattr(kl, name) is getattr(stacks, name)
+        if name in fast:
+            assert getattr(stacks, name).__doc__ == function.__doc__
+            assert getattr(kl, name) is getattr(stacks, name)
+        else:
+            assert getattr(kl, name) is function

@@ -84,7 +84,7 @@ def test_an_old_file_keeps_its_permissions(tmp_path):
 
 def test_a_killed_run_leaves_nothing_for_long(tmp_path):
     script = (
-        "import os, signal, sys\nfrom kinlab import files\n"
+        "import os, signal, sys\nfrom kinlab.host import files\n"
         "os.fsync = lambda handle: os.kill(os.getpid(), signal.SIGKILL)\n"
         "files.write_text(sys.argv[1], 'x')\n"
     )
