@@ -25,7 +25,7 @@ BAD = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("q", BAD, ids=str)
+@pytest.mark.parametrize("q", BAD, ids=lambda value: type(value).__name__)
 def test_what_are_no_numbers_is_refused(q):
     for call in (lambda: kl.fk(ARM, q), lambda: kl.inverse_dynamics(ARM, [0, 0], q, [0, 0]),
                  lambda: FIVE.ik(q), lambda: CHAIN.fk(q)):  # fmt: skip
@@ -46,7 +46,9 @@ def test_the_closed_chain_reads_numbers_of_any_machine():
 
 
 @pytest.mark.parametrize(
-    "robot", ["planar2r", None, 5, ARM.table, np.zeros(2), kl.Robot, FIVE, b"x"], ids=str
+    "robot",
+    ["planar2r", None, 5, ARM.table, np.zeros(2), kl.Robot, FIVE, b"x"],
+    ids=lambda value: type(value).__name__,
 )
 def test_what_is_no_robot_is_refused(robot):
     for call in (lambda: kl.fk(robot, [0.0, 0.0]), lambda: kl.mass_matrix(robot, [0.0, 0.0]),
@@ -57,7 +59,9 @@ def test_what_is_no_robot_is_refused(robot):
 
 
 @pytest.mark.parametrize(
-    "seed", [-1, 1.5, "5", np.nan, [1, 2], None, True, b"1", object()], ids=str
+    "seed",
+    [-1, 1.5, "5", np.nan, [1, 2], None, True, b"1", object()],
+    ids=lambda value: type(value).__name__,
 )
 def test_a_seed_that_is_none_is_refused(seed):
     for call in (
@@ -70,7 +74,9 @@ def test_a_seed_that_is_none_is_refused(seed):
             call()
 
 
-@pytest.mark.parametrize("count", [0, -1, 1.5, "5", None, [3], True], ids=str)
+@pytest.mark.parametrize(
+    "count", [0, -1, 1.5, "5", None, [3], True], ids=lambda value: type(value).__name__
+)
 def test_a_count_that_is_none_is_refused(count):
     for call in (
         lambda: kl.find_singularities(ARM, points=count),
