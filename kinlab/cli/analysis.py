@@ -68,6 +68,7 @@ def singular(
     if at is not None:
         near = nearest_singularity(robot, _numbers(at, robot.n, "--at"), chosen, seed=seed)
         console.print(tables.nearest(near), highlight=False)
+        console.print(str(near.evidence), style="dim", highlight=False)
     if output is not None:
         pictures.singular(robot, chosen, slice_, seed, output)
         console.print(f"wrote {output}", highlight=False)

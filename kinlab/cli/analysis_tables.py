@@ -56,12 +56,11 @@ def families(search: SingularitySearch) -> Any:
 
 def nearest(near: NearestSingularity) -> str:
     if near.singularity is None:
-        return f"no singular configuration within the limits was found\n[dim]{near.evidence}[/dim]"
+        return f"no singular configuration within the limits was found"
     q = ", ".join(f"{round(float(v), 6) + 0.0:g}" for v in near.singularity.q)
     return (
         f"nearest singularity: {near.singularity.kind} at distance {near.distance:.6g} rad (or m), "
-        f"q = {q}; sigma_min here {near.sigma[-1]:.4g} (length {near.length:.4g} m)\n"
-        f"[dim]{near.evidence}[/dim]"
+        f"q = {q}; sigma_min here {near.sigma[-1]:.4g} (length {near.length:.4g} m)"
     )
 
 
