@@ -23,9 +23,12 @@ POSE, POSITION, POINTING = 0, 1, 2
 """What of T counts: all of it, its origin, or its origin and the direction of its z axis."""
 
 _METHODS = {
-    WRIST: "spherical wrist", TRIPLE: "three parallel axes", POINT: "point of three joints",
-    PLANE: "planar", GENERAL: "continuation",
-}  # fmt: skip
+    WRIST: "spherical wrist",
+    TRIPLE: "three parallel axes",
+    POINT: "point of three joints",
+    PLANE: "planar",
+    GENERAL: "continuation",
+}
 
 _ENDLESS = (
     "robot {0!r}: its {1} moving joints leave J singular everywhere, so that no pose has a finite "
@@ -164,16 +167,32 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
         poses, starts, length = generic.poses, generic.q, generic.length
         count = starts.shape[1]
         most = BOUNDS.get(int(np.sum(solved.prismatic)), 2)
-        why = "as many as such an arm can have" if count == most else (
-            f"{generic.quiet} loops of the pose in a row brought no further one"
-        )  # fmt: skip
+        why = (
+            "as many as such an arm can have"
+            if count == most
+            else (f"{generic.quiet} loops of the pose in a row brought no further one")
+        )
         evidence = f"{count} solutions in complex joints at a generic pose ({why}), each followed"
     back, kinds = np.empty_like(solved.fixed), np.empty_like(solved.prismatic)
     reversed_chain(solved.fixed, solved.prismatic, back, kinds)
     form = Form(
-        solved.fixed, solved.prismatic, n, arm.fixed, arm.prismatic, back, kinds, turned, family,
-        task, centre, centre_tool, marker, poses, starts, length,
-    )  # fmt: skip
+        solved.fixed,
+        solved.prismatic,
+        n,
+        arm.fixed,
+        arm.prismatic,
+        back,
+        kinds,
+        turned,
+        family,
+        task,
+        centre,
+        centre_tool,
+        marker,
+        poses,
+        starts,
+        length,
+    )
     return Known(form, _METHODS[family], evidence, count)
 
 

@@ -26,9 +26,12 @@ _LIT = 0xD50000
 
 
 def against_scene(
-    mine: Robot | DHTable | str | Path, against: Any, q: ArrayLike | None = None, *,
+    mine: Robot | DHTable | str | Path,
+    against: Any,
+    q: ArrayLike | None = None,
+    *,
     tool: str | None = None,
-) -> Scene:  # fmt: skip
+) -> Scene:
     """Draws a table's arm, the reference see-through over it, and the diagnosis.
 
     Args:

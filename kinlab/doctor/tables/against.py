@@ -99,8 +99,10 @@ def read_mine(mine: DHTable | Robot | str | Path) -> DHTable:
         if not text.lower().endswith((".urdf", ".xml")):
             mine = load(text)
         else:
-            raise TableError(f"{text}: the table to judge is a .toml or .csv file; a URDF can be "
-                             "what it is held against")  # fmt: skip
+            raise TableError(
+                f"{text}: the table to judge is a .toml or .csv file; a URDF can be "
+                "what it is held against"
+            )
     if isinstance(mine, Robot) and mine.table is not None:
         return mine.table
     raise TableError(
@@ -263,11 +265,13 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
         inertia.append(np.array(body.inertia))
     stated = f"<{EXTENSION}" in robot.urdf or not robot.urdf
     bodies = Bodies(
-        np.array(mass), np.array(com), np.array(inertia),
+        np.array(mass),
+        np.array(com),
+        np.array(inertia),
         np.array(model.armature) if stated else None,
         np.array(model.gravity.linear) if stated else None,
         digit,
-    )  # fmt: skip
+    )
     last = model.frames[robot.tool].placement.homogeneous
     tools = [last]
     if model.existFrame(f"dh_{robot.n}"):
@@ -300,8 +304,10 @@ def check_joints(table: DHTable, reference: Reference) -> tuple[str, ...]:
     theirs = reference.joint_names
     if theirs and all(mine) and not set(mine) & set(theirs) and table.n == reference.n:
         first = f"{mine[0]!r} with {theirs[0]!r}"
-        return (f"no joint name in common: joints are paired in order, {first}; if that is wrong, "
-                "give the tool, or name the rows as the reference names its joints",)  # fmt: skip
+        return (
+            f"no joint name in common: joints are paired in order, {first}; if that is wrong, "
+            "give the tool, or name the rows as the reference names its joints",
+        )
     return ()
 
 

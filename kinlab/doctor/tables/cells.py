@@ -219,8 +219,10 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
 
 def row_text(row: Array) -> str:
     """A row in words."""
-    return (f"a {number(row[A])}, alpha {degrees(row[ALPHA])}, d {number(row[D])}, "
-            f"theta {degrees(row[THETA])}")  # fmt: skip
+    return (
+        f"a {number(row[A])}, alpha {degrees(row[ALPHA])}, d {number(row[D])}, "
+        f"theta {degrees(row[THETA])}"
+    )
 
 
 def inserted(chain: Chain, target: Target) -> list[Reading]:
@@ -234,9 +236,10 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                     np.insert(chain.cells, row, 0.0, axis=0),
                     np.insert(chain.prismatic, row, slides),
                     np.insert(chain.sign, row, sign),
-                    chain.base, chain.tool,
+                    chain.base,
+                    chain.tool,
                     (*chain.source[:row], None, *chain.source[row:]),
-                )  # fmt: skip
+                )
                 frame = row if chain.modified else row + 1
                 gap, _ = _differences(frames(new, target.few.q)[None], target.few)
                 if _spread(gap, target.size)[0, frame] > target.steady:
@@ -251,9 +254,15 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                 if not target.met(new):
                     continue
                 kind = "prismatic" if slides else "revolute"
-                cause = Cause(row + 1, "order", None, new.cells[row], "left out",
-                              f"row {row + 1} is left out: {kind}, {row_text(new.cells[row])}",
-                              1.0 if sign > 0 else 1.4)  # fmt: skip
+                cause = Cause(
+                    row + 1,
+                    "order",
+                    None,
+                    new.cells[row],
+                    "left out",
+                    f"row {row + 1} is left out: {kind}, {row_text(new.cells[row])}",
+                    1.0 if sign > 0 else 1.4,
+                )
                 found.append(Reading(new, (cause,)))
     return found
 
@@ -264,15 +273,28 @@ def removed(chain: Chain) -> list[Reading]:
     for row in range(chain.n):
         keep = [k for k in range(chain.n) if k != row]
         new = replace(
-            chain, cells=chain.cells[keep], prismatic=chain.prismatic[keep],
-            sign=chain.sign[keep], source=tuple(chain.source[k] for k in keep),
-        )  # fmt: skip
-        twins = [k for k in (row - 1, row + 1) if 0 <= k < chain.n
-                 and np.array_equal(chain.cells[k], chain.cells[row])]  # fmt: skip
+            chain,
+            cells=chain.cells[keep],
+            prismatic=chain.prismatic[keep],
+            sign=chain.sign[keep],
+            source=tuple(chain.source[k] for k in keep),
+        )
+        twins = [
+            k
+            for k in (row - 1, row + 1)
+            if 0 <= k < chain.n and np.array_equal(chain.cells[k], chain.cells[row])
+        ]
         told = f"repeats row {twins[0] + 1}" if twins else "is too many"
         cost = 1.0 if twins and twins[0] < row else 1.1 if twins else 1.5
-        cause = Cause(row + 1, "order", chain.cells[row], None, "doubled" if twins else "too many",
-                      f"row {row + 1} {told}", cost)  # fmt: skip
+        cause = Cause(
+            row + 1,
+            "order",
+            chain.cells[row],
+            None,
+            "doubled" if twins else "too many",
+            f"row {row + 1} {told}",
+            cost,
+        )
         found.append(Reading(new, (cause,)))
     return found
 

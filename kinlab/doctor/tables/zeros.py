@@ -55,8 +55,11 @@ def _with_tool(turned: Chain, reference: Reference) -> list[Chain]:
     """The last joint's zero from the tool's pose, or else another tool."""
     if reference.target.met(turned):
         return [turned]
-    found = [r for r in one_change([Reading(turned)], reference.target)
-             if all(c.column in ("theta", "d", "tool") for c in r.causes)]  # fmt: skip
+    found = [
+        r
+        for r in one_change([Reading(turned)], reference.target)
+        if all(c.column in ("theta", "d", "tool") for c in r.causes)
+    ]
     found = [r for r in found if _zeros_only(r)]
     found.sort(key=lambda r: (r.causes[0].column == "tool", r.cost))
     return [r.chain for r in found[:1]]
