@@ -27,7 +27,7 @@ STATES = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Axes:
+class ReferenceAxes:
     """Joint axes in the world at q = 0.
 
     Attributes:
@@ -41,11 +41,13 @@ class Axes:
     slides: Array
 
     @staticmethod
-    def of(chain: Chain) -> Axes:
+    def of(chain: Chain) -> ReferenceAxes:
         """The axes of a table."""
         poses = frames(chain, np.zeros((1, chain.n)))[0]
         carriers = poses[1:-1] if chain.modified else poses[:-2]
-        return Axes(carriers[:, :3, 2] * chain.sign[:, None], carriers[:, :3, 3], chain.prismatic)
+        return ReferenceAxes(
+            carriers[:, :3, 2] * chain.sign[:, None], carriers[:, :3, 3], chain.prismatic
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,7 @@ class Reference:
     chain: Chain | None = None
     base: list[Array] = field(default_factory=list)
     tool: list[Array] = field(default_factory=list)
-    axes: Axes | None = None
+    axes: ReferenceAxes | None = None
     zero_pose: Array | None = None
     bodies: Bodies | None = None
     joint_names: tuple[str, ...] | None = None
@@ -239,7 +241,7 @@ def _of_table(table: DHTable, seed: int) -> Reference:
         chain,
         [np.array(table.base)],
         [np.array(table.tool)],
-        Axes.of(chain),
+        ReferenceAxes.of(chain),
         table.fk(np.zeros(table.n))[-1],
         bodies if bodies.any else None,
         names if all(names) else None,
@@ -284,7 +286,7 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
         None,
         [np.eye(4), model.jointPlacements[1].homogeneous],
         tools,
-        Axes(direction, np.cross(angular, linear), slides),
+        ReferenceAxes(direction, np.cross(angular, linear), slides),
         fk(robot, zero),
         bodies if bodies.any else None,
         robot.joint_names,
