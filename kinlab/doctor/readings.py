@@ -168,19 +168,19 @@ def _engines(case: Case) -> Iterator[Confusion]:
         yield _other(
             "velocity terms sign",
             "has the velocity terms with the opposite sign",
-            otherwise.added(otherwise.coriolis_torques(-2.0)),
+            otherwise.added(otherwise.coriolis_share(-2.0)),
             1.1,
         )
         yield _other(
             "velocity terms factor",
             "counts the velocity terms twice",
-            otherwise.added(otherwise.coriolis_torques(1.0)),
+            otherwise.added(otherwise.coriolis_share(1.0)),
             1.2,
         )
         yield _other(
             "velocity terms factor",
             "counts the velocity terms half",
-            otherwise.added(otherwise.coriolis_torques(-0.5)),
+            otherwise.added(otherwise.coriolis_share(-0.5)),
             1.2,
         )
         yield _other(

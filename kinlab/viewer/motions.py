@@ -16,7 +16,7 @@ from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse.path import ik_path
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm import reach
-from kinlab.viewer.arm_page import task_rows
+from kinlab.viewer.arm_page import judged_rows
 
 # -------- A motion for the page: joint positions at given times, with straight lines
 #          between them
@@ -109,7 +109,7 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
     Raises:
         StructureError: J of the arm's task is not square, or its determinant never changes sign.
     """
-    rows, name = task_rows(robot)
+    rows, name = judged_rows(robot)
     if len(rows) != robot.n:
         raise StructureError(
             f"robot {robot.name!r}: J of its {name} is {len(rows)} x {robot.n}; a walk along "
@@ -148,7 +148,7 @@ def _tool_path(robot: Robot, corners: Array) -> Array:
 
     Poses are tried from the best conditioned down, and sizes from large to small.
     """
-    rows, _ = task_rows(robot)
+    rows, _ = judged_rows(robot)
     if 0 not in rows or 1 not in rows:
         raise StructureError(
             f"robot {robot.name!r}: its tool cannot move freely in a plane; use the motion 'sweep'"

@@ -130,7 +130,7 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
     if poses is not None:
         name = Path(str(against)).name if isinstance(against, (str, Path)) else "the poses"
         return of_poses(*poses, name=name)
-    against = robot_of(against, tool)
+    against = reference_robot(against, tool)
     if isinstance(against, DHTable):
         return _of_table(against, seed)
     if against.table is not None:
@@ -168,7 +168,7 @@ def poses_of(against: Any, n: int) -> tuple[ArrayLike, ArrayLike] | None:
     return None
 
 
-def robot_of(against: Any, tool: str | None) -> Robot | DHTable:
+def reference_robot(against: Any, tool: str | None) -> Robot | DHTable:
     """The robot or table that a reference other than poses is.
 
     Raises:
@@ -301,7 +301,7 @@ def check_joints(table: DHTable, reference: Reference) -> tuple[str, ...]:
         StructureError: the numbers of joints differ by more than one.
     """
     if abs(table.n - reference.n) > 1:
-        raise StructureError(counts(table, reference))
+        raise StructureError(joint_counts(table, reference))
     mine = [link.name for link in table.links]
     theirs = reference.joint_names
     if theirs and all(mine) and not set(mine) & set(theirs) and table.n == reference.n:
@@ -313,7 +313,7 @@ def check_joints(table: DHTable, reference: Reference) -> tuple[str, ...]:
     return ()
 
 
-def counts(table: DHTable, reference: Reference) -> str:
+def joint_counts(table: DHTable, reference: Reference) -> str:
     """One line on different numbers of joints."""
     remedy = "; of a URDF name the tool where that chain ends" if reference.joint_names else ""
     mine = [link.name for link in table.links if link.name]

@@ -40,7 +40,7 @@ from kinlab.doctor.tables.words import (
     length_cause,
     number,
     pose_cause,
-    tidy,
+    tidy_length,
     wrapped,
 )
 
@@ -109,7 +109,7 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
             changes[turn] = wrapped(float(chain.cells[row, turn]) + angle)
         if abs(length) > target.steady * target.size:
             written = float(chain.cells[row, slide])
-            changes[slide] = tidy(written + length, written)
+            changes[slide] = tidy_length(written + length, written)
         if changes:
             found.append(changed(first, {(row, c): v for c, v in changes.items()}, target.slack))
     row = frame if chain.modified else frame - 1
@@ -197,7 +197,7 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
             value = wrapped(float(solved[column]))
             same = abs(wrapped(value - float(written[column]))) < target.steady
         else:
-            value = tidy(float(solved[column]), float(written[column]))
+            value = tidy_length(float(solved[column]), float(written[column]))
             same = abs(value - written[column]) < 0.1 * target.steady * target.size
         if not same:
             values[row, column] = value
@@ -250,7 +250,9 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                 for column in range(4):
                     value = float(solved[column])
                     angle = column in (ALPHA, THETA)
-                    new = new.with_cell(row, column, wrapped(value) if angle else tidy(value, 0.0))
+                    new = new.with_cell(
+                        row, column, wrapped(value) if angle else tidy_length(value, 0.0)
+                    )
                 if not target.met(new):
                     continue
                 kind = "prismatic" if slides else "revolute"
@@ -408,7 +410,7 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
         for k, change in zip(support, solution, strict=True):
             written = float(chain.cells[cells[k]])
             if abs(change) > target.steady * target.size:
-                values[cells[k]] = tidy(written + float(change), written)
+                values[cells[k]] = tidy_length(written + float(change), written)
         if len(values) == most:
             found.append(changed(first, values, target.slack))
     return found

@@ -15,7 +15,7 @@ from kinlab.doctor.tables import zeros as table_zeros
 from kinlab.doctor.tables.against import (
     Reference,
     check_joints,
-    counts,
+    joint_counts,
     of_poses,
     read_mine,
     read_reference,
@@ -125,7 +125,7 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     if not found and reference.sharper is not None:
         return _judge(table, reference.sharper, bodies, [*notes, *reference.sharper.notes[-1:]])
     if not found and table.n != reference.n:
-        raise StructureError(counts(table, reference))
+        raise StructureError(joint_counts(table, reference))
     return _told(table, reference, found, same is not None, bodies, before, notes)
 
 

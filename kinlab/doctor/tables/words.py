@@ -114,7 +114,7 @@ def wrapped(angle: float) -> float:
     return nearest if abs(turned - nearest) < 1e-8 else turned
 
 
-def tidy(length: float, written: float) -> float:
+def tidy_length(length: float, written: float) -> float:
     """A solved length without its rounding residue: of twelve digits, or zero."""
     scale = max(abs(length), abs(written), 1e-3)
     short = float(f"{length:.9g}")

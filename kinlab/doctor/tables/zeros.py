@@ -16,7 +16,7 @@ from kinlab.doctor.tables.against import Reference, ReferenceAxes
 from kinlab.doctor.tables.cells import changed, one_change
 from kinlab.doctor.tables.chain import THETA, Chain, D, frames, inverse, tool_poses
 from kinlab.doctor.tables.readings import Reading
-from kinlab.doctor.tables.words import pose_cause, tidy, wrapped
+from kinlab.doctor.tables.words import pose_cause, tidy_length, wrapped
 
 _LINE = 1e-8
 
@@ -90,7 +90,7 @@ def _zeros(chain: Chain, axes: ReferenceAxes) -> Chain | None:
         column = D if chain.prismatic[i] else THETA
         written = float(current.cells[i, column])
         value = written + change * float(chain.sign[i])
-        value = tidy(value, written) if column == D else wrapped(value)
+        value = tidy_length(value, written) if column == D else wrapped(value)
         current = current.with_cell(i, column, value)
     return current
 
