@@ -84,7 +84,7 @@ def test_a_user_s_type_checker_knows_the_types(tmp_path):
         env={**os.environ, "MYPYPATH": str(ROOT), "MYPY_CACHE_DIR": str(ROOT / ".mypy_cache")},
     )  # fmt: skip
     lines = done.stdout.splitlines()
-    assert "kinlab.doctor.diagnosis.Diagnosis" in lines[0], done.stdout + done.stderr
+    assert "kinlab.check.diagnosis.Diagnosis" in lines[0], done.stdout + done.stderr
     assert 'Revealed type is "kinlab.model.robot.Robot"' in lines[1]
     assert "Incompatible types in assignment" in lines[2]
     assert lines[3].startswith("Found 1 error")
