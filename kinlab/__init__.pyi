@@ -1,7 +1,11 @@
 # The public names and where they live: read by type checkers and, at run time, by lazy_loader,
 # which imports each at first use. A new name is one more line here.
 
+from . import arrays as arrays
+from . import check as check
 from . import errors as errors
+from . import fivebar as fivebar
+from . import tolerances as tolerances
 from . import viewer as viewer
 from .analysis.boundary import planar_boundary as planar_boundary
 from .analysis.design import design_isotropic as design_isotropic

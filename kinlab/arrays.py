@@ -36,7 +36,8 @@ def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateErro
         KinlabError: (the class given) complex, boolean, text, ragged or masked input, NaN,
             infinity, or a number beyond :data:`LARGEST`.
     """
-    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+    masked = type(value) is not np.ndarray and isinstance(value, np.ma.MaskedArray)
+    if masked and np.ma.is_masked(value):
         raise error(f"{what}: masked entries have no value; fill them in")
     try:
         array = np.asarray(value)
@@ -47,8 +48,13 @@ def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateErro
         raise error(f"{what}: {why}") from None
     if array.dtype.kind not in "iuf":
         raise error(f"{what}: dtype {array.dtype} is not real numbers")
-    with np.errstate(over="ignore"):
+    if array.dtype.itemsize <= 8:
         result: Array = np.asarray(array, dtype=np.float64)
+    else:  # of longer floats, the largest are infinite here
+        with np.errstate(over="ignore"):
+            result = np.asarray(array, dtype=np.float64)
+    if np.vdot(result, result) <= LARGEST:  # then every |x| is; half the cost of comparing each
+        return result
     fine = np.abs(result) <= LARGEST  # false for NaN
     if not fine.all():
         place = tuple(int(i) for i in np.argwhere(~fine)[0])

@@ -78,7 +78,7 @@ def nearest_singularity(
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
-    boxes = whole(boxes, "boxes")
+    boxes, seed = whole(boxes, "boxes"), seed_of(seed)
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
@@ -160,7 +160,7 @@ def _from_many_starts(space: TaskSpace, here: Array, seed: int) -> tuple[Array |
     """The nearest of many local solutions, and Weyl's bound."""
     robot = space.robot
     system = sets.whole(space)
-    rng = np.random.default_rng(seed_of(seed))
+    rng = np.random.default_rng(seed)
     starts = np.concatenate([here[np.newaxis], sets.seeds(system, rng, 8)])
     x, good = sets.project(system, starts)
     x = x[good]

@@ -9,9 +9,13 @@ import typer
 
 
 def check_against(
-    tables: Sequence[str], against: str, tip: str | None, report: Sequence[Path], json: bool,
+    tables: Sequence[str],
+    against: str,
+    tip: str | None,
+    report: Sequence[Path],
+    json: bool,
     seed: int,
-) -> None:  # fmt: skip
+) -> None:
     """Judges tables against another description of their arm; exit code 1 where one differs.
 
     Raises:

@@ -138,10 +138,17 @@ def workspace(
     with Progress(console=screen(stderr=True), transient=True) as bar:
         row = bar.add_task("sampling", total=samples)
         chart = sample_workspace(
-            robot, _task(task), metric, samples=samples, sampling=sampling, length=length,
-            seed=seed, progress=lambda done, total: bar.update(row, completed=done, total=total),
-            workers=workers, folder=folder,
-        )  # fmt: skip
+            robot,
+            _task(task),
+            metric,
+            samples=samples,
+            sampling=sampling,
+            length=length,
+            seed=seed,
+            progress=lambda done, total: bar.update(row, completed=done, total=total),
+            workers=workers,
+            folder=folder,
+        )
     console.print(tables.headline(robot, chart.task, task == "auto"), highlight=False)
     if not chart.complete:
         console.print(f"stopped after {len(chart.values)} samples", style="yellow")

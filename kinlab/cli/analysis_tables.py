@@ -48,9 +48,12 @@ def families(search: SingularitySearch) -> Any:
         edge = edges[family.beyond]
         first = family.representative
         table.add_row(
-            family.kind + edge, condition, str(first.rank), first.lost_direction,
+            family.kind + edge,
+            condition,
+            str(first.rank),
+            first.lost_direction,
             ", ".join(first.joints),
-        )  # fmt: skip
+        )
     return table
 
 

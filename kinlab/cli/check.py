@@ -193,11 +193,14 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
         style = "" if group.ok else "bold red"
         shown = group.ok and group.printed_error is not None
         table.add_row(
-            group.formula.key, group.formula.title, group.robots,
-            size(group.worst.corrected.max_error), size(group.printed_error),
+            group.formula.key,
+            group.formula.title,
+            group.robots,
+            size(group.worst.corrected.max_error),
+            size(group.printed_error),
             styled((group.verdict, "yellow" if shown else "")),
             style=style,
-        )  # fmt: skip
+        )
     console.print(table)
     _print_failures(console, done)
     _print_closing(console, done, len(groups))
@@ -216,8 +219,7 @@ def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
     from kinlab.check.report.summary import size
 
     def line(text: str) -> None:
-        console.print(text, style="bold" if found.known else "", highlight=False,
-                      soft_wrap=True)  # fmt: skip
+        console.print(text, style="bold" if found.known else "", highlight=False, soft_wrap=True)
 
     line(f"diagnosis: {found.sentence}")
     if found.known:

@@ -65,9 +65,16 @@ def ik(
 
     start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
     answer = solve(
-        robot, pose, start, method, tol_position, tol_rotation, seed, task=task,
+        robot,
+        pose,
+        start,
+        method,
+        tol_position,
+        tol_rotation,
+        seed,
+        task=task,
         history=history is not None,
-    )  # fmt: skip
+    )
     slides = np.resize(chain(robot).prismatic, robot.n)
     width = max(len(joint) for joint in robot.joint_names)
     for joint, value, slide in zip(robot.joint_names, answer.q, slides, strict=True):

@@ -21,7 +21,7 @@ Engine = Callable[[Robot, Arguments], Array]
 
 
 @dataclass(frozen=True)
-class Reading:
+class Confusion:
     """One known confusion.
 
     Attributes:
@@ -70,7 +70,7 @@ class Case:
         short = {name: stack[:count] for name, stack in self.arguments.items()}
         return Case(self.robot, self.quantity, short, self.hand[:count], self.index)
 
-    def answer(self, readings: tuple[Reading, ...]) -> Array:
+    def answer(self, readings: tuple[Confusion, ...]) -> Array:
         """What the engine says under the readings; entries outside the index are cut away."""
         robot, arguments, engine = self.robot, self.arguments, self.engine
         for reading in readings:

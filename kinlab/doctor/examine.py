@@ -19,10 +19,10 @@ from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor import terms
-from kinlab.doctor.changes import Case, Reading
+from kinlab.doctor.changes import Case, Confusion
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.readings import readings
-from kinlab.doctor.terms import Entry, Slip, entries, split_name
+from kinlab.doctor.terms import AnswerEntry, Slip, entries, split_name
 from kinlab.errors import KinlabError, OptionError
 from kinlab.formulas.record import function_name, state_by_state
 from kinlab.formulas.tree import Node
@@ -186,7 +186,7 @@ def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:
     return values
 
 
-def _matches(case: Case, chosen: tuple[Reading, ...]) -> float | None:
+def _matches(case: Case, chosen: tuple[Confusion, ...]) -> float | None:
     """The error that is left under the readings, or None where they do not apply."""
     try:
         with np.errstate(all="ignore"):
@@ -199,7 +199,7 @@ def _matches(case: Case, chosen: tuple[Reading, ...]) -> float | None:
     return error if error <= TOLERANCES.formula_agrees else None
 
 
-def _singly(case: Case, tried: list[Reading]) -> Iterator[Cause]:
+def _singly(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
     for reading in tried:
         if _matches(few, (reading,)) is not None:
@@ -208,7 +208,7 @@ def _singly(case: Case, tried: list[Reading]) -> Iterator[Cause]:
                 yield _as_cause((reading,), error)
 
 
-def _in_pairs(case: Case, tried: list[Reading]) -> Iterator[Cause]:
+def _in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
     answers = [r for r in tried if r.stage == "answer"]
     before = [r for r in tried if r.stage != "answer"]
@@ -229,7 +229,7 @@ def _in_pairs(case: Case, tried: list[Reading]) -> Iterator[Cause]:
         yield from _found(case, chosen)
 
 
-def _begun(few: Case, first: Reading) -> tuple[Case | None, tuple[Reading, ...]]:
+def _begun(few: Case, first: Confusion) -> tuple[Case | None, tuple[Confusion, ...]]:
     """A case with the robot changed already, so that it is built once for all partners."""
     if first.stage != "robot":
         return few, (first,)
@@ -239,22 +239,22 @@ def _begun(few: Case, first: Reading) -> tuple[Case | None, tuple[Reading, ...]]
         return None, ()
 
 
-def _seems(few: Case, chosen: tuple[Reading, ...]) -> bool:
+def _seems(few: Case, chosen: tuple[Confusion, ...]) -> bool:
     return _matches(few, chosen) is not None
 
 
-def _apart(one: Reading, two: Reading) -> bool:
+def _apart(one: Confusion, two: Confusion) -> bool:
     return (one.kind, one.place) != (two.kind, two.place)
 
 
-def _found(case: Case, chosen: Iterable[tuple[Reading, ...]]) -> Iterator[Cause]:
+def _found(case: Case, chosen: Iterable[tuple[Confusion, ...]]) -> Iterator[Cause]:
     for readings_ in chosen:
         error = _matches(case, readings_)
         if error is not None:
             yield _as_cause(readings_, error)
 
 
-def _as_cause(chosen: tuple[Reading, ...], error: float) -> Cause:
+def _as_cause(chosen: tuple[Confusion, ...], error: float) -> Cause:
     told = " and ".join(r.sentence for r in chosen)
     return Cause(
         f"the formula {told}",
@@ -266,7 +266,7 @@ def _as_cause(chosen: tuple[Reading, ...], error: float) -> Cause:
 
 
 def _slips(
-    case: Case, off: list[Entry], written: dict[str, Node]
+    case: Case, off: list[AnswerEntry], written: dict[str, Node]
 ) -> tuple[list[Cause], tuple[str, ...]]:
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     per_entry: list[list[Slip]] = []
@@ -302,7 +302,7 @@ def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
     )
 
 
-def _of_entry(case: Case, entry: Entry, text: Node | None) -> list[Slip]:
+def _of_entry(case: Case, entry: AnswerEntry, text: Node | None) -> list[Slip]:
     table = case.robot.table
     derived = derivation(table, case.quantity.name) if table is not None else None
     if derived is None:
@@ -332,7 +332,7 @@ def _of_entry(case: Case, entry: Entry, text: Node | None) -> list[Slip]:
     return good
 
 
-def _reading_and_slips(case: Case, tried: list[Reading], engine: Array) -> Iterator[Cause]:
+def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Iterator[Cause]:
     """A whole-answer reading undone, and slips in what is left."""
     before = sum(not e.agrees for e in entries(case, engine))
     for reading in tried:

@@ -107,7 +107,7 @@ def centrifugal(factor: float) -> Extra:
     return extra
 
 
-def coriolis_torques(factor: float) -> Extra:
+def coriolis_share(factor: float) -> Extra:
     def extra(robot: Robot, q: Array, v: Array) -> Array:
         out: Array = factor * np.einsum("nij,nj->ni", coriolis_matrix(robot, q, v), v)
         return out
@@ -117,7 +117,7 @@ def coriolis_torques(factor: float) -> Extra:
 
 def joint_products(factor: float) -> Extra:
     def extra(robot: Robot, q: Array, v: Array) -> Array:
-        return coriolis_torques(factor)(robot, q, v) - centrifugal(factor)(robot, q, v)
+        return coriolis_share(factor)(robot, q, v) - centrifugal(factor)(robot, q, v)
 
     return extra
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor import otherwise
-from kinlab.doctor.changes import Arguments, Case, Engine, Reading
+from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.robot_readings import gravity_readings, inertia_readings, table_readings
 from kinlab.model.link import Convention
 
@@ -37,7 +37,7 @@ _WEIGHED = {
 """What depends on gravity."""
 
 
-def readings(case: Case) -> list[Reading]:
+def readings(case: Case) -> list[Confusion]:
     """Every reading for the case's quantity and robot."""
     name = case.quantity.name
     found = [*table_readings(case.robot)]
@@ -48,7 +48,7 @@ def readings(case: Case) -> list[Reading]:
     return [*found, *_arguments(case), *_engines(case), *_answers(case)]
 
 
-def _arguments(case: Case) -> Iterator[Reading]:
+def _arguments(case: Case) -> Iterator[Confusion]:
     have = case.arguments
     motion = [name for name in ("q", "v", "a") if name in have]
     if "q" in have:
@@ -101,7 +101,7 @@ def _arguments(case: Case) -> Iterator[Reading]:
         )
 
 
-def _engines(case: Case) -> Iterator[Reading]:
+def _engines(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
     if name in _FRAMES:
         for frame in ("base", "tool", "spatial"):
@@ -168,19 +168,19 @@ def _engines(case: Case) -> Iterator[Reading]:
         yield _other(
             "velocity terms sign",
             "has the velocity terms with the opposite sign",
-            otherwise.added(otherwise.coriolis_torques(-2.0)),
+            otherwise.added(otherwise.coriolis_share(-2.0)),
             1.1,
         )
         yield _other(
             "velocity terms factor",
             "counts the velocity terms twice",
-            otherwise.added(otherwise.coriolis_torques(1.0)),
+            otherwise.added(otherwise.coriolis_share(1.0)),
             1.2,
         )
         yield _other(
             "velocity terms factor",
             "counts the velocity terms half",
-            otherwise.added(otherwise.coriolis_torques(-0.5)),
+            otherwise.added(otherwise.coriolis_share(-0.5)),
             1.2,
         )
         yield _other(
@@ -194,7 +194,7 @@ def _engines(case: Case) -> Iterator[Reading]:
             yield _other("inertia frame", said, otherwise.in_link_axes(name, otherwise.table_axes))
 
 
-def _answers(case: Case) -> Iterator[Reading]:
+def _answers(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
     shape = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
     if name in _FRAMES or name == "jacobian_dot":
@@ -263,25 +263,25 @@ _SAID = {
 
 def _argument(
     kind: str, sentence: str, names: Any, change: Callable[[Array], Array], cost: float = 1.0
-) -> Reading:
+) -> Confusion:
     chosen = tuple(names)
 
     def apply(arguments: Arguments) -> Arguments:
         return {k: change(v) if k in chosen else v for k, v in arguments.items()}
 
-    return Reading(kind, sentence, "arguments", apply, cost)
+    return Confusion(kind, sentence, "arguments", apply, cost)
 
 
 def _other(
     kind: str, sentence: str, apply: Callable[[Engine], Engine], cost: float = 1.0
-) -> Reading:
-    return Reading(kind, sentence, "engine", apply, cost)
+) -> Confusion:
+    return Confusion(kind, sentence, "engine", apply, cost)
 
 
 def _answer(
     kind: str, sentence: str, apply: Callable[[Array], Array], cost: float = 1.0, place: str = ""
-) -> Reading:
-    return Reading(kind, sentence, "answer", apply, cost, place)
+) -> Confusion:
+    return Confusion(kind, sentence, "answer", apply, cost, place)
 
 
 def _backwards(x: Array) -> Array:

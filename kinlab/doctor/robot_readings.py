@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.doctor.changes import Reading
+from kinlab.doctor.changes import Confusion
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -26,7 +26,7 @@ _DIRECTIONS = {
 }
 
 
-def table_readings(robot: Robot) -> Iterator[Reading]:
+def table_readings(robot: Robot) -> Iterator[Confusion]:
     """What can be read differently in the DH table; nothing for a robot without one."""
     table = robot.table
     if table is None:
@@ -68,7 +68,7 @@ def table_readings(robot: Robot) -> Iterator[Reading]:
             )
 
 
-def _column_readings(table: DHTable) -> Iterator[Reading]:
+def _column_readings(table: DHTable) -> Iterator[Confusion]:
     for column, words in (("theta", "theta offsets"), ("d", "d offsets")):
         changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
         if len(changed) > 1:
@@ -86,7 +86,7 @@ def _column_readings(table: DHTable) -> Iterator[Reading]:
         yield _table("row shift", f"takes a and alpha of {words}", _shifted(a, alpha), cost=1.4)
 
 
-def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Reading]:
+def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
     value, place = getattr(link, column), f"link {i + 1}"
     if not value:
         return
@@ -103,7 +103,7 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Reading]:
     )
 
 
-def gravity_readings(robot: Robot) -> Iterator[Reading]:
+def gravity_readings(robot: Robot) -> Iterator[Confusion]:
     """Gravity's sign and axis."""
     gravity = np.array(robot.model.gravity.linear)
     size = float(np.linalg.norm(gravity))
@@ -117,7 +117,7 @@ def gravity_readings(robot: Robot) -> Iterator[Reading]:
             yield _model("gravity axis", f"has gravity along {name}", _gravity(turned), cost=1.1)
 
 
-def inertia_readings(robot: Robot) -> Iterator[Reading]:
+def inertia_readings(robot: Robot) -> Iterator[Confusion]:
     """Masses, centres, tensors and rotors: each link alone, and all together."""
     model = robot.model
     if np.any(model.armature):
@@ -240,12 +240,12 @@ def _table(
     change: Callable[[DHTable], DHTable],
     cost: float = 1.0,
     place: str = "",
-) -> Reading:
+) -> Confusion:
     def apply(robot: Robot) -> Robot:
         assert robot.table is not None
         return _built(change(robot.table))
 
-    return Reading(kind, sentence, "robot", apply, cost, place)
+    return Confusion(kind, sentence, "robot", apply, cost, place)
 
 
 @lru_cache(maxsize=128)
@@ -300,13 +300,13 @@ def _linked(i: int, **columns: Any) -> Callable[[DHTable], DHTable]:
 
 def _model(
     kind: str, sentence: str, change: Callable[[Any], None], cost: float = 1.0, place: str = ""
-) -> Reading:
+) -> Confusion:
     def apply(robot: Robot) -> Robot:
         model = pin.Model(robot.model)
         change(model)
         return Robot(robot.name, model, robot.tool, "", robot.table, None, robot.source)
 
-    return Reading(kind, sentence, "robot", apply, cost, place)
+    return Confusion(kind, sentence, "robot", apply, cost, place)
 
 
 def _gravity(value: Array) -> Callable[[Any], None]:
@@ -331,7 +331,7 @@ def _inertial(
     link: int | None,
     change: Callable[[Any], tuple[float, Array, Array]],
     cost: float = 1.0,
-) -> Reading:
+) -> Confusion:
     def apply(model: Any) -> None:
         for i in range(1, model.njoints) if link is None else (link + 1,):
             model.inertias[i] = _body(*change(model.inertias[i]))

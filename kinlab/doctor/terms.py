@@ -28,7 +28,7 @@ _INDEX = re.compile(r"(\w+)\[([\d:,\s-]+)\]")
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class AnswerEntry:
     """One number of an answer over all states.
 
     Attributes:
@@ -76,7 +76,7 @@ def _one(text: str) -> int | slice:
     return slice(start, stop)
 
 
-def entries(case: Case, engine: Array) -> Iterator[Entry]:
+def entries(case: Case, engine: Array) -> Iterator[AnswerEntry]:
     """Each entry of the case's answer."""
     name = case.quantity.name
     whole = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
@@ -87,12 +87,12 @@ def entries(case: Case, engine: Array) -> Iterator[Entry]:
     scale = error_sizes(engine)
     if engine.ndim == 1:
         index = chosen if isinstance(chosen, tuple) else ()
-        yield Entry(_label(name, index), index, (), case.hand, engine, scale)
+        yield AnswerEntry(_label(name, index), index, (), case.hand, engine, scale)
         return
     for local in np.ndindex(engine.shape[1:]):
         at = (slice(None), *local)
         index = chosen[local]
-        yield Entry(_label(name, index), index, local, case.hand[at], engine[at], scale)
+        yield AnswerEntry(_label(name, index), index, local, case.hand[at], engine[at], scale)
 
 
 def _label(name: str, index: tuple[int, ...]) -> str:

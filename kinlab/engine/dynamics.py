@@ -7,6 +7,7 @@ are not in any of these. :mod:`kinlab.fast.stacks` has a faster road for long st
 from __future__ import annotations
 
 from math import isfinite
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -33,7 +34,8 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
         InertiaError: a joint moves no inertia.
     """
     require_inertia(robot)
-    return each_state(robot, _mass_matrix, joint_vector(robot, q, "q"))
+    q = joint_vector(robot, q, "q")
+    return _mass_matrix(robot, q) if q.ndim == 1 else each_state(robot, _mass_matrix, q)
 
 
 def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
@@ -70,7 +72,7 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    return each_state(robot, _gravity, joint_vector(robot, q, "q"))
+    return each_state(robot, gravity, joint_vector(robot, q, "q"))
 
 
 def inverse_dynamics(
@@ -91,10 +93,9 @@ def inverse_dynamics(
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    if wrench is None and plain(robot, q, v, a):
-        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
-        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
-            return tau
+    tau = plain_inverse(robot, q, v, a) if wrench is None else None
+    if tau is not None:
+        return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
     tau = each_state(robot, _inverse, q, v, a)
     if wrench is not None:
@@ -119,14 +120,31 @@ def forward_dynamics(
         StateError, InertiaError: as :func:`mass_matrix`.
     """
     require_inertia(robot)
-    if wrench is None and plain(robot, q, v, tau):
-        a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
-        if isfinite(sum(a.tolist())):
-            return a
+    a = plain_forward(robot, q, v, tau) if wrench is None else None
+    if a is not None:
+        return a
     q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
     if wrench is not None:
         tau = tau - statics(robot, q, wrench)
     return finite_answer(robot, each_state(robot, _forward, q, v, tau), "forward_dynamics")
+
+
+def plain_inverse(robot: Robot, q: Any, v: Any, a: Any) -> Array | None:
+    """:func:`inverse_dynamics` of one state in sound float64 arrays; None where they are not."""
+    if plain(robot, q, v, a):
+        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
+            return tau
+    return None
+
+
+def plain_forward(robot: Robot, q: Any, v: Any, tau: Any) -> Array | None:
+    """:func:`forward_dynamics` of one state in sound float64 arrays; None where they are not."""
+    if plain(robot, q, v, tau):
+        a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
+        if isfinite(sum(a.tolist())):
+            return a
+    return None
 
 
 def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
@@ -200,7 +218,8 @@ def _forward(robot: Robot, q: Array, v: Array, tau: Array) -> Array:
     return a
 
 
-def _gravity(robot: Robot, q: Array) -> Array:
+def gravity(robot: Robot, q: Array) -> Array:
+    """:func:`gravity_torques` of one state that has been checked."""
     torques: Array = pin.computeGeneralizedGravity(robot.model, scratch(robot), q)
     return torques
 

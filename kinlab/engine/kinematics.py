@@ -44,7 +44,7 @@ def fk(robot: Robot, q: ArrayLike) -> Array:
         StateError: q of the wrong shape or type, or not finite.
     """
     q = joint_vector(robot, q, "q")
-    return each_state(robot, _fk, q)
+    return each_state(robot, tool_pose, q)
 
 
 def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
@@ -62,7 +62,7 @@ def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
         StateError: as :func:`fk`.
         NameUnknownError: another frame.
     """
-    return each_state(robot, _jacobian, joint_vector(robot, q, "q"), reference(frame))
+    return each_state(robot, tool_jacobian, joint_vector(robot, q, "q"), reference(frame))
 
 
 def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") -> Array:
@@ -172,14 +172,16 @@ def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Arr
     return out
 
 
-def _fk(robot: Robot, q: Array) -> Array:
+def tool_pose(robot: Robot, q: Array) -> Array:
+    """:func:`fk` of one state that has been checked."""
     data = scratch(robot)
     pin.forwardKinematics(robot.model, data, q)
     pose: Array = pin.updateFramePlacement(robot.model, data, robot.tool).homogeneous
     return pose
 
 
-def _jacobian(robot: Robot, q: Array, frame: Any) -> Array:
+def tool_jacobian(robot: Robot, q: Array, frame: Any) -> Array:
+    """:func:`jacobian` of one state that has been checked, in Pinocchio's name of a frame."""
     data = scratch(robot)
     pin.computeJointJacobians(robot.model, data, q)
     pin.updateFramePlacement(robot.model, data, robot.tool)

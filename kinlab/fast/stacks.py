@@ -21,6 +21,15 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.engine import dynamics, kinematics
+from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
+from kinlab.engine.kinematics import (
+    each_state,
+    held,
+    reference,
+    tool_jacobian,
+    tool_pose,
+    wrench_for,
+)
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors
 from kinlab.fast.arrays import chain
 from kinlab.fast.threads import over_rows, thread_count
@@ -49,49 +58,51 @@ def _documented(engine: Callable[..., Any]) -> Callable[[_Function], _Function]:
 
 @_documented(kinematics.fk)
 def fk(robot: Robot, q: ArrayLike) -> Array:
-    if _long(q):
-        stack = joint_vector(robot, q, "q")
-        if stack.ndim == 2:
-            return _poses(robot, stack)
-    return kinematics.fk(robot, q)
+    q = joint_vector(robot, q, "q")
+    if q.ndim == 1:
+        return tool_pose(robot, q)
+    return _poses(robot, q) if len(q) >= COMPILED_FROM else each_state(robot, tool_pose, q)
 
 
 @_documented(kinematics.jacobian)
 def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
-    if _long(q):
-        stack = joint_vector(robot, q, "q")
-        kinematics.reference(frame)
-        if stack.ndim == 2:
-            return _jacobians(robot, stack, frame)
-    return kinematics.jacobian(robot, q, frame)
+    q = joint_vector(robot, q, "q")
+    axes = reference(frame)
+    if q.ndim == 1:
+        return tool_jacobian(robot, q, axes)
+    if len(q) >= COMPILED_FROM:
+        return _jacobians(robot, q, frame)
+    return each_state(robot, tool_jacobian, q, axes)
 
 
 @_documented(kinematics.statics)
 def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
-    if _long(q):
-        stack = joint_vector(robot, q, "q")
-        force = kinematics.wrench_for(robot, stack, wrench)
-        return kinematics.held(jacobian(robot, stack, frame), force)
-    return kinematics.statics(robot, q, wrench, frame)
+    q = joint_vector(robot, q, "q")
+    force = wrench_for(robot, q, wrench)
+    return held(jacobian(robot, q, frame), force)
 
 
 @_documented(dynamics.gravity_torques)
 def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
-    if _long(q, least=PARALLEL_FROM):
-        require_inertia(robot)
-        stack = joint_vector(robot, q, "q")
-        if stack.ndim == 2:
-            rest = np.zeros_like(stack)
-            return _in_parallel(pin.rneaInParallel, robot, stack, rest, rest)
-    return dynamics.gravity_torques(robot, q)
+    require_inertia(robot)
+    q = joint_vector(robot, q, "q")
+    if q.ndim == 1:
+        return gravity(robot, q)
+    if len(q) >= PARALLEL_FROM:
+        rest = np.zeros_like(q)
+        return _in_parallel(pin.rneaInParallel, robot, q, rest, rest)
+    return each_state(robot, gravity, q)
 
 
 @_documented(dynamics.inverse_dynamics)
 def inverse_dynamics(
     robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
-    if _long(q, v, a, least=PARALLEL_FROM):
-        require_inertia(robot)
+    require_inertia(robot)
+    one = plain_inverse(robot, q, v, a) if wrench is None else None
+    if one is not None:
+        return one
+    if _long(q, v, a):
         q, v, a = joint_vectors(robot, q=q, v=v, a=a)
         if q.ndim == 2:
             tau = _in_parallel(pin.rneaInParallel, robot, q, v, a)
@@ -105,8 +116,11 @@ def inverse_dynamics(
 def forward_dynamics(
     robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
-    if _long(q, v, tau, least=PARALLEL_FROM):
-        require_inertia(robot)
+    require_inertia(robot)
+    one = plain_forward(robot, q, v, tau) if wrench is None else None
+    if one is not None:
+        return one
+    if _long(q, v, tau):
         q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
         if q.ndim == 2:
             if wrench is not None:
@@ -134,11 +148,11 @@ def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
     return out
 
 
-def _long(*values: Any, least: int = COMPILED_FROM) -> bool:
-    """Whether one may be a stack worth the faster road; says nothing about its shape."""
+def _long(*values: Any) -> bool:
+    """Whether one may be a stack worth the parallel calls; its shape is looked at later."""
     for value in values:
         try:
-            if len(value) >= least:
+            if len(value) >= PARALLEL_FROM:
                 return True
         except TypeError:  # a number, which the engine's function refuses by name
             continue

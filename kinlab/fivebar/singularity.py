@@ -40,7 +40,7 @@ class Circle:
 
 
 @dataclass(frozen=True)
-class Locus:
+class ForwardLocus:
     """One closed curve of type II.
 
     Attributes:
@@ -64,7 +64,7 @@ def type_one(linkage: FiveBar) -> tuple[tuple[Circle, Circle], tuple[Circle, Cir
     return legs[0], legs[1]
 
 
-def type_two(linkage: FiveBar, samples: int = 2048) -> list[Locus]:
+def type_two(linkage: FiveBar, samples: int = 2048) -> list[ForwardLocus]:
     """The curves of type II by formula.
 
     Args:
@@ -119,16 +119,16 @@ def _crank_ranges(linkage: FiveBar, gap: float) -> list[tuple[float, float]]:
 
 def _coupler_curve(
     linkage: FiveBar, kind: str, start: float, stop: float, samples: int
-) -> list[Locus]:
+) -> list[ForwardLocus]:
     whole = np.isclose(stop - start, 2.0 * np.pi, rtol=0, atol=1e-12)
     ramp = np.linspace(0.0, 1.0, samples)
     ramp = ramp if whole else 0.5 * (1.0 - np.cos(np.pi * ramp))
     theta = start + (stop - start) * ramp
     up, down = (_coupler_points(linkage, kind, theta, side) for side in (1.0, -1.0))
     if whole:
-        return [Locus(kind, *up), Locus(kind, *down)]
+        return [ForwardLocus(kind, *up), ForwardLocus(kind, *down)]
     points = np.concatenate([up[0], down[0][::-1]])
-    return [Locus(kind, points, np.concatenate([up[1], down[1][::-1]]))]
+    return [ForwardLocus(kind, points, np.concatenate([up[1], down[1][::-1]]))]
 
 
 def _coupler_points(linkage: FiveBar, kind: str, theta: Array, side: float) -> tuple[Array, Array]:
@@ -147,7 +147,7 @@ def _coupler_points(linkage: FiveBar, kind: str, theta: Array, side: float) -> t
     return b1 + linkage.l2[0] * w1, np.sign(signs)
 
 
-def _coincident_elbows(linkage: FiveBar, samples: int) -> list[Locus]:
+def _coincident_elbows(linkage: FiveBar, samples: int) -> list[ForwardLocus]:
     """Equal rods folded: both elbows in one place, about which the tool turns freely."""
     (first, second), shift = linkage.l1, 2.0 * linkage.e
     if shift == 0.0:
@@ -163,7 +163,7 @@ def _coincident_elbows(linkage: FiveBar, samples: int) -> list[Locus]:
         elbow = np.array([linkage.e - along, sign * np.sqrt(height)])
         arms = elbow - np.stack([linkage.base_x, np.zeros(2)], axis=1)
         modes = np.stack([np.sign(cross(arm, w)) for arm in arms], axis=1)
-        out.append(Locus("folded", elbow + linkage.l2[0] * w, modes))
+        out.append(ForwardLocus("folded", elbow + linkage.l2[0] * w, modes))
     return out
 
 

@@ -155,7 +155,7 @@ def _lens(r: float, s: float, d: float) -> float:
 
 
 @dataclass(frozen=True)
-class WorkspaceMap:
+class ModeMap:
     """One working mode on a grid of Y x X points.
 
     Attributes:
@@ -174,7 +174,7 @@ class WorkspaceMap:
     area: tuple[float, float]
 
 
-def workspace_map(linkage: FiveBar, mode: Mode = HANGING, resolution: int = 201) -> WorkspaceMap:
+def workspace_map(linkage: FiveBar, mode: Mode = HANGING, resolution: int = 201) -> ModeMap:
     """Maps reach, assembly and condition number of one working mode.
 
     Args:
@@ -190,7 +190,7 @@ def workspace_map(linkage: FiveBar, mode: Mode = HANGING, resolution: int = 201)
     shape = (len(y), len(x))
     cell = (x[1] - x[0]) * (y[1] - y[0])
     positive, negative = (float(np.sum(pose.ok & (s * pose.rods > 0)) * cell) for s in (1, -1))
-    return WorkspaceMap(
+    return ModeMap(
         x,
         y,
         pose.ok.reshape(shape),

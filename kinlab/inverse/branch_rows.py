@@ -383,14 +383,25 @@ def all_branches(
     """
     count, n = len(targets), form.real
     answer = Branches(
-        np.empty((count, MOST, n)), np.empty(count, dtype=np.int64),
-        np.empty((count, MOST), dtype=np.int64), np.empty(count, dtype=np.int64),
+        np.empty((count, MOST, n)),
+        np.empty(count, dtype=np.int64),
+        np.empty((count, MOST), dtype=np.int64),
+        np.empty(count, dtype=np.int64),
         np.empty((count, 12)),
-    )  # fmt: skip
+    )
     over_rows(
-        branch_rows, count, form, *limits, targets, answer.goals, answer.q, answer.codes,
-        answer.counts, answer.states,
-        threads=threads, grain=1 if form.family == GENERAL else 64,
+        branch_rows,
+        count,
+        form,
+        *limits,
+        targets,
+        answer.goals,
+        answer.q,
+        answer.codes,
+        answer.counts,
+        answer.states,
+        threads=threads,
+        grain=1 if form.family == GENERAL else 64,
         then=None if then is None else (lambda first, last: then(answer, first, last)),
-    )  # fmt: skip
+    )
     return answer

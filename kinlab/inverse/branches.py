@@ -158,13 +158,26 @@ def ik_branches(
     arm = _arm(robot, held)
     form, one = arm.known.form, target[:3].reshape(1, 12)
     found = Branches(
-        np.empty((1, MOST, form.real)), np.empty(1, np.int64), np.empty((1, MOST), np.int64),
-        np.empty(1, np.int64), np.empty((1, 12)),
-    )  # fmt: skip
+        np.empty((1, MOST, form.real)),
+        np.empty(1, np.int64),
+        np.empty((1, MOST), np.int64),
+        np.empty(1, np.int64),
+        np.empty((1, 12)),
+    )
     branch_rows.branch_rows(
-        form, arm.lower, arm.upper, arm.centre, one, found.goals, found.q, found.codes,
-        found.counts, found.states, 0, 1,
-    )  # fmt: skip
+        form,
+        arm.lower,
+        arm.upper,
+        arm.centre,
+        one,
+        found.goals,
+        found.q,
+        found.codes,
+        found.counts,
+        found.states,
+        0,
+        1,
+    )
     count = int(found.counts[0])
     errors = np.empty((count, 2))
     q = _full(arm, found.q[0, :count])
@@ -193,9 +206,16 @@ def _answer(
         complete = state == DOUBLE and not families
         why = _doubts(state, families, why)
     return IKBranches(
-        q, names, within, errors[:, 0], errors[:, 1], arm.known.method, complete and arm.whole,
-        why, families,
-    )  # fmt: skip
+        q,
+        names,
+        within,
+        errors[:, 0],
+        errors[:, 1],
+        arm.known.method,
+        complete and arm.whole,
+        why,
+        families,
+    )
 
 
 def _doubts(state: int, families: tuple[IKFamily, ...], evidence: str) -> str:
@@ -211,9 +231,12 @@ def _doubts(state: int, families: tuple[IKFamily, ...], evidence: str) -> str:
 
 
 def _many(
-    robot: Robot, held: tuple[tuple[int, float], ...], targets: Array, samples: int,
+    robot: Robot,
+    held: tuple[tuple[int, float], ...],
+    targets: Array,
+    samples: int,
     threads: int | None,
-) -> IKBranchesBatch:  # fmt: skip
+) -> IKBranchesBatch:
     """A stack: solved on all processors, each range measured while others run."""
     if not held and len(chain(robot).prismatic) == 7:
         answers = [_sampled(robot, T, whole(samples, "samples", 1)) for T in targets]
@@ -246,17 +269,28 @@ def _many(
     def one(row: int) -> IKBranches:
         number = int(found.counts[row])
         return _answer(
-            robot, arm, q[row, :number].copy(), found.codes[row, :number],
-            errors[row, :number].copy(), int(found.states[row]), found.goals[row],
-        )  # fmt: skip
+            robot,
+            arm,
+            q[row, :number].copy(),
+            found.codes[row, :number],
+            errors[row, :number].copy(),
+            int(found.states[row]),
+            found.goals[row],
+        )
 
     bad = np.nanmax(errors, axis=(1, 2), initial=0.0) > TOLERANCE
     for row in np.flatnonzero(bad | (found.states == DOUBLE)):
         complete[row] = one(int(row)).complete
     return IKBranchesBatch(
-        q, found.counts, within, errors[:, :most, 0], errors[:, :most, 1], complete & arm.whole,
-        arm.known.method, one,
-    )  # fmt: skip
+        q,
+        found.counts,
+        within,
+        errors[:, :most, 0],
+        errors[:, :most, 1],
+        complete & arm.whole,
+        arm.known.method,
+        one,
+    )
 
 
 def _stacked(answers: list[IKBranches], n: int) -> IKBranchesBatch:
@@ -270,9 +304,15 @@ def _stacked(answers: list[IKBranches], n: int) -> IKBranchesBatch:
         errors[i, : len(a), 0], errors[i, : len(a), 1] = a.position_error, a.rotation_error
     complete = np.array([a.complete for a in answers], dtype=np.bool_)
     return IKBranchesBatch(
-        q, counts, within, errors[..., 0], errors[..., 1], complete,
-        answers[0].method if answers else "", answers.__getitem__,
-    )  # fmt: skip
+        q,
+        counts,
+        within,
+        errors[..., 0],
+        errors[..., 1],
+        complete,
+        answers[0].method if answers else "",
+        answers.__getitem__,
+    )
 
 
 def _sampled(robot: Robot, target: Array, samples: int) -> IKBranches:
@@ -352,9 +392,15 @@ def _arm(robot: Robot, held: tuple[tuple[int, float], ...]) -> _Arm:
         lower, upper = robot.lower[joints], robot.upper[joints]
         free = robot.n - len(joints) - len(values)
         found = kept[held] = _Arm(
-            known, None if len(joints) == robot.n else joints, rest, lower, upper,
-            np.clip(0.0, lower, upper), words_of(known.form), free == 0,
-        )  # fmt: skip
+            known,
+            None if len(joints) == robot.n else joints,
+            rest,
+            lower,
+            upper,
+            np.clip(0.0, lower, upper),
+            words_of(known.form),
+            free == 0,
+        )
     return found
 
 

@@ -98,8 +98,11 @@ def ik_path(
             here = answer.q
             continue
         options: dict[str, Any] = {
-            "tol_position": tol_position, "tol_rotation": tol_rotation, "seed": seed, "task": task,
-        }  # fmt: skip
+            "tol_position": tol_position,
+            "tol_rotation": tol_rotation,
+            "seed": seed,
+            "task": task,
+        }
         answer = ik(robot, target, here, restarts=0, **options)
         if not answer.success or _step(answer, here) > largest:
             other = ik(robot, target, here, **options)

@@ -141,10 +141,19 @@ def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Set
     weight[:3] /= length**2
     poses = fk(robot, sample)[:, :3, :].reshape(count, 12)
     return Setup(
-        fixed, prismatic, lower, upper, np.clip(0.0, lower, upper),
-        ~slides & (upper - lower >= WIDE), weight, np.ascontiguousarray(poses.T), sample,
-        reach, rows, {},
-    )  # fmt: skip
+        fixed,
+        prismatic,
+        lower,
+        upper,
+        np.clip(0.0, lower, upper),
+        ~slides & (upper - lower >= WIDE),
+        weight,
+        np.ascontiguousarray(poses.T),
+        sample,
+        reach,
+        rows,
+        {},
+    )
 
 
 def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Array, Array]:
@@ -178,9 +187,22 @@ def search_of(
     if len(arm.kept) >= _KEPT:
         arm.kept.clear()
     found = arm.kept[key] = Search(
-        arm.fixed, arm.prismatic, lower, upper, wide, arm.weight, arm.table, arm.starts,
-        np.array(tolerances), DAMPING, FLOOR, iterations, searches, PATIENCE["lm"], arm.reach,
-    )  # fmt: skip
+        arm.fixed,
+        arm.prismatic,
+        lower,
+        upper,
+        wide,
+        arm.weight,
+        arm.table,
+        arm.starts,
+        np.array(tolerances),
+        DAMPING,
+        FLOOR,
+        iterations,
+        searches,
+        PATIENCE["lm"],
+        arm.reach,
+    )
     return found
 
 

@@ -11,9 +11,10 @@ from kinlab.arrays import Array
 from kinlab.errors import StructureError
 from kinlab.fast.arrays import Chain, chain
 from kinlab.fast.kinematics_kernels import columns, frames
-from kinlab.inverse.closed_forms import MEETS, PARALLEL, reversed_chain
+from kinlab.inverse.closed_forms import PARALLEL, reversed_chain
 from kinlab.inverse.continuation import BOUNDS, generic_solutions
 from kinlab.model.robot import Robot
+from kinlab.structure.axes import Axes, meeting_point
 
 WRIST, TRIPLE, POINT, PLANE, GENERAL = 0, 1, 2, 3, 4
 """Families: spherical wrist, three parallel axes, a point carried by three joints, all axes
@@ -23,9 +24,12 @@ POSE, POSITION, POINTING = 0, 1, 2
 """What of T counts: all of it, its origin, or its origin and the direction of its z axis."""
 
 _METHODS = {
-    WRIST: "spherical wrist", TRIPLE: "three parallel axes", POINT: "point of three joints",
-    PLANE: "planar", GENERAL: "continuation",
-}  # fmt: skip
+    WRIST: "spherical wrist",
+    TRIPLE: "three parallel axes",
+    POINT: "point of three joints",
+    PLANE: "planar",
+    GENERAL: "continuation",
+}
 
 _ENDLESS = (
     "robot {0!r}: its {1} moving joints leave J singular everywhere, so that no pose has a finite "
@@ -115,7 +119,7 @@ def _rows(steps: Any) -> Array:
     return np.array([np.asarray(step)[:3].ravel() for step in steps])
 
 
-def held(arm: Chain, given: tuple[tuple[int, float], ...]) -> Chain:
+def with_held(arm: Chain, given: tuple[tuple[int, float], ...]) -> Chain:
     """The chain of the joints that are left when some are held."""
     values = dict(given)
     steps = steps_of(arm.fixed)
@@ -138,7 +142,7 @@ def held(arm: Chain, given: tuple[tuple[int, float], ...]) -> Chain:
 
 
 def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
-    arm = held(chain(robot), given)
+    arm = with_held(chain(robot), given)
     n = len(arm.prismatic)
     if n > 6:
         raise StructureError(
@@ -164,16 +168,32 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
         poses, starts, length = generic.poses, generic.q, generic.length
         count = starts.shape[1]
         most = BOUNDS.get(int(np.sum(solved.prismatic)), 2)
-        why = "as many as such an arm can have" if count == most else (
-            f"{generic.quiet} loops of the pose in a row brought no further one"
-        )  # fmt: skip
+        why = (
+            "as many as such an arm can have"
+            if count == most
+            else (f"{generic.quiet} loops of the pose in a row brought no further one")
+        )
         evidence = f"{count} solutions in complex joints at a generic pose ({why}), each followed"
     back, kinds = np.empty_like(solved.fixed), np.empty_like(solved.prismatic)
     reversed_chain(solved.fixed, solved.prismatic, back, kinds)
     form = Form(
-        solved.fixed, solved.prismatic, n, arm.fixed, arm.prismatic, back, kinds, turned, family,
-        task, centre, centre_tool, marker, poses, starts, length,
-    )  # fmt: skip
+        solved.fixed,
+        solved.prismatic,
+        n,
+        arm.fixed,
+        arm.prismatic,
+        back,
+        kinds,
+        turned,
+        family,
+        task,
+        centre,
+        centre_tool,
+        marker,
+        poses,
+        starts,
+        length,
+    )
     return Known(form, _METHODS[family], evidence, count)
 
 
@@ -262,7 +282,7 @@ def _six(arm: Chain) -> tuple[int, bool, Array, Array, Array] | None:
     back, kinds = np.empty_like(arm.fixed), np.empty_like(arm.prismatic)
     reversed_chain(arm.fixed, arm.prismatic, back, kinds)
     for turned, each in ((False, arm), (True, Chain(back, kinds))):
-        centre = wrist_centre(each)
+        centre = wrist_in_frames(each)
         if centre is not None and not _constant_height(each):
             return WRIST, turned, *centre, centre[1]
     for turned, each in ((False, arm), (True, Chain(back, kinds))):
@@ -288,8 +308,8 @@ def _constant_height(arm: Chain) -> bool:
     )
 
 
-def wrist_centre(arm: Chain) -> tuple[Array, Array] | None:
-    """Where the last three axes intersect, or ``None``.
+def wrist_in_frames(arm: Chain) -> tuple[Array, Array] | None:
+    """Where the last three axes intersect, neighbours not parallel; or ``None``.
 
     Args:
         arm: of six joints; 1, 2, 4, 5, 6 revolute.
@@ -304,14 +324,13 @@ def wrist_centre(arm: Chain) -> tuple[Array, Array] | None:
     fourth = steps[3]
     fifth = fourth @ steps[4]
     sixth = fifth @ steps[5]
-    lines = [(f[:3, 3], f[:3, 2]) for f in (fourth, fifth, sixth)]
-    (p4, z4), (p5, z5), _ = lines
-    normal = np.cross(z4, z5)
-    square = float(normal @ normal)
-    if square < PARALLEL or float(np.sum(np.cross(z5, lines[2][1]) ** 2)) < PARALLEL:
+    lines = np.stack([fourth, fifth, sixth])
+    axes = Axes(np.ones(3, dtype=np.bool_), lines[:, :3, 2], lines[:, :3, 3])
+    across = np.cross(axes.direction[:-1], axes.direction[1:])
+    if np.min(np.sum(across**2, axis=1)) < PARALLEL:
         return None
-    centre = p4 + z4 * (float(np.cross(p5 - p4, z5) @ normal) / square)
-    if any(np.linalg.norm(np.cross(centre - p, z)) > MEETS for p, z in lines):
+    centre = meeting_point(axes, (0, 1, 2))
+    if centre is None:
         return None
     tool = np.linalg.inv(sixth @ steps[6])
     return centre, tool[:3, :3] @ centre + tool[:3, 3]

@@ -192,7 +192,8 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
-    require_robot(robot)
+    if type(robot) is not Robot:
+        require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
 

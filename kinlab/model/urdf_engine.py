@@ -99,9 +99,13 @@ def _write_inertial(link: Any, inertial: Inertial) -> None:
     etree.SubElement(element, "mass", value=_digits(inertial.mass))
     i = inertial.inertia
     entries = {
-        "ixx": i[0, 0], "ixy": i[0, 1], "ixz": i[0, 2],
-        "iyy": i[1, 1], "iyz": i[1, 2], "izz": i[2, 2],
-    }  # fmt: skip
+        "ixx": i[0, 0],
+        "ixy": i[0, 1],
+        "ixz": i[0, 2],
+        "iyy": i[1, 1],
+        "iyz": i[1, 2],
+        "izz": i[2, 2],
+    }
     etree.SubElement(element, "inertia", {key: _digits(x) for key, x in entries.items()})
 
 

@@ -106,7 +106,7 @@ _TOOL_NAMES = ("tool", "tool0", "tcp", "end_effector", "ee_link", "eef", "ee", "
 
 
 @dataclass(frozen=True)
-class Chain:
+class URDFChain:
     """A serial chain read from a URDF.
 
     Attributes:
@@ -120,7 +120,7 @@ class Chain:
     tool: int
 
 
-def read(text: str, file: str | None, tool: str | None) -> Chain:
+def read(text: str, file: str | None, tool: str | None) -> URDFChain:
     """Checks a URDF and builds the chain from its root to a tool.
 
     Args:
@@ -140,7 +140,7 @@ def read(text: str, file: str | None, tool: str | None) -> Chain:
     chain, tip = _chain(tree, tool, place)
     check_moved_inertias(tree, set(tree.links_behind(tree.joints[chain[0]].child)), place)
     model = build(tree, chain, place)
-    return Chain(tree.name, model, int(model.getFrameId(tip, pin.FrameType.BODY)))
+    return URDFChain(tree.name, model, int(model.getFrameId(tip, pin.FrameType.BODY)))
 
 
 def _chain(tree: UrdfTree, tool: str | None, place: str) -> tuple[list[str], str]:

@@ -356,9 +356,15 @@ def _joint(element: Any, links: dict[str, LinkRecord], where: str) -> JointRecor
         raise UrdfError(f"{where}: type {kind!r} is unknown; {near(str(kind), _KNOWN)}")
     xyz, rpy = read_origin(element, where)
     fixed = JointRecord(
-        element.get("name"), kind, ends[0], ends[1], xyz, rpy, np.array([1.0, 0.0, 0.0]),
+        element.get("name"),
+        kind,
+        ends[0],
+        ends[1],
+        xyz,
+        rpy,
+        np.array([1.0, 0.0, 0.0]),
         mimics=_only(element, "mimic", where) is not None,
-    )  # fmt: skip
+    )
     return _moving(fixed, element, where) if kind in MOVING else fixed
 
 

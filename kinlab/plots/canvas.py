@@ -33,7 +33,7 @@ def new_figure(size: tuple[float, float] = (6.4, 5.2)) -> Any:
     return figure
 
 
-def plain(text: str) -> str:
+def figure_text(text: str) -> str:
     """A name as a figure shows it: dollars are no formulas, control codes no codes."""
     shown = "".join(
         letter if letter.isprintable() else "\N{REPLACEMENT CHARACTER}" for letter in text
@@ -50,7 +50,7 @@ def new_axes(title: str = "", three_d: bool = False, size: tuple[float, float] =
     figure = new_figure(size)
     axes = figure.add_subplot(projection="3d" if three_d else None)
     if title:
-        axes.set_title(plain(title), fontsize=11)
+        axes.set_title(figure_text(title), fontsize=11)
     return axes
 
 

@@ -12,7 +12,7 @@ from kinlab.analysis.metrics import singular_values
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.model.robot import Robot
-from kinlab.plots.canvas import BLUE, RED, new_axes, plain
+from kinlab.plots.canvas import BLUE, RED, figure_text, new_axes
 from kinlab.structure.task_space import read_length, read_task
 
 
@@ -83,7 +83,7 @@ def plot_loci(robot: Robot, loci: Loci, axes: Any = None) -> Any:
         jumps = np.abs(np.diff(wrapped, axis=0)).max(axis=1) > 180.0
         for piece in np.split(wrapped, np.flatnonzero(jumps) + 1):
             axes.plot(*piece.T, color=RED, lw=1.6)
-    names = [plain(robot.joint_names[j]) for j in loci.joints]
+    names = [figure_text(robot.joint_names[j]) for j in loci.joints]
     axes.set_xlabel(f"{names[0]} [deg]")
     axes.set_ylabel(f"{names[1]} [deg]")
     for which, (low, high) in zip("xyz", zip(lower, upper, strict=True), strict=False):

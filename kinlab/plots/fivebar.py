@@ -13,7 +13,7 @@ from kinlab.fivebar.dynamics import crank_inertia, rod_model
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.servo import ServoSizing
 from kinlab.fivebar.workspace import Rectangle
-from kinlab.plots.canvas import new_axes, new_figure, plain
+from kinlab.plots.canvas import figure_text, new_axes, new_figure
 
 _LEGS = ("tab:blue", "tab:orange")
 _WORST_SHOWN = 10.0
@@ -67,7 +67,7 @@ def workspace_picture(
     _bars(axes, linkage, np.array(circle.centre), mode)
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
     signs = ", ".join("+" if s > 0 else "−" for s in mode)
-    axes.set_title(f"{plain(linkage.name)}: working mode ({signs})")
+    axes.set_title(f"{figure_text(linkage.name)}: working mode ({signs})")
     axes.figure.legend(loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return axes
 
@@ -133,7 +133,7 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
-        f"{plain(linkage.name)}: {60 / path.duration:.0f} cycles a minute, "
+        f"{figure_text(linkage.name)}: {60 / path.duration:.0f} cycles a minute, "
         f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
     )
     return where
@@ -166,7 +166,7 @@ def gain_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
             label = f"least at σ = √η = {np.sqrt(eta):.3g} rad/m"
             axes.plot(np.sqrt(eta), least, "o", color=_LEGS[leg], label=label)
     axes.axvspan(*sizing.sigma, color="tab:green", alpha=0.18, label="J in the workspace")
-    axes.set(title=f"{plain(linkage.name)}: torque per acceleration")
+    axes.set(title=f"{figure_text(linkage.name)}: torque per acceleration")
     axes.set(xlabel="singular value σ of J, rad/m", ylabel="I$_A$ σ + m/σ, kg m")
     axes.set_ylim(bottom=0.0)
     axes.legend(fontsize=9)

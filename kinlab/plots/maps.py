@@ -125,8 +125,11 @@ def _section_lines(axes: Any, section: WorkspaceSection) -> None:
         edge = np.where(near[:, np.newaxis], curve.points, np.nan)
         axes.plot(*inside.T, color=RED, lw=1.4, ls=style)
         axes.plot(*edge.T, color="black", lw=1.4, ls=style)
-    named = (("edge", "black", "-"), ("inside: solutions change", RED, "-"),
-             ("with a joint at a limit", "0.4", "--"))  # fmt: skip
+    named = (
+        ("edge", "black", "-"),
+        ("inside: solutions change", RED, "-"),
+        ("with a joint at a limit", "0.4", "--"),
+    )
     for label, colour, style in named:
         axes.plot([], [], color=colour, ls=style, lw=1.4, label=label)
     axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)

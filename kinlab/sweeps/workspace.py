@@ -156,7 +156,7 @@ def sample_workspace(
     sampling = word(sampling, ("random", "grid"), "sampling")
     samples, seed = whole(samples, "samples"), seed_of(seed)
     states = _random(robot, samples, seed) if sampling == "random" else _grid(robot, samples)
-    measure = Dexterity(space.rows, metric, size)
+    measure = DexterityMeasure(space.rows, metric, size)
     sweep = plan(robot, measure, states, workers=workers, executor=executor, folder=folder)
     try:
         for done in sweep.steps:
@@ -183,7 +183,7 @@ def sample_workspace(
 
 
 @dataclass(frozen=True)
-class Dexterity:
+class DexterityMeasure:
     """The measure that is swept: tool positions and one metric; small enough for any worker.
 
     Attributes:

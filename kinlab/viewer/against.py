@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import poses_of, read_mine, robot_of
+from kinlab.doctor.tables.against import poses_of, read_mine, reference_robot
 from kinlab.doctor.tables.diagnosis import diagnose_table
 from kinlab.doctor.tables.result import TableDiagnosis
 from kinlab.model.dh import DHTable
@@ -26,9 +26,12 @@ _LIT = 0xD50000
 
 
 def against_scene(
-    mine: Robot | DHTable | str | Path, against: Any, q: ArrayLike | None = None, *,
+    mine: Robot | DHTable | str | Path,
+    against: Any,
+    q: ArrayLike | None = None,
+    *,
     tool: str | None = None,
-) -> Scene:  # fmt: skip
+) -> Scene:
     """Draws a table's arm, the reference see-through over it, and the diagnosis.
 
     Args:
@@ -64,7 +67,7 @@ def _reference(scene: Scene, against: Any, found: TableDiagnosis, tool: str | No
     assert found.mine is not None
     poses = poses_of(against, found.mine.n)
     if poses is None:
-        other = robot_of(against, tool)
+        other = reference_robot(against, tool)
         return Robot.from_dh(other) if isinstance(other, DHTable) else other
     T = np.asarray(poses[1], dtype=float)
     scene.points("poses", T[:, :3, 3], size=0.03 * reach(scene.robot))

@@ -17,7 +17,7 @@ from kinlab.arrays import Array
 from kinlab.model.library import example_robots
 from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
-from kinlab.viewer.bodies import Bodies
+from kinlab.viewer.bodies import DrawnBodies
 
 ROOT = "/meshcat/robot"
 _STAND_IN = (0.57, 0.64, 0.68, 1.0)
@@ -135,7 +135,7 @@ def _visual_model(robot: Robot, meshes: bool) -> tuple[Any, set[int], list[str]]
     """The bodies that can be drawn, the joints left without any, and what is missing."""
     if not robot.urdf:
         return pin.GeometryModel(), set(range(1, robot.model.njoints)), []
-    bodies = Bodies(robot, _mesh_folders(robot), meshes)
+    bodies = DrawnBodies(robot, _mesh_folders(robot), meshes)
     return bodies.visuals, bodies.bare - {0}, bodies.notes
 
 

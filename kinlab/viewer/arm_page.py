@@ -44,7 +44,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     except StructureError as problem:  # an arm that DH parameters cannot hold
         picture = frames_only(vis, robot)
         spec["notes"].append(f"no DH table: {problem}")
-    rows, task = task_rows(robot)
+    rows, task = judged_rows(robot)
     model = robot.model
     spec |= {
         "kind": "arm",
@@ -67,7 +67,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     return spec
 
 
-def task_rows(robot: Robot) -> tuple[list[int], str]:
+def judged_rows(robot: Robot) -> tuple[list[int], str]:
     """The rows of J that the read-out judges, and their name.
 
     Rows that the arm can never move (out of a planar arm's plane) are left out; of what

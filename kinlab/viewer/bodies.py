@@ -27,7 +27,7 @@ _MESH_LIMIT = 256 << 20
 _GREY = "0.57 0.64 0.68 1.0"
 
 
-class Bodies:
+class DrawnBodies:
     """What is drawn of a robot's URDF.
 
     Attributes:

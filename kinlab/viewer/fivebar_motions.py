@@ -12,12 +12,12 @@ from kinlab.errors import NameUnknownError, near
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.singularity import Circle
-from kinlab.viewer.motions import Motion
+from kinlab.viewer.motions import ShownMotion
 
 _SAMPLES = 201
 
 
-def motion(linkage: FiveBar, kind: str, mode: Mode, assembly: int) -> Motion:
+def motion(linkage: FiveBar, kind: str, mode: Mode, assembly: int) -> ShownMotion:
     """A motion of a five-bar by name, within its largest circle free of singularities.
 
     Args:
@@ -34,7 +34,7 @@ def motion(linkage: FiveBar, kind: str, mode: Mode, assembly: int) -> Motion:
     name, path = MOTIONS[kind]
     xy, duration = path(linkage.largest_circle(mode, assembly))
     theta = np.unwrap(linkage.ik(xy, mode), axis=0)
-    return Motion(name, theta, duration)
+    return ShownMotion(name, theta, duration)
 
 
 def _round(free: Circle) -> tuple[Array, float]:

@@ -16,7 +16,7 @@ from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse.path import ik_path
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm import reach
-from kinlab.viewer.arm_page import task_rows
+from kinlab.viewer.arm_page import judged_rows
 
 # -------- A motion for the page: joint positions at given times, with straight lines
 #          between them
@@ -53,7 +53,7 @@ _STEPS = 120
 
 
 @dataclass(frozen=True)
-class Motion:
+class ShownMotion:
     """Joint positions (N, n) over ``duration`` seconds, and what to call them."""
 
     name: str
@@ -61,7 +61,7 @@ class Motion:
     duration: float
 
 
-def motion(robot: Robot, kind: str, start: Array) -> Motion:
+def motion(robot: Robot, kind: str, start: Array) -> ShownMotion:
     """A motion of an arm by name.
 
     Args:
@@ -78,7 +78,7 @@ def motion(robot: Robot, kind: str, start: Array) -> Motion:
     return MOTIONS[kind](robot, start)
 
 
-def sweep(robot: Robot, start: Array) -> Motion:
+def sweep(robot: Robot, start: Array) -> ShownMotion:
     """One joint after the other, up and down by at most a quarter turn, and back."""
     wave = np.sin(np.linspace(0.0, 2.0 * np.pi, 41))
     up = np.minimum(robot.upper - start, 0.5 * np.pi)
@@ -88,28 +88,28 @@ def sweep(robot: Robot, start: Array) -> Motion:
         move = np.zeros((40, robot.n))
         move[:, joint] = np.where(wave > 0, up[joint], down[joint])[1:] * wave[1:]
         rows.extend(start + move)
-    return Motion("Sweep of the joints", np.array(rows), 2.5 * robot.n)
+    return ShownMotion("Sweep of the joints", np.array(rows), 2.5 * robot.n)
 
 
-def line(robot: Robot, start: Array) -> Motion:
+def line(robot: Robot, start: Array) -> ShownMotion:
     """The tool along a straight line and back; what else its task holds stays as it is."""
     rows = _tool_path(robot, np.array([[0.0, 0.0], [1.0, 0.0]]))
-    return Motion("Straight line by IK", np.vstack([rows, rows[::-1]]), 5.0)
+    return ShownMotion("Straight line by IK", np.vstack([rows, rows[::-1]]), 5.0)
 
 
-def pick(robot: Robot, start: Array) -> Motion:
+def pick(robot: Robot, start: Array) -> ShownMotion:
     """Up, across, down, and the same way back."""
     rows = _tool_path(robot, np.array([[0.0, 0.0], [0.0, 0.4], [1.0, 0.4], [1.0, 0.0]]))
-    return Motion("Pick and place by IK", np.vstack([rows, rows[::-1]]), 7.0)
+    return ShownMotion("Pick and place by IK", np.vstack([rows, rows[::-1]]), 7.0)
 
 
-def locus(robot: Robot, start: Array) -> Motion:
+def locus(robot: Robot, start: Array) -> ShownMotion:
     """A walk along det J = 0: every pose of it is singular.
 
     Raises:
         StructureError: J of the arm's task is not square, or its determinant never changes sign.
     """
-    rows, name = task_rows(robot)
+    rows, name = judged_rows(robot)
     if len(rows) != robot.n:
         raise StructureError(
             f"robot {robot.name!r}: J of its {name} is {len(rows)} x {robot.n}; a walk along "
@@ -131,10 +131,10 @@ def locus(robot: Robot, start: Array) -> Motion:
             heading = np.where(outside, -heading, heading)
             q = walk[-1]
         walk.append(q)
-    return Motion("Walk along det J = 0", np.array(walk), 12.0)
+    return ShownMotion("Walk along det J = 0", np.array(walk), 12.0)
 
 
-MOTIONS: dict[str, Callable[[Robot, Array], Motion]] = {
+MOTIONS: dict[str, Callable[[Robot, Array], ShownMotion]] = {
     "sweep": sweep,
     "line": line,
     "pick": pick,
@@ -148,7 +148,7 @@ def _tool_path(robot: Robot, corners: Array) -> Array:
 
     Poses are tried from the best conditioned down, and sizes from large to small.
     """
-    rows, _ = task_rows(robot)
+    rows, _ = judged_rows(robot)
     if 0 not in rows or 1 not in rows:
         raise StructureError(
             f"robot {robot.name!r}: its tool cannot move freely in a plane; use the motion 'sweep'"

@@ -105,7 +105,7 @@ def page_html(spec: dict[str, Any], commands: Sequence[bytes]) -> str:
     """The page as text.
 
     Args:
-        spec: what the page must know, see :mod:`kinlab.viewer.page_spec`.
+        spec: what the page must know, see :mod:`kinlab.viewer.page`.
         commands: packed meshcat commands that build the scene.
     """
     ours = resources.files("kinlab.viewer")

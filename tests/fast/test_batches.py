@@ -165,7 +165,9 @@ def test_an_overflow_is_an_error(name, count):
     huge = np.full((6,) if count is None else (count, 6), 1e200)
     with (
         np.errstate(over="ignore", invalid="ignore"),  # numpy warns of squares beyond 1e308
-        pytest.raises(StateError, match="overflow"),
+        pytest.raises(
+            StateError, match=r"q: 1e\+200 at index .*; beyond 1e\+100 products overflow"
+        ),
     ):
         function(robot, *[huge] * inputs)
 

@@ -27,7 +27,7 @@ from kinlab.errors import (
 from kinlab.fivebar.files import presets
 from kinlab.model.library import shipped
 from kinlab.viewer import fivebar_motions, motions, show
-from kinlab.viewer.arm_page import task_rows
+from kinlab.viewer.arm_page import judged_rows
 from kinlab.viewer.scene import FiveBarScene, Scene
 from kinlab.viewer.shapes import round_step
 from kinlab.viewer.static_page import new_scene
@@ -188,7 +188,7 @@ def test_tasks_of_the_read_out():
         "planar3r": "task xytheta", "spatial3r": "task position", "scara": "task x, y, z, ωz",
     }  # fmt: skip
     for name, task in expected.items():
-        assert task_rows(kl.load(name))[1] == task
+        assert judged_rows(kl.load(name))[1] == task
 
 
 @pytest.mark.parametrize("name", ["puma560", "planar2r", "panda", "stanford", "scara"])
@@ -212,7 +212,7 @@ def test_motions_keep_limits_and_continuity(name, kind):
 def test_walk_stays_singular(name):
     robot = kl.load(name)
     found = motions.motion(robot, "locus", np.zeros(robot.n))
-    rows, _ = task_rows(robot)
+    rows, _ = judged_rows(robot)
     sigma = np.linalg.svd(kl.jacobian(robot, found.q)[:, rows], compute_uv=False)
     assert (sigma[:, -1] / sigma[:, 0]).max() < 1e-6
     assert np.abs(found.q[-1] - found.q[0]).max() > 0.1 or np.ptp(found.q, axis=0).max() > 0.5

@@ -27,7 +27,7 @@ STATES = 40
 
 
 @dataclass(frozen=True, eq=False)
-class Axes:
+class ReferenceAxes:
     """Joint axes in the world at q = 0.
 
     Attributes:
@@ -41,11 +41,13 @@ class Axes:
     slides: Array
 
     @staticmethod
-    def of(chain: Chain) -> Axes:
+    def of(chain: Chain) -> ReferenceAxes:
         """The axes of a table."""
         poses = frames(chain, np.zeros((1, chain.n)))[0]
         carriers = poses[1:-1] if chain.modified else poses[:-2]
-        return Axes(carriers[:, :3, 2] * chain.sign[:, None], carriers[:, :3, 3], chain.prismatic)
+        return ReferenceAxes(
+            carriers[:, :3, 2] * chain.sign[:, None], carriers[:, :3, 3], chain.prismatic
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +72,7 @@ class Reference:
     chain: Chain | None = None
     base: list[Array] = field(default_factory=list)
     tool: list[Array] = field(default_factory=list)
-    axes: Axes | None = None
+    axes: ReferenceAxes | None = None
     zero_pose: Array | None = None
     bodies: Bodies | None = None
     joint_names: tuple[str, ...] | None = None
@@ -99,8 +101,10 @@ def read_mine(mine: DHTable | Robot | str | Path) -> DHTable:
         if not text.lower().endswith((".urdf", ".xml")):
             mine = load(text)
         else:
-            raise TableError(f"{text}: the table to judge is a .toml or .csv file; a URDF can be "
-                             "what it is held against")  # fmt: skip
+            raise TableError(
+                f"{text}: the table to judge is a .toml or .csv file; a URDF can be "
+                "what it is held against"
+            )
     if isinstance(mine, Robot) and mine.table is not None:
         return mine.table
     raise TableError(
@@ -126,7 +130,7 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
     if poses is not None:
         name = Path(str(against)).name if isinstance(against, (str, Path)) else "the poses"
         return of_poses(*poses, name=name)
-    against = robot_of(against, tool)
+    against = reference_robot(against, tool)
     if isinstance(against, DHTable):
         return _of_table(against, seed)
     if against.table is not None:
@@ -164,7 +168,7 @@ def poses_of(against: Any, n: int) -> tuple[ArrayLike, ArrayLike] | None:
     return None
 
 
-def robot_of(against: Any, tool: str | None) -> Robot | DHTable:
+def reference_robot(against: Any, tool: str | None) -> Robot | DHTable:
     """The robot or table that a reference other than poses is.
 
     Raises:
@@ -237,7 +241,7 @@ def _of_table(table: DHTable, seed: int) -> Reference:
         chain,
         [np.array(table.base)],
         [np.array(table.tool)],
-        Axes.of(chain),
+        ReferenceAxes.of(chain),
         table.fk(np.zeros(table.n))[-1],
         bodies if bodies.any else None,
         names if all(names) else None,
@@ -263,11 +267,13 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
         inertia.append(np.array(body.inertia))
     stated = f"<{EXTENSION}" in robot.urdf or not robot.urdf
     bodies = Bodies(
-        np.array(mass), np.array(com), np.array(inertia),
+        np.array(mass),
+        np.array(com),
+        np.array(inertia),
         np.array(model.armature) if stated else None,
         np.array(model.gravity.linear) if stated else None,
         digit,
-    )  # fmt: skip
+    )
     last = model.frames[robot.tool].placement.homogeneous
     tools = [last]
     if model.existFrame(f"dh_{robot.n}"):
@@ -280,7 +286,7 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
         None,
         [np.eye(4), model.jointPlacements[1].homogeneous],
         tools,
-        Axes(direction, np.cross(angular, linear), slides),
+        ReferenceAxes(direction, np.cross(angular, linear), slides),
         fk(robot, zero),
         bodies if bodies.any else None,
         robot.joint_names,
@@ -295,17 +301,19 @@ def check_joints(table: DHTable, reference: Reference) -> tuple[str, ...]:
         StructureError: the numbers of joints differ by more than one.
     """
     if abs(table.n - reference.n) > 1:
-        raise StructureError(counts(table, reference))
+        raise StructureError(joint_counts(table, reference))
     mine = [link.name for link in table.links]
     theirs = reference.joint_names
     if theirs and all(mine) and not set(mine) & set(theirs) and table.n == reference.n:
         first = f"{mine[0]!r} with {theirs[0]!r}"
-        return (f"no joint name in common: joints are paired in order, {first}; if that is wrong, "
-                "give the tool, or name the rows as the reference names its joints",)  # fmt: skip
+        return (
+            f"no joint name in common: joints are paired in order, {first}; if that is wrong, "
+            "give the tool, or name the rows as the reference names its joints",
+        )
     return ()
 
 
-def counts(table: DHTable, reference: Reference) -> str:
+def joint_counts(table: DHTable, reference: Reference) -> str:
     """One line on different numbers of joints."""
     remedy = "; of a URDF name the tool where that chain ends" if reference.joint_names else ""
     mine = [link.name for link in table.links if link.name]

@@ -164,11 +164,18 @@ def _together(causes: list[Cause], n: int) -> list[Cause]:
         rows = tuple(row for c in same for row in c.rows)
         said = cause.sentence.split(": ", 1)[1]
         out.append(
-            Cause(rows, cause.column, [c.written for c in same], [c.meant for c in same],
-                  cause.kind, f"rows {rows[0]} to {rows[-1]}: {said.split(':')[0]}"
-                  if rows == tuple(range(rows[0], rows[-1] + 1))
-                  else f"rows {', '.join(map(str, rows))}: {said.split(':')[0]}", cause.cost)
-        )  # fmt: skip
+            Cause(
+                rows,
+                cause.column,
+                [c.written for c in same],
+                [c.meant for c in same],
+                cause.kind,
+                f"rows {rows[0]} to {rows[-1]}: {said.split(':')[0]}"
+                if rows == tuple(range(rows[0], rows[-1] + 1))
+                else f"rows {', '.join(map(str, rows))}: {said.split(':')[0]}",
+                cause.cost,
+            )
+        )
     return out
 
 
@@ -275,9 +282,11 @@ def _inertia_cause(one: _Link) -> Cause:
     for com, whose in ((one.com, ""), (np.asarray(one.written.com), " (of the com written)")):
         shift = steiner(one.mass, com)
         if shift.any() and one.alike(written, meant + shift):
-            return cause("origin",
-                         f"is about the origin of frame {one.row}, not the centre of mass{whose}",
-                         1.0)  # fmt: skip
+            return cause(
+                "origin",
+                f"is about the origin of frame {one.row}, not the centre of mass{whose}",
+                1.0,
+            )
         if shift.any() and one.alike(written, meant - shift):
             return cause("origin", f"has the shift of origin taken off twice{whose}", 1.1)
     found = _products(one)
@@ -362,11 +371,12 @@ def _armature_cause(row: int, written: float, meant: float) -> Cause:
         return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
     gear = float(np.sqrt(meant / written))
     if gear > 1.0:
-        return cause("gear",
-                     f"{at} is that of the motor, J in place of G^2 J with G = {gear:.6g}: "
-                     f"{numbers}", 1.0)  # fmt: skip
-    return cause("gear", f"{at} has a factor {number(written / meant)} too much: {numbers}",
-                 1.5)  # fmt: skip
+        return cause(
+            "gear",
+            f"{at} is that of the motor, J in place of G^2 J with G = {gear:.6g}: {numbers}",
+            1.0,
+        )
+    return cause("gear", f"{at} has a factor {number(written / meant)} too much: {numbers}", 1.5)
 
 
 def _gravity_cause(written: Array, meant: Array, poses: Array) -> Cause:

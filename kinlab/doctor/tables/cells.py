@@ -40,7 +40,7 @@ from kinlab.doctor.tables.words import (
     length_cause,
     number,
     pose_cause,
-    tidy,
+    tidy_length,
     wrapped,
 )
 
@@ -109,7 +109,7 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
             changes[turn] = wrapped(float(chain.cells[row, turn]) + angle)
         if abs(length) > target.steady * target.size:
             written = float(chain.cells[row, slide])
-            changes[slide] = tidy(written + length, written)
+            changes[slide] = tidy_length(written + length, written)
         if changes:
             found.append(changed(first, {(row, c): v for c, v in changes.items()}, target.slack))
     row = frame if chain.modified else frame - 1
@@ -197,7 +197,7 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
             value = wrapped(float(solved[column]))
             same = abs(wrapped(value - float(written[column]))) < target.steady
         else:
-            value = tidy(float(solved[column]), float(written[column]))
+            value = tidy_length(float(solved[column]), float(written[column]))
             same = abs(value - written[column]) < 0.1 * target.steady * target.size
         if not same:
             values[row, column] = value
@@ -219,8 +219,10 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
 
 def row_text(row: Array) -> str:
     """A row in words."""
-    return (f"a {number(row[A])}, alpha {degrees(row[ALPHA])}, d {number(row[D])}, "
-            f"theta {degrees(row[THETA])}")  # fmt: skip
+    return (
+        f"a {number(row[A])}, alpha {degrees(row[ALPHA])}, d {number(row[D])}, "
+        f"theta {degrees(row[THETA])}"
+    )
 
 
 def inserted(chain: Chain, target: Target) -> list[Reading]:
@@ -234,9 +236,10 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                     np.insert(chain.cells, row, 0.0, axis=0),
                     np.insert(chain.prismatic, row, slides),
                     np.insert(chain.sign, row, sign),
-                    chain.base, chain.tool,
+                    chain.base,
+                    chain.tool,
                     (*chain.source[:row], None, *chain.source[row:]),
-                )  # fmt: skip
+                )
                 frame = row if chain.modified else row + 1
                 gap, _ = _differences(frames(new, target.few.q)[None], target.few)
                 if _spread(gap, target.size)[0, frame] > target.steady:
@@ -247,13 +250,21 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                 for column in range(4):
                     value = float(solved[column])
                     angle = column in (ALPHA, THETA)
-                    new = new.with_cell(row, column, wrapped(value) if angle else tidy(value, 0.0))
+                    new = new.with_cell(
+                        row, column, wrapped(value) if angle else tidy_length(value, 0.0)
+                    )
                 if not target.met(new):
                     continue
                 kind = "prismatic" if slides else "revolute"
-                cause = Cause(row + 1, "order", None, new.cells[row], "left out",
-                              f"row {row + 1} is left out: {kind}, {row_text(new.cells[row])}",
-                              1.0 if sign > 0 else 1.4)  # fmt: skip
+                cause = Cause(
+                    row + 1,
+                    "order",
+                    None,
+                    new.cells[row],
+                    "left out",
+                    f"row {row + 1} is left out: {kind}, {row_text(new.cells[row])}",
+                    1.0 if sign > 0 else 1.4,
+                )
                 found.append(Reading(new, (cause,)))
     return found
 
@@ -264,15 +275,28 @@ def removed(chain: Chain) -> list[Reading]:
     for row in range(chain.n):
         keep = [k for k in range(chain.n) if k != row]
         new = replace(
-            chain, cells=chain.cells[keep], prismatic=chain.prismatic[keep],
-            sign=chain.sign[keep], source=tuple(chain.source[k] for k in keep),
-        )  # fmt: skip
-        twins = [k for k in (row - 1, row + 1) if 0 <= k < chain.n
-                 and np.array_equal(chain.cells[k], chain.cells[row])]  # fmt: skip
+            chain,
+            cells=chain.cells[keep],
+            prismatic=chain.prismatic[keep],
+            sign=chain.sign[keep],
+            source=tuple(chain.source[k] for k in keep),
+        )
+        twins = [
+            k
+            for k in (row - 1, row + 1)
+            if 0 <= k < chain.n and np.array_equal(chain.cells[k], chain.cells[row])
+        ]
         told = f"repeats row {twins[0] + 1}" if twins else "is too many"
         cost = 1.0 if twins and twins[0] < row else 1.1 if twins else 1.5
-        cause = Cause(row + 1, "order", chain.cells[row], None, "doubled" if twins else "too many",
-                      f"row {row + 1} {told}", cost)  # fmt: skip
+        cause = Cause(
+            row + 1,
+            "order",
+            chain.cells[row],
+            None,
+            "doubled" if twins else "too many",
+            f"row {row + 1} {told}",
+            cost,
+        )
         found.append(Reading(new, (cause,)))
     return found
 
@@ -386,7 +410,7 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
         for k, change in zip(support, solution, strict=True):
             written = float(chain.cells[cells[k]])
             if abs(change) > target.steady * target.size:
-                values[cells[k]] = tidy(written + float(change), written)
+                values[cells[k]] = tidy_length(written + float(change), written)
         if len(values) == most:
             found.append(changed(first, values, target.slack))
     return found

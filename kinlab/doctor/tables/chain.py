@@ -97,16 +97,26 @@ class Chain:
             same = link.joint == joint
             links.append(
                 replace(
-                    link, joint=joint, a=a, alpha=alpha, d=d, theta=theta,
-                    flip=bool(self.sign[i] < 0), name=_name(link, i, self.source),
-                    lower=link.lower if same else None, upper=link.upper if same else None,
+                    link,
+                    joint=joint,
+                    a=a,
+                    alpha=alpha,
+                    d=d,
+                    theta=theta,
+                    flip=bool(self.sign[i] < 0),
+                    name=_name(link, i, self.source),
+                    lower=link.lower if same else None,
+                    upper=link.upper if same else None,
                 )
-            )  # fmt: skip
+            )
         convention = Convention.MODIFIED if self.modified else Convention.STANDARD
         return replace(
-            table, convention=convention, links=links, base=_rigid(self.base),
+            table,
+            convention=convention,
+            links=links,
+            base=_rigid(self.base),
             tool=_rigid(self.tool),
-        )  # fmt: skip
+        )
 
 
 def _name(link: DHLink, i: int, source: tuple[int | None, ...]) -> str | None:
@@ -201,9 +211,14 @@ def inverse(poses: Array) -> Array:
 def row_transform(modified: bool, row: Array) -> Array:
     """Transform of one row a, alpha, d, theta at q = 0, (4, 4)."""
     one = Chain(
-        modified, np.asarray(row, dtype=float)[None], np.array([False]), np.ones(1), np.eye(4),
-        np.eye(4), (None,),
-    )  # fmt: skip
+        modified,
+        np.asarray(row, dtype=float)[None],
+        np.array([False]),
+        np.ones(1),
+        np.eye(4),
+        np.eye(4),
+        (None,),
+    )
     out: Array = tool_poses(one, np.zeros((1, 1)))[0]
     return out
 

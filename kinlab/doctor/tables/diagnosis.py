@@ -15,7 +15,7 @@ from kinlab.doctor.tables import zeros as table_zeros
 from kinlab.doctor.tables.against import (
     Reference,
     check_joints,
-    counts,
+    joint_counts,
     of_poses,
     read_mine,
     read_reference,
@@ -95,8 +95,9 @@ def _compares_bodies(
     if reference.axes is None:
         lacking = "poses say nothing of masses" if dynamics else ""
     elif reference.bodies is None and (has or dynamics):
-        lacking = (f"{reference.name!r} has no masses: give a table or a URDF whose links have "
-                   "<inertial>")  # fmt: skip
+        lacking = (
+            f"{reference.name!r} has no masses: give a table or a URDF whose links have <inertial>"
+        )
     elif not has and (reference.bodies is not None or dynamics):
         lacking = f"table {table.name!r} has no masses: fill in mass, com and inertia of its rows"
     if lacking and dynamics:
@@ -124,7 +125,7 @@ def _judge(table: DHTable, reference: Reference, bodies: bool, notes: list[str])
     if not found and reference.sharper is not None:
         return _judge(table, reference.sharper, bodies, [*notes, *reference.sharper.notes[-1:]])
     if not found and table.n != reference.n:
-        raise StructureError(counts(table, reference))
+        raise StructureError(joint_counts(table, reference))
     return _told(table, reference, found, same is not None, bodies, before, notes)
 
 
@@ -136,22 +137,34 @@ def _explained(chain: Chain, reference: Reference, slips: tuple[int, ...]) -> li
 
 
 def _told(
-    table: DHTable, reference: Reference, found: list[Reading], many: bool, bodies: bool,
-    before: float, notes: list[str],
-) -> TableDiagnosis:  # fmt: skip
+    table: DHTable,
+    reference: Reference,
+    found: list[Reading],
+    many: bool,
+    bodies: bool,
+    before: float,
+    notes: list[str],
+) -> TableDiagnosis:
     """The result from what the search found; none found is a result too."""
     chain = Chain.of(table)
     common: dict[str, Any] = {
-        "mine": table, "reference": reference.name, "states": len(reference.target.q),
-        "error_before": before, "tolerance": reference.target.tolerance, "notes": tuple(notes),
-    }  # fmt: skip
+        "mine": table,
+        "reference": reference.name,
+        "states": len(reference.target.q),
+        "error_before": before,
+        "tolerance": reference.target.tolerance,
+        "notes": tuple(notes),
+    }
     if not found:
         sure = table_zeros.sure_rows(chain, reference)
         doubt = tuple(i for i in range(1, table.n + 1) if i not in sure)
         return TableDiagnosis(
-            agrees=False, sentence=_unknown(sure, doubt, reference), certain_rows=sure,
-            rows_in_question=doubt, **common,
-        )  # fmt: skip
+            agrees=False,
+            sentence=_unknown(sure, doubt, reference),
+            certain_rows=sure,
+            rows_in_question=doubt,
+            **common,
+        )
     options = _with_bodies(table, reference, found, bodies)
     if len(found[0].causes) == 1 and len(options[0][2]) > 1 and table.n == reference.n:
         # bodies that are wrong in many rows speak against the one kinematic slip
@@ -168,8 +181,10 @@ def _told(
             sentence=f"{said}{listed(what)} differ in rows {listed(rows) if rows else 'of base'}, "
             "more than one or two slips explain",
             certain_rows=tuple(i for i in range(1, table.n + 1) if i not in rows),
-            rows_in_question=tuple(rows), evidence=tuple(c.sentence for c in dynamic), **common,
-        )  # fmt: skip
+            rows_in_question=tuple(rows),
+            evidence=tuple(c.sentence for c in dynamic),
+            **common,
+        )
     after = reference.target.error(Chain.of(repaired))
     differences = _frames_told(causes, chain)
     wrong = {row for cause in causes for row in cause.rows}
@@ -182,11 +197,18 @@ def _told(
     else:
         told = joined(causes)
     return TableDiagnosis(
-        agrees=not causes, sentence=told, causes=causes, repaired=repaired,
-        alternatives=tuple(option[1] for option in options[1:]), differences=differences,
-        same_arm=not causes or bool(differences) or many, error_after=after, certain_rows=rest,
-        rows_in_question=tuple(sorted(wrong)), **common,
-    )  # fmt: skip
+        agrees=not causes,
+        sentence=told,
+        causes=causes,
+        repaired=repaired,
+        alternatives=tuple(option[1] for option in options[1:]),
+        differences=differences,
+        same_arm=not causes or bool(differences) or many,
+        error_after=after,
+        certain_rows=rest,
+        rows_in_question=tuple(sorted(wrong)),
+        **common,
+    )
 
 
 _Option = tuple[DHTable, tuple[Cause, ...], list[Cause]]

@@ -86,19 +86,27 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     room = rank + 5.0 * np.sqrt(2.0 * rank)
     written = _chi(chain, target, sigma) - least
     common: dict[str, Any] = {
-        "mine": table, "reference": reference.name, "states": len(target.q),
-        "error_before": target.error(chain), "tolerance": target.tolerance, "notes": tuple(notes),
-    }  # fmt: skip
+        "mine": table,
+        "reference": reference.name,
+        "states": len(target.q),
+        "error_before": target.error(chain),
+        "tolerance": target.tolerance,
+        "notes": tuple(notes),
+    }
     clear = {
         "sigma_position": float(sigma[0]),
         "sigma_angle_deg": float(np.degrees(sigma[1])),
     }
     if written <= room:
         return TableDiagnosis(
-            agrees=True, sentence=f"{table.name} agrees with {reference.name} within their noise",
-            repaired=table, same_arm=True, clear=clear,
-            certain_rows=tuple(range(1, table.n + 1)), **common,
-        )  # fmt: skip
+            agrees=True,
+            sentence=f"{table.name} agrees with {reference.name} within their noise",
+            repaired=table,
+            same_arm=True,
+            clear=clear,
+            certain_rows=tuple(range(1, table.n + 1)),
+            **common,
+        )
     effect = float(np.sqrt((written + numbers) / numbers))
     fits = _fitted(candidates, chain, target, sigma)
     good = [fit for fit in fits if fit.chi - least <= room]
@@ -108,8 +116,10 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
             agrees=False,
             sentence=f"{table.name} is not the arm of {reference.name}, beyond the noise; no "
             "single slip explains it",
-            rows_in_question=tuple(range(1, table.n + 1)), clear=clear, **common,
-        )  # fmt: skip
+            rows_in_question=tuple(range(1, table.n + 1)),
+            clear=clear,
+            **common,
+        )
     best = min(fit.chi + 2.0 * fit.unknowns for fit in good)
     equal = [fit for fit in good if fit.chi + 2.0 * fit.unknowns - best <= _AS_GOOD]
     equal.sort(key=lambda fit: (round(fit.reading.cost, 6), round(fit.chi, 6)))
@@ -119,12 +129,17 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     first = equal[0].reading
     wrong = {row for cause in first.causes for row in cause.rows}
     return TableDiagnosis(
-        agrees=False, sentence=joined(first.causes), causes=first.causes,
+        agrees=False,
+        sentence=joined(first.causes),
+        causes=first.causes,
         alternatives=tuple(fit.reading.causes for fit in equal[1:]),
-        repaired=first.chain.apply(table), error_after=target.error(first.chain), clear=clear,
+        repaired=first.chain.apply(table),
+        error_after=target.error(first.chain),
+        clear=clear,
         rows_in_question=tuple(sorted(wrong)),
-        certain_rows=tuple(i for i in range(1, table.n + 1) if wrong and i not in wrong), **common,
-    )  # fmt: skip
+        certain_rows=tuple(i for i in range(1, table.n + 1) if wrong and i not in wrong),
+        **common,
+    )
 
 
 def _candidates(plain: Reading, target: Target) -> list[Reading]:

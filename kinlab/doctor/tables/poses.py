@@ -75,8 +75,9 @@ def read_poses(path: str | Path, n: int) -> tuple[Array, Array]:
         raise FileError(
             f"{path}: {len(order)} joint columns, the table has {n} rows; give q1 ... q{n}"
         )
-    numbers = np.array([_numbers(row, len(names), k + 2, str(path))
-                        for k, row in enumerate(lines[1:])])  # fmt: skip
+    numbers = np.array(
+        [_numbers(row, len(names), k + 2, str(path)) for k, row in enumerate(lines[1:])]
+    )
     numbers = numbers * scales
     values = numbers[:, [names.index(name) for name in form]]
     return numbers[:, order], _transforms(values, form, str(path))
@@ -88,8 +89,10 @@ def _header(cells: Sequence[str], path: str) -> tuple[list[str], Array]:
         name, _, rest = cell.partition("[")
         unit = rest.rstrip(" ]").strip()
         if unit and unit not in _UNITS:
-            raise FileError(f"{path}: unit {unit!r} of column {cell.strip()!r}; choose one of "
-                            f"{', '.join(_UNITS)}")  # fmt: skip
+            raise FileError(
+                f"{path}: unit {unit!r} of column {cell.strip()!r}; choose one of "
+                f"{', '.join(_UNITS)}"
+            )
         names.append(name.strip().lower() or "?")
         scales.append(_UNITS[unit] if unit else 1.0)
     for name in names:

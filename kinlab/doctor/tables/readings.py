@@ -73,8 +73,15 @@ def _differs(one: Chain, two: Chain) -> bool:
 def _convention(chain: Chain) -> Iterator[Reading]:
     names = ("standard", "modified")
     written, meant = names[chain.modified], names[not chain.modified]
-    cause = Cause(None, "convention", written, meant, "convention",
-                  f"the rows are in the {meant} convention, not the {written}", 0.9)  # fmt: skip
+    cause = Cause(
+        None,
+        "convention",
+        written,
+        meant,
+        "convention",
+        f"the rows are in the {meant} convention, not the {written}",
+        0.9,
+    )
     yield Reading(chain.but(modified=not chain.modified), (cause,))
 
 
@@ -107,8 +114,10 @@ _SCALES = (
 
 def _units(chain: Chain) -> Iterator[Reading]:
     turn = np.pi / 180.0
-    angles = ((turn, "degrees", "in degrees"),
-              (1.0 / turn, "radians for degrees", "turned into radians twice"))  # fmt: skip
+    angles = (
+        (turn, "degrees", "in degrees"),
+        (1.0 / turn, "radians for degrees", "turned into radians twice"),
+    )
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
         if _entries(chain, columns) < 2:
             continue  # a cell of its own
@@ -142,9 +151,18 @@ def _units(chain: Chain) -> Iterator[Reading]:
     cells[:, [ALPHA, THETA]] *= turn
     yield Reading(
         chain.with_cells(cells),
-        (Cause(None, "units", "degrees and millimetres", "radians and metres", "units",
-               "the table is in degrees and millimetres", 1.3),),
-    )  # fmt: skip
+        (
+            Cause(
+                None,
+                "units",
+                "degrees and millimetres",
+                "radians and metres",
+                "units",
+                "the table is in degrees and millimetres",
+                1.3,
+            ),
+        ),
+    )
 
 
 def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
@@ -175,8 +193,15 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         place = every if len(rows) == chain.n else rows
         cause = Cause(place, name, chain.cells[:, column], cells[:, column], "sign", told, 1.1)
         yield Reading(chain.with_cells(cells), (cause,))
-    cause = Cause(every, "flip", list(chain.sign < 0), list(chain.sign > 0), "sense",
-                  "every joint turns the other way", 1.2)  # fmt: skip
+    cause = Cause(
+        every,
+        "flip",
+        list(chain.sign < 0),
+        list(chain.sign > 0),
+        "sense",
+        "every joint turns the other way",
+        1.2,
+    )
     yield Reading(chain.but(sign=-chain.sign), (cause,))
 
 
@@ -201,11 +226,18 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
             at = where(named[0]) if len(rows) == 1 else where(named)
             yield Reading(
                 chain.with_cells(cells),
-                (Cause(named[0] if len(rows) == 1 else named, f"{names[0]}, {names[1]}",
-                       chain.cells[rows][:, [one, two]], cells[rows][:, [one, two]],
-                       "exchanged", f"{at}: {names[0]} and {names[1]} are exchanged",
-                       likely + (0.1 if len(rows) > 1 else 0.0)),),
-            )  # fmt: skip
+                (
+                    Cause(
+                        named[0] if len(rows) == 1 else named,
+                        f"{names[0]}, {names[1]}",
+                        chain.cells[rows][:, [one, two]],
+                        cells[rows][:, [one, two]],
+                        "exchanged",
+                        f"{at}: {names[0]} and {names[1]} are exchanged",
+                        likely + (0.1 if len(rows) > 1 else 0.0),
+                    ),
+                ),
+            )
 
 
 def _order(chain: Chain) -> Iterator[Reading]:
@@ -215,8 +247,15 @@ def _order(chain: Chain) -> Iterator[Reading]:
             order = list(range(n))
             order[i], order[j] = j, i
             near = 0.0 if j == i + 1 else 0.1
-            cause = Cause((i + 1, j + 1), "order", (i + 1, j + 1), (j + 1, i + 1), "exchanged",
-                          f"rows {i + 1} and {j + 1} are exchanged", 1.0 + near)  # fmt: skip
+            cause = Cause(
+                (i + 1, j + 1),
+                "order",
+                (i + 1, j + 1),
+                (j + 1, i + 1),
+                "exchanged",
+                f"rows {i + 1} and {j + 1} are exchanged",
+                1.0 + near,
+            )
             yield Reading(_permuted(chain, order), (cause,))
             cells = chain.cells[order]  # the joints and bodies stayed where they are
             yield Reading(chain.with_cells(cells), (replace(cause, cost=cause.cost + 0.02),))
@@ -226,19 +265,36 @@ def _order(chain: Chain) -> Iterator[Reading]:
                 continue
             order = [k for k in range(n) if k != i]
             order.insert(j, i)
-            cause = Cause((i + 1, j + 1), "order", i + 1, j + 1, "displaced",
-                          f"row {i + 1} belongs at place {j + 1}", 1.3)  # fmt: skip
+            cause = Cause(
+                (i + 1, j + 1),
+                "order",
+                i + 1,
+                j + 1,
+                "displaced",
+                f"row {i + 1} belongs at place {j + 1}",
+                1.3,
+            )
             yield Reading(_permuted(chain, order), (cause,))
     if n > 3:
-        cause = Cause(None, "order", "tool to base", "base to tool", "reversed",
-                      "the rows stand in reversed order", 1.3)  # fmt: skip
+        cause = Cause(
+            None,
+            "order",
+            "tool to base",
+            "base to tool",
+            "reversed",
+            "the rows stand in reversed order",
+            1.3,
+        )
         yield Reading(_permuted(chain, list(range(n))[::-1]), (cause,))
 
 
 def _permuted(chain: Chain, order: list[int]) -> Chain:
-    return chain.but(cells=chain.cells[order], prismatic=chain.prismatic[order],
-        sign=chain.sign[order], source=tuple(chain.source[k] for k in order),
-    )  # fmt: skip
+    return chain.but(
+        cells=chain.cells[order],
+        prismatic=chain.prismatic[order],
+        sign=chain.sign[order],
+        source=tuple(chain.source[k] for k in order),
+    )
 
 
 def _joints(chain: Chain) -> Iterator[Reading]:
@@ -247,15 +303,28 @@ def _joints(chain: Chain) -> Iterator[Reading]:
         slides = bool(chain.prismatic[k])
         kind = chain.prismatic.copy()
         kind[k] = not slides
-        cause = Cause(k + 1, "joint", kinds[slides], kinds[not slides], "type",
-                      f"row {k + 1}: the joint is {kinds[not slides]}, not {kinds[slides]}",
-                      1.0)  # fmt: skip
+        cause = Cause(
+            k + 1,
+            "joint",
+            kinds[slides],
+            kinds[not slides],
+            "type",
+            f"row {k + 1}: the joint is {kinds[not slides]}, not {kinds[slides]}",
+            1.0,
+        )
         yield Reading(chain.but(prismatic=kind), (cause,))
         sign = chain.sign.copy()
         sign[k] *= -1.0
         verb = "slides" if slides else "turns"
-        cause = Cause(k + 1, "flip", bool(chain.sign[k] < 0), bool(sign[k] < 0), "sense",
-                      f"row {k + 1}: the joint {verb} the other way", 1.0)  # fmt: skip
+        cause = Cause(
+            k + 1,
+            "flip",
+            bool(chain.sign[k] < 0),
+            bool(sign[k] < 0),
+            "sense",
+            f"row {k + 1}: the joint {verb} the other way",
+            1.0,
+        )
         yield Reading(chain.but(sign=sign), (cause,))
 
 
@@ -272,6 +341,13 @@ def _frames(chain: Chain, base: list[Array], tool: list[Array]) -> Iterator[Read
             cause = pose_cause(which, written, meant, known[0] if known else None)
             yield Reading(chain.but(**{which: meant}), (cause,))
     if np.max(np.abs(chain.base - chain.tool)) > 1e-12:
-        cause = Cause(None, "base, tool", "base, tool", "tool, base", "exchanged",
-                      "base and tool are exchanged", 1.2)  # fmt: skip
+        cause = Cause(
+            None,
+            "base, tool",
+            "base, tool",
+            "tool, base",
+            "exchanged",
+            "base and tool are exchanged",
+            1.2,
+        )
         yield Reading(chain.but(base=chain.tool, tool=chain.base), (cause,))

@@ -96,8 +96,7 @@ class TableDiagnosis:
     def _noise(self) -> str:
         """The noise in words."""
         c = self.clear
-        text = (f"noise {1000 * c['sigma_position']:.3g} mm, "
-                f"{c['sigma_angle_deg']:.3g} deg")  # fmt: skip
+        text = f"noise {1000 * c['sigma_position']:.3g} mm, {c['sigma_angle_deg']:.3g} deg"
         if "effect" in c:
             text += f"; the slip is {c['effect']:.3g} times the noise"
         if "runner_up" in c:

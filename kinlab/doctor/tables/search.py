@@ -44,8 +44,10 @@ def _stages(
 ) -> Sequence[Callable[[], list[Reading]]]:
     more = target.q.shape[1] - chain.n
     if more:
-        return (lambda: _other_count(chain, target, more),
-                lambda: _other_count_and_one(chain, target, more, base, tool))  # fmt: skip
+        return (
+            lambda: _other_count(chain, target, more),
+            lambda: _other_count_and_one(chain, target, more, base, tool),
+        )
     first = readings(chain, base, tool)
 
     def one() -> list[Reading]:

@@ -114,7 +114,7 @@ def wrapped(angle: float) -> float:
     return nearest if abs(turned - nearest) < 1e-8 else turned
 
 
-def tidy(length: float, written: float) -> float:
+def tidy_length(length: float, written: float) -> float:
     """A solved length without its rounding residue: of twelve digits, or zero."""
     scale = max(abs(length), abs(written), 1e-3)
     short = float(f"{length:.9g}")
@@ -159,8 +159,15 @@ def angle_cause(
     meant = wrapped(solved)
     change = degrees(wrapped(meant - written))
     if _close(written, 0.0):
-        return Cause(row, column, written, meant, "missing", f"{at} lacks {change}",
-                     1.0 if _round(meant, EXACT) else 1.6)  # fmt: skip
+        return Cause(
+            row,
+            column,
+            written,
+            meant,
+            "missing",
+            f"{at} lacks {change}",
+            1.0 if _round(meant, EXACT) else 1.6,
+        )
     kind, cost = _typed(written, meant)
     if cost > 1.7:
         kind, cost = _typed(math.degrees(written), math.degrees(meant))
@@ -292,8 +299,12 @@ def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
     yield "transposed", turned, "has its rotation transposed"
     if not np.any(written[:3, 3]):
         return
-    for factor, kind in ((1e-3, "millimetres"), (0.1, "decimal"), (10.0, "decimal"),
-                         (-1.0, "sign")):  # fmt: skip
+    for factor, kind in (
+        (1e-3, "millimetres"),
+        (0.1, "decimal"),
+        (10.0, "decimal"),
+        (-1.0, "sign"),
+    ):
         scaled = np.array(written)
         scaled[:3, 3] *= factor
         yield kind, scaled, f"has the slip '{kind}' in its translation: meant is {{meant}}"

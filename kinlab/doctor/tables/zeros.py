@@ -12,11 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import Axes, Reference
+from kinlab.doctor.tables.against import Reference, ReferenceAxes
 from kinlab.doctor.tables.cells import changed, one_change
 from kinlab.doctor.tables.chain import THETA, Chain, D, frames, inverse, tool_poses
 from kinlab.doctor.tables.readings import Reading
-from kinlab.doctor.tables.words import pose_cause, tidy, wrapped
+from kinlab.doctor.tables.words import pose_cause, tidy_length, wrapped
 
 _LINE = 1e-8
 
@@ -55,8 +55,11 @@ def _with_tool(turned: Chain, reference: Reference) -> list[Chain]:
     """The last joint's zero from the tool's pose, or else another tool."""
     if reference.target.met(turned):
         return [turned]
-    found = [r for r in one_change([Reading(turned)], reference.target)
-             if all(c.column in ("theta", "d", "tool") for c in r.causes)]  # fmt: skip
+    found = [
+        r
+        for r in one_change([Reading(turned)], reference.target)
+        if all(c.column in ("theta", "d", "tool") for c in r.causes)
+    ]
     found = [r for r in found if _zeros_only(r)]
     found.sort(key=lambda r: (r.causes[0].column == "tool", r.cost))
     return [r.chain for r in found[:1]]
@@ -72,11 +75,11 @@ def _zeros_only(one: Reading) -> bool:
     return True
 
 
-def _zeros(chain: Chain, axes: Axes) -> Chain | None:
+def _zeros(chain: Chain, axes: ReferenceAxes) -> Chain | None:
     """Zeros that bring every axis onto the reference's, one joint after the other."""
     current = chain
     for i in range(chain.n):
-        mine = Axes.of(current)
+        mine = ReferenceAxes.of(current)
         if not _on(mine, axes, i):
             return None
         if i + 1 == chain.n:
@@ -87,12 +90,12 @@ def _zeros(chain: Chain, axes: Axes) -> Chain | None:
         column = D if chain.prismatic[i] else THETA
         written = float(current.cells[i, column])
         value = written + change * float(chain.sign[i])
-        value = tidy(value, written) if column == D else wrapped(value)
+        value = tidy_length(value, written) if column == D else wrapped(value)
         current = current.with_cell(i, column, value)
     return current
 
 
-def _on(one: Axes, two: Axes, i: int) -> bool:
+def _on(one: ReferenceAxes, two: ReferenceAxes, i: int) -> bool:
     """Whether axis i is the same line with the same sense in both."""
     if np.max(np.abs(one.direction[i] - two.direction[i])) > _LINE:
         return False
@@ -102,7 +105,7 @@ def _on(one: Axes, two: Axes, i: int) -> bool:
     return bool(np.max(np.abs(gap)) < _LINE * max(1.0, float(np.max(np.abs(two.point)))))
 
 
-def _change(mine: Axes, axes: Axes, i: int) -> float | None:
+def _change(mine: ReferenceAxes, axes: ReferenceAxes, i: int) -> float | None:
     """Motion of joint i that brings the next axis onto the reference's; None where none shows."""
     z, j = axes.direction[i], i + 1
     if axes.slides[i]:
@@ -137,18 +140,18 @@ def _foot(point: Array, direction: Array, on: Array, z: Array) -> Array:
     return foot
 
 
-def _base_moved(chain: Chain, axes: Axes) -> Chain | None:
+def _base_moved(chain: Chain, axes: ReferenceAxes) -> Chain | None:
     """The chain with its base moved so that its first two axes are the reference's."""
     if chain.n < 2:
         return None
-    mine = _pair_frame(Axes.of(chain), 0)
+    mine = _pair_frame(ReferenceAxes.of(chain), 0)
     theirs = _pair_frame(axes, 0)
     if mine is None or theirs is None:
         return None
     return replace(chain, base=theirs @ inverse(mine) @ chain.base)
 
 
-def _pair_frame(axes: Axes, i: int) -> Array | None:
+def _pair_frame(axes: ReferenceAxes, i: int) -> Array | None:
     """A frame that axes i and i + 1 determine: z along the first, x along the normal."""
     z, z2 = axes.direction[i], axes.direction[i + 1]
     if axes.slides[i] or axes.slides[i + 1]:
@@ -177,7 +180,7 @@ def ends(chain: Chain, reference: Reference) -> tuple[list[Array], list[Array]]:
     axes, last = reference.axes, reference.zero_pose
     if axes is None or last is None or chain.n != reference.n:
         return [], []
-    mine = Axes.of(chain)
+    mine = ReferenceAxes.of(chain)
     end = frames(chain, np.zeros((1, chain.n)))[0, -2]
     bases: list[Array] = []
     tools: list[Array] = []
@@ -208,12 +211,12 @@ def sure_rows(chain: Chain, reference: Reference) -> tuple[int, ...]:
     last = reference.zero_pose
     if last is None:
         return ()
-    mine = Axes.of(chain)
+    mine = ReferenceAxes.of(chain)
     ahead = 0
     while ahead < chain.n and _on(mine, axes, ahead):
         ahead += 1
     whole = last @ inverse(tool_poses(chain, zero)[0])
-    moved = Axes(
+    moved = ReferenceAxes(
         mine.direction @ whole[:3, :3].T, mine.point @ whole[:3, :3].T + whole[:3, 3], mine.slides
     )
     behind = chain.n
@@ -224,7 +227,7 @@ def sure_rows(chain: Chain, reference: Reference) -> tuple[int, ...]:
     return tuple(i for i in sorted(rows) if _tells(axes, i))
 
 
-def _tells(axes: Axes, i: int) -> bool:
+def _tells(axes: ReferenceAxes, i: int) -> bool:
     """Whether the axes about row i fix all its cells: no slide has a place, no parallel a d."""
     near = [k for k in (i - 2, i - 1, i) if 0 <= k < len(axes.slides)]
     if any(axes.slides[k] for k in near):
