@@ -78,7 +78,7 @@ def nearest_singularity(
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
-    boxes = whole(boxes, "boxes")
+    boxes, seed = whole(boxes, "boxes"), seed_of(seed)
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
