@@ -36,7 +36,7 @@ def test_what_is_no_robot_has_no_section():
 def test_a_name_that_can_be_no_path_is_unknown(name):
     with pytest.raises(NameUnknownError, match="is unknown") as problem:
         kl.load(name)
-    assert len(str(problem.value)) < 400
+    assert "x" * 100 not in str(problem.value)
 
 
 @pytest.mark.parametrize("tool", [np.arange(3), 5, b"tool", ["tool"]])
