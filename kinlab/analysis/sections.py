@@ -22,15 +22,17 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, frozen, number, seed_of
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import OptionError
-from kinlab.model.robot import Robot
+from kinlab.model.robot import Robot, require_robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
 _STARTS = 240
 """Starts for the curves of one set of locked joints; a curve needs one of them."""
+_SHORTEST = 1e-4
+"""Shortest step along a curve: with it a whole turn has 60,000 points."""
 _MOST_LOCKED = 3
 """Joints that move the tool in the section up to which limits are taken into account: 3^3 sets of
 them, some seconds; each joint more takes three times as long."""
@@ -91,15 +93,19 @@ def workspace_section(robot: Robot, *, step: float = 0.05, seed: int = 0) -> Wor
 
     Args:
         robot: three joints or more, the first revolute.
-        step: length of a step along a curve, rad (or m).
+        step: length of a step along a curve, rad (or m), at least 1e-4.
         seed: of the starts.
 
     Raises:
         OptionError: fewer than three joints, a first joint that slides, or an arm whose tool
-            leaves no section (fewer than two joints behind the first move it there).
+            leaves no section (fewer than two joints behind the first move it there); step or
+            seed of another kind.
+        StructureError: no robot.
     """
-    if not step > 0.0:
-        raise OptionError(f"step {step}; it must be above 0")
+    require_robot(robot)
+    step, seed = number(step, "step"), seed_of(seed)
+    if not step >= _SHORTEST:
+        raise OptionError(f"step is {step:g}; it must be at least {_SHORTEST:g}")
     if robot.n < 3 or not revolute(robot)[0]:
         raise OptionError(
             f"robot {robot.name!r}: a section needs a revolute first joint and two joints more; "

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import Array, real_array, whole
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.arrays import chain
 from kinlab.fast.compiled import kernel
@@ -19,9 +19,9 @@ from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of
 from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
 from kinlab.inverse.families import IKFamily, families_at
-from kinlab.inverse.request import read_target, read_targets, require_robot, whole
+from kinlab.inverse.request import read_target, read_targets
 from kinlab.inverse.structures import GENERAL, Known, known_form
-from kinlab.model.robot import Robot, scratch
+from kinlab.model.robot import Robot, require_robot, scratch
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""

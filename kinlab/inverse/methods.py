@@ -141,7 +141,7 @@ class Outcome(NamedTuple):
 def search(
     robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: Limits
 ) -> Outcome:
-    """Searches from q0 and then from the starts nearest to the target, until one succeeds.
+    """Searches from q0, the starts nearest to the target, and others, until one succeeds.
 
     Args:
         robot: the robot.
@@ -161,6 +161,8 @@ def search(
         if tried == 0 and q0 is not None:
             q = q0.copy()
         else:
+            if tried == kernel.NEAREST:
+                distance[np.isfinite(distance)] = 0.0
             choice = int(np.argmin(distance))
             distance[choice] = math.inf
             q = arm.starts[choice].copy()

@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError
 from kinlab.fast.stacks import jacobian
-from kinlab.inverse.request import positive, read_guess, read_targets, require_robot
+from kinlab.inverse.request import positive, read_guess, read_targets
 from kinlab.inverse.result import IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
-from kinlab.model.robot import Robot
+from kinlab.model.robot import Robot, require_robot
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import math
-import operator
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array, rigid_transform, shown
-from kinlab.errors import OptionError, StateError, StructureError
+from kinlab.arrays import Array, real_array, rigid_transform, seed_of, whole
+from kinlab.errors import OptionError, StateError
 from kinlab.fast.compiled import kernel
-from kinlab.model.robot import Robot
+from kinlab.model.robot import Robot, require_robot
 from kinlab.tolerances import TOLERANCES
 
 RESTARTS = 40
@@ -85,7 +84,7 @@ def read_request(
     require_robot(robot)
     targets = read_targets(robot, poses) if many else read_target(robot, poses)[np.newaxis]
     tolerances = positive(tol_position, "tol_position"), positive(tol_rotation, "tol_rotation")
-    searches, number = 1 + whole(restarts, "restarts", 0), whole(seed, "seed", 0)
+    searches, number = 1 + whole(restarts, "restarts", 0), seed_of(seed)
     start: Array | None = None
     remarks: list[str] = []
     if q0 is not None:
@@ -167,31 +166,3 @@ def positive(value: Any, name: str) -> float:
     if number.shape != () or not float(number) > 0.0:
         raise OptionError(f"{name} is {value!r}; give a positive number")
     return float(number)
-
-
-def whole(value: Any, name: str, least: int) -> int:
-    """A whole number of at least ``least``.
-
-    Raises:
-        OptionError: anything else.
-    """
-    try:
-        number = operator.index(value)
-    except Exception:  # noqa: BLE001  whatever an object's own __index__ raises
-        number = least - 1
-    if isinstance(value, bool) or number < least:
-        raise OptionError(f"{name} is {shown(value)}; give a whole number of at least {least}")
-    return number
-
-
-def require_robot(robot: Any) -> None:
-    """Says what to do with something that is no :class:`~kinlab.model.robot.Robot`.
-
-    Raises:
-        StructureError: also for a ``pin.Model``, whose floating base or loops are not a chain.
-    """
-    if not isinstance(robot, Robot):
-        raise StructureError(
-            f"robot is a {type(robot).__name__}; give a Robot: kl.load(name), "
-            "kl.Robot.from_urdf(file) or kl.Robot.from_model(model), which refuse a floating base"
-        )

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from kinlab.arrays import shown
 from kinlab.errors import FileError, NameUnknownError, near
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
@@ -93,6 +94,8 @@ def load(name_or_path: str | Path, tool: str | None = None) -> Robot:
         FileError: the file is missing or of another kind.
         TableError, UrdfError, StructureError: the file is not a sound serial arm.
     """
+    if tool is not None and not isinstance(tool, str):
+        raise NameUnknownError(f"tool is {shown(tool)}; give a link's name")
     text = str(name_or_path)
     suffix = Path(text).suffix.lower()
     if suffix in (".toml", ".csv"):
@@ -109,10 +112,18 @@ def load(name_or_path: str | Path, tool: str | None = None) -> Robot:
         source = f"example-robot-data, {entry.path.name}"
         return Robot(plain, robot.model, robot.tool, robot.urdf, None, robot.folder, source)
     _refuse_tool(tool, text)
-    if Path(text).exists():
+    if _exists(text):
         raise FileError(f"{text}: a robot file ends in .toml, .csv or .urdf")
     names = [*shipped(), *example_robots()]
-    raise NameUnknownError(f"robot {text!r} is unknown; {near(text, names)} (kinlab list)")
+    raise NameUnknownError(f"robot {shown(text)} is unknown; {near(text, names)} (kinlab list)")
+
+
+def _exists(text: str) -> bool:
+    """Whether there is such a file; what is no path at all is none."""
+    try:
+        return Path(text).exists()
+    except (OSError, ValueError):
+        return False
 
 
 def _tool_of(name: str) -> str:
@@ -121,7 +132,7 @@ def _tool_of(name: str) -> str:
 
 def _refuse_tool(tool: str | None, text: str) -> None:
     if tool is not None:
-        raise NameUnknownError(f"{text}: a DH table has one tool; leave tool {tool!r} out")
+        raise NameUnknownError(f"{text}: a DH table has one tool; leave tool {shown(tool)} out")
 
 
 def mesh_folders(robot: Robot) -> list[Path]:

@@ -80,7 +80,9 @@ CALLS: Calls = {
         "robot": ("robot", "puma560"), "q": ("array", [0.1, 0.3, -0.8, 0.4, 0.7, 0.1]),
         "task": ("task", "pose"), "length": ("positive", 0.5)}),
     "nearest_singularity": ("nearest_singularity", _arm(
-        q=_q, task=_task, points=("count", 2), seed=_seed)),
+        q=_q, task=_task, boxes=("count", 50), seed=_seed)),
+    "workspace_section": ("workspace_section", {
+        "robot": ("robot", "stanford"), "step": ("positive", 0.5), "seed": _seed}),
     "find_singularities": ("find_singularities", _arm(
         task=_task, points=("count", 2), seed=_seed, keep=("count", 3))),
     "find_isotropic": ("find_isotropic", _arm(
@@ -125,6 +127,9 @@ CALLS: Calls = {
     "diagnose": ("diagnose", {
         "robot": ("path", "planar2r"), "quantity": ("word", "gravity_torques"),
         "function": ("function", None), "samples": ("count", 5), "seed": _seed}),
+    "diagnose_table": ("diagnose_table", {
+        "mine": ("path", "planar2r"), "against": ("path", "planar2r"), "tool": ("path", None),
+        "dynamics": ("bool", True), "seed": _seed}),
     "DHLink": ("DHLink", {
         "joint": ("word", "revolute"), "a": ("real", 0.5), "alpha": ("real", 0.1), "d": ("real", 0.2),
         "theta": ("real", 0.3), "flip": ("bool", True), "lower": ("real", -1.0), "upper": ("real", 1.0),
@@ -169,7 +174,8 @@ CALLS: Calls = {
 }  # fmt: skip
 
 HEAVY = ("design_isotropic", "find_singularities", "find_isotropic", "factored_determinant",
-         "diagnose", "singular_loci", "five.size_servo", "describe_singularity")  # fmt: skip
+         "diagnose", "singular_loci", "five.size_servo", "describe_singularity",
+         "workspace_section")  # fmt: skip
 
 
 class Raises:

@@ -347,6 +347,8 @@ def test_ctrl_c_during_the_start_ends_it(delay):
     process = subprocess.Popen(
         [sys.executable, "-u", "-m", "kinlab", "view", "planar2r", "--no-browser", "--port", "0"], env=helpers.environment(),
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, start_new_session=True,
+        # a job in the background of a shell ignores it, and so would its children
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     try:
         if delay is None:  # as soon as it says its address, which is before it serves

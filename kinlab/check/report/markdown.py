@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.report.markdown_text import code, formula, words
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
-from kinlab.formulas.typeset import plain
 
 
 def text(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
@@ -23,12 +23,12 @@ def text(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
     for group in groups:
         name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
         if name != section:
-            lines += [f"## {name}", ""]
+            lines += [f"## {words(name)}", ""]
             section = name
         lines += _formula(group)
     for found in judged:
         if found.source != section:
-            lines += [f"## {found.source}: your formulas", ""]
+            lines += [f"## {words(found.source)}: your formulas", ""]
             section = found.source
         lines += _entry(found)
     return "\n".join([*lines, origin(groups)]) + "\n"
@@ -37,42 +37,44 @@ def text(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
 def _formula(group: Group) -> list[str]:
     record = group.formula
     mark = "" if group.ok else " **FAILS**"
-    source = f"{record.source}; " if record.source else ""
-    lines = [f"### `{record.key}` {record.title}{mark}", "", f"{source}`{record.quantity}`", ""]
+    source = f"{words(record.source)}; " if record.source else ""
+    lines = [f"### {code(record.key)} {words(record.title)}{mark}", ""]
+    lines += [f"{source}{code(record.quantity)}", ""]
     if group.printed_error is not None and record.printed is not None:
-        lines += ["Printed:", "", f"$${plain(record.printed.latex)}$$", "", "Corrected:", ""]
+        lines += ["Printed:", "", formula(record.printed.latex), "", "Corrected:", ""]
     if record.latex:
-        lines += [f"$${plain(record.latex)}$$", ""]
-    lines += [f"**{sentence(group.verdict)}**", ""]
+        lines += [formula(record.latex), ""]
+    lines += [f"**{words(sentence(group.verdict))}**", ""]
     if record.remark:
-        lines += [f"Remark: {sentence(record.remark)}", ""]
+        lines += [f"Remark: {words(sentence(record.remark))}", ""]
     lines += ["| robot | states | error | printed form |", "|---|---:|---:|---:|"]
     for row in group.rows:
         printed = size(row.printed.max_error) if row.printed is not None else ""
         error = size(row.corrected.max_error)
-        lines.append(f"| {row.robot} | {row.corrected.samples} | {error} | {printed} |")
+        lines.append(f"| {words(row.robot)} | {row.corrected.samples} | {error} | {printed} |")
     lines.append("")
     for row in group.rows:
         if row.diagnosis is not None:
-            lines += [f"On {row.robot}:", "", *_diagnosis(row.diagnosis)]
+            lines += [f"On {words(row.robot)}:", "", *_diagnosis(row.diagnosis)]
     return lines
 
 
 def _entry(found: Diagnosis) -> list[str]:
     mark = "" if found.agrees else " **DIFFERS**"
-    lines = [f"### `{found.function}`{mark}", "", f"`{found.quantity}` of {found.robot}", ""]
+    lines = [f"### {code(found.function)}{mark}", ""]
+    lines += [f"{code(found.quantity)} of {words(found.robot)}", ""]
     for left, right in found.given:
-        lines += [f"$${plain(f'{left} = {right}')}$$", ""]
+        lines += [formula(f"{left} = {right}"), ""]
     return lines + _diagnosis(found)
 
 
 def _diagnosis(found: Diagnosis) -> list[str]:
-    lines = [f"**{found.verdict.capitalize()}**: {found.sentence}. {errors(found)}.", ""]
+    lines = [f"**{found.verdict.capitalize()}**: {words(found.sentence)}. {errors(found)}.", ""]
     for text in found.evidence:
-        lines += [f"{text}.", ""]
-    lines += [f"- or: {text}" for text in found.others] + ([""] if found.others else [])
+        lines += [f"{words(text)}.", ""]
+    lines += [f"- or: {words(text)}" for text in found.others] + ([""] if found.others else [])
     if found.corrected:
         lines += ["Should be:", ""]
     for left, right in found.corrected:
-        lines += [f"$${plain(f'{left} = {right}')}$$", ""]
+        lines += [formula(f"{left} = {right}"), ""]
     return lines

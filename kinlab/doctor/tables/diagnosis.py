@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, seed_of
 from kinlab.doctor.tables import bodies as table_bodies
 from kinlab.doctor.tables import noise as table_noise
 from kinlab.doctor.tables import zeros as table_zeros
@@ -70,7 +70,7 @@ def diagnose_table(
         InertiaError: dynamics asked for where a side has none.
         KinlabError: a file or robot that cannot be used, with its remedy.
     """
-    table = read_mine(mine)
+    table, seed = read_mine(mine), seed_of(seed)
     if (against is None) == (poses is None):
         raise TableError("diagnose_table: give either against= or poses=(q, T)")
     if poses is not None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from html import escape
 from typing import Any
 
-from kinlab.doctor.tables.words import Cause, listed, where
+from kinlab.doctor.tables.words import Cause, degrees, listed, number, where
 from kinlab.model.dh import DHTable
 
 _ROW = re.compile(r"rows? [^:]*")
@@ -104,39 +104,51 @@ class TableDiagnosis:
         return text
 
     def __str__(self) -> str:
-        name = self.mine.name if self.mine is not None else "table"
-        lines = [f"{name}: {self.verdict} (against {self.reference})", f"  {self.sentence}"]
+        lines = [f"{self.name}: {self.verdict} (against {self.reference})", f"  {self.sentence}"]
         return "\n".join([*lines, *(f"  {line}" for line in self.told)])
 
     def _repr_html_(self) -> str:
-        name = self.mine.name if self.mine is not None else "table"
         items = "".join(f"<li>{escape(line)}</li>" for line in self.told)
         return (
-            f"<div><p><b>{escape(name)}: {escape(self.verdict)}</b> (against "
+            f"<div><p><b>{escape(self.name)}: {escape(self.verdict)}</b> (against "
             f"{escape(self.reference)})</p><p>{escape(self.sentence)}</p><ul>{items}</ul>"
-            f"{self.rows_html()}</div>"
+            f"{self._rows_html()}</div>"
         )
 
-    def rows_html(self) -> str:
-        """The table with the wrong cells struck out beside what is meant."""
-        from kinlab.doctor.tables.words import degrees, number
+    @property
+    def name(self) -> str:
+        """The table's name."""
+        return self.mine.name if self.mine is not None else "table"
 
+    @property
+    def cells(self) -> list[list[tuple[str, str]]]:
+        """a, alpha, d, theta of every row as written, each with what is meant where it differs.
+
+        Empty where no cell-wise repair is known.
+        """
         if self.mine is None or self.repaired is None or not self.causes:
-            return ""
+            return []
         if self.mine.n != self.repaired.n:
-            return ""
-        head = "".join(f"<th>{h}</th>" for h in ("row", "a", "alpha", "d", "theta"))
-        body = ""
-        for i, (one, two) in enumerate(zip(self.mine.links, self.repaired.links, strict=True), 1):
-            body += f"<tr><td>{i}</td>"
+            return []
+        rows = []
+        for one, two in zip(self.mine.links, self.repaired.links, strict=True):
+            row = []
             for column in ("a", "alpha", "d", "theta"):
                 was, shall = getattr(one, column), getattr(two, column)
                 form = degrees if column in ("alpha", "theta") else number
-                text = escape(form(was))
-                if abs(was - shall) > 1e-9:
-                    text = f"<del>{text}</del> <b>{escape(form(shall))}</b>"
-                body += f"<td>{text}</td>"
-            body += "</tr>"
+                row.append((form(was), form(shall) if abs(was - shall) > 1e-9 else ""))
+            rows.append(row)
+        return rows
+
+    def _rows_html(self) -> str:
+        """The table with the wrong cells struck out beside what is meant; cells are numbers."""
+        if not self.cells:
+            return ""
+        head = "".join(f"<th>{h}</th>" for h in ("row", "a", "alpha", "d", "theta"))
+        body = ""
+        for i, row in enumerate(self.cells, 1):
+            told = [f"<del>{was}</del> <b>{shall}</b>" if shall else was for was, shall in row]
+            body += f"<tr><td>{i}</td>{''.join(f'<td>{text}</td>' for text in told)}</tr>"
         return f"<table><tr>{head}</tr>{body}</table>"
 
     def as_dict(self) -> dict[str, Any]:
