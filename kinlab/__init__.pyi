@@ -61,10 +61,15 @@ from .fast.stacks import jacobian as jacobian
 from .fast.stacks import statics as statics
 from .fivebar import FiveBar as FiveBar
 from .formulas.record import hand_formula as hand_formula
+from .inverse.aspects import aspects as aspects
 from .inverse.branches import ik_branches as ik_branches
+from .inverse.cuspidality import is_cuspidal as is_cuspidal
+from .inverse.cuspidality import posture_path as posture_path
 from .inverse.path import ik_path as ik_path
 from .inverse.search import ik as ik
 from .inverse.search import ik_batch as ik_batch
+from .inverse.solution_count import solution_count as solution_count
+from .inverse.solution_map import solution_map as solution_map
 from .model.dh import DHLink as DHLink
 from .model.dh import DHTable as DHTable
 from .model.extract import to_dh as to_dh

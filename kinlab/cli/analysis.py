@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -11,6 +11,9 @@ from kinlab.cli import analysis_pictures as pictures
 from kinlab.cli import analysis_tables as tables
 from kinlab.cli.robots import NAME, TIP
 from kinlab.cli.screen import screen
+
+if TYPE_CHECKING:
+    from kinlab.model.robot import Robot
 
 TASK = Annotated[
     str,
@@ -111,7 +114,12 @@ def workspace(
     task: TASK = "auto",
     metric: Annotated[
         str,
-        typer.Option(help="inverse_condition, yoshikawa, min_singular, asada or isotropy."),
+        typer.Option(
+            "--metric",
+            "--measure",
+            help="inverse_condition, yoshikawa, min_singular, asada, isotropy, or solutions: how "
+            "many joint positions reach each point of a section (3R and planar arms).",
+        ),
     ] = "inverse_condition",
     length: Annotated[float, typer.Option("--length", help="Characteristic length, m.")] = 1.0,
     samples: Annotated[int, typer.Option("--samples", "-n")] = 50_000,
@@ -135,6 +143,9 @@ def workspace(
     from kinlab.sweeps.workspace import sample_workspace
 
     robot, console = load(name, tip), screen()
+    if metric == "solutions":
+        _solutions(robot, output)
+        return
     with Progress(console=screen(stderr=True), transient=True) as bar:
         row = bar.add_task("sampling", total=samples)
         chart = sample_workspace(
@@ -160,6 +171,33 @@ def workspace(
         console.print(f"wrote {save}", highlight=False)
     if output is not None:
         pictures.workspace(robot, chart, plane, cloud, output)
+        console.print(f"wrote {output}", highlight=False)
+
+
+def _solutions(robot: Robot, output: Path | None) -> None:
+    """How many solutions the points of a section have, as a table and a picture."""
+    import numpy as np
+
+    from kinlab.inverse.solution_map import solution_map
+
+    console = screen()
+    chart = solution_map(robot)
+    console.print(f"{chart.robot}: {chart.text}", highlight=False)
+    for number in np.unique(chart.within_limits):
+        share = 100.0 * float(np.mean(chart.within_limits == number))
+        console.print(
+            f"{int(number)} solutions within the limits: {share:.1f} % of the cells",
+            highlight=False,
+        )
+    for what, points in (("cusp", chart.cusps), ("node", chart.nodes)):
+        for one, two in points:
+            console.print(
+                f"{what} at {chart.labels[0]} {one:.6g} m, {chart.labels[1]} {two:.6g} m",
+                highlight=False,
+            )
+    console.print(str(chart.evidence), style="dim", highlight=False)
+    if output is not None:
+        pictures.solutions(chart, output)
         console.print(f"wrote {output}", highlight=False)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
+    from kinlab.inverse.solution_map import SolutionMap
     from kinlab.model.robot import Robot
     from kinlab.sweeps.workspace import WorkspaceMap
 
@@ -71,6 +72,14 @@ def workspace(robot: Robot, chart: WorkspaceMap, plane: str, cloud: bool, path: 
             loci = singular_loci(robot, list(range(needed)), task=_mask(chart.rows))
             curves = [fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
     save(plot_map(chart, boundary=boundary, curves=curves, section=section, plane=plane), path)
+
+
+def solutions(chart: SolutionMap, path: Path) -> None:
+    """The number of solutions over a section."""
+    from kinlab.plots.canvas import save
+    from kinlab.plots.solutions import plot_solutions
+
+    save(plot_solutions(chart), path)
 
 
 def _section(robot: Robot) -> Any:

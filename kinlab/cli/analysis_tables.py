@@ -59,7 +59,7 @@ def families(search: SingularitySearch) -> Any:
 
 def nearest(near: NearestSingularity) -> str:
     if near.singularity is None:
-        return f"no singular configuration within the limits was found"
+        return "no singular configuration within the limits was found"
     q = ", ".join(f"{round(float(v), 6) + 0.0:g}" for v in near.singularity.q)
     return (
         f"nearest singularity: {near.singularity.kind} at distance {near.distance:.6g} rad (or m), "

@@ -39,8 +39,12 @@ def view(
         Path | None, typer.Option("--save", help="Write one HTML file instead of serving.")
     ] = None,
     animate: Annotated[
-        str | None, typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus.")
+        str | None,
+        typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus, posture."),
     ] = None,
+    branches: Annotated[
+        bool, typer.Option("--branches", help="Draw all solutions of the pose at q as ghosts.")
+    ] = False,
     meshes: Annotated[
         bool, typer.Option(help="Draw the URDF's meshes, or rods from joint to joint.")
     ] = True,
@@ -58,7 +62,7 @@ def view(
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
-    page = _open(name, tip, q, animate, meshes, against)
+    page = _open(name, tip, q, animate, meshes, against, branches)
     for note in page.notes:
         echo(f"note: {note}", err=True)
     if save is not None:
@@ -70,7 +74,7 @@ def view(
 
 def _open(
     name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool,
-    against: str | None = None,
+    against: str | None = None, branches: bool = False,
 ) -> Page:  # fmt: skip
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
@@ -78,6 +82,8 @@ def _open(
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
+    if branches and (against is not None or name in presets() or _holds_five_bar(name)):
+        raise OptionError("view --branches is for one arm; leave --against out")
     if against is not None:
         from kinlab.viewer.against import against_scene
 
@@ -95,6 +101,13 @@ def _open(
             raise
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
+    if branches:
+        from kinlab.fast.stacks import fk
+        from kinlab.inverse.branches import ik_branches
+
+        found = ik_branches(robot, fk(robot, scene.q))
+        if len(found):
+            scene.ghosts("branches", found.q)
     if animate is not None:
         from kinlab.viewer import motions
 

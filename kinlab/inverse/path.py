@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError
 from kinlab.fast.stacks import jacobian
+from kinlab.inverse.posture_change import PostureChange, posture_changes
 from kinlab.inverse.request import positive, read_guess, read_targets
 from kinlab.inverse.result import IKResult, IKStatus
 from kinlab.inverse.search import ik
@@ -32,6 +33,8 @@ class IKPath:
         singular: rows at or near a singularity of the task's Jacobian, integers.
         conditioning: sigma_min / sigma_max of that Jacobian, (N,), 0 at a singularity.
         remarks: what was done to the input.
+        posture_changes: where the path comes back to a pose with another posture, and whether
+            the way there is shown to meet no singularity.
     """
 
     q: Array
@@ -43,6 +46,7 @@ class IKPath:
     singular: Any
     conditioning: Array
     remarks: tuple[str, ...] = ()
+    posture_changes: tuple[PostureChange, ...] = ()
 
     def __len__(self) -> int:
         return len(self.q)
@@ -129,6 +133,7 @@ def ik_path(
         np.flatnonzero(conditioning < NEAR_SINGULAR),
         conditioning,
         tuple(remarks),
+        posture_changes(robot, q) if len(q) else (),
     )
 
 

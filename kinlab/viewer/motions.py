@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.stacks import fk, jacobian
+from kinlab.inverse.cuspidality import is_cuspidal
 from kinlab.inverse.path import ik_path
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm import reach
@@ -134,11 +135,33 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
     return ShownMotion("Walk along det J = 0", np.array(walk), 12.0)
 
 
+def posture(robot: Robot, start: Array) -> ShownMotion:
+    """From one solution of a pose to another, without meeting a singularity, and back.
+
+    Raises:
+        StructureError: no such change was found.
+        OptionError: the arm's task leaves joints free.
+    """
+    found = is_cuspidal(robot)
+    if found.path is None:
+        raise StructureError(
+            f"robot {robot.name!r}: no change of posture without a singularity was found "
+            f"({found.poses} poses, {found.pairs} pairs of solutions)"
+        )
+    length = float(np.linalg.norm(np.diff(found.path.q, axis=0), axis=1).sum())
+    rows = found.path.points(length / _STEPS)
+    there_and_back = np.vstack([rows, rows[::-1]])
+    return ShownMotion("Change of posture without a singularity", there_and_back, 8.0)
+        "Change of posture without a singularity", np.vstack([rows, rows[::-1]]), 8.0
+    )
+
+
 MOTIONS: dict[str, Callable[[Robot, Array], ShownMotion]] = {
     "sweep": sweep,
     "line": line,
     "pick": pick,
     "locus": locus,
+    "posture": posture,
 }
 """What ``kinlab view --animate`` can show of an arm."""
 

@@ -117,6 +117,14 @@ CALLS: Calls = {
     "ik_path": ("ik_path", _arm(
         Ts=("poses", [[0.3, -0.7], [0.31, -0.69]]), q0=("array", Q), tol_position=("positive", 1e-6),
         seed=_seed, task=("task", "pose"), max_step=("positive", 0.5))),
+    "solution_count": ("solution_count", _arm(T=("pose", [0.3, -0.7]), threads=("count", 1))),
+    "solution_map": ("solution_map", _arm(cells=("count", 12), angle=("real", 0.0))),
+    "aspects": ("aspects", _arm(limits=("bool", True))),
+    "is_cuspidal": ("is_cuspidal", _arm(
+        poses=("count", 5), nodes=("count", 20), limits=("bool", True), seed=_seed)),
+    "posture_path": ("posture_path", _arm(
+        one=("array", [0.2, 0.5]), two=("array", [0.4, 0.8]), nodes=("count", 20),
+        limits=("bool", True), seed=_seed)),
     "to_dh": ("to_dh", _arm()),
     "to_urdf": ("to_urdf", {"table": ("table", "planar2r")}),
     "load": ("load", {"name_or_path": ("path", "planar2r")}),

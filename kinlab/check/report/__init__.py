@@ -1,8 +1,8 @@
 """A check written down: summary, one self-contained HTML page, or Markdown.
 
-=================  ================================================================================
+=================  ===============================================================================
 module             what it holds
-=================  ================================================================================
+=================  ===============================================================================
 ``html``           A check as one self-contained HTML page: MathML, inline SVG, no network, no
                    script
 ``markdown``       A check as Markdown with LaTeX formulas
@@ -11,5 +11,5 @@ module             what it holds
 ``words``          What the page and the Markdown report share: headings, words, small pictures of
                    errors
 ``write``          A check written down: one self-contained HTML page, or Markdown
-=================  ================================================================================
+=================  ===============================================================================
 """
