@@ -152,8 +152,6 @@ def posture(robot: Robot, start: Array) -> ShownMotion:
     rows = found.path.points(length / _STEPS)
     there_and_back = np.vstack([rows, rows[::-1]])
     return ShownMotion("Change of posture without a singularity", there_and_back, 8.0)
-        "Change of posture without a singularity", np.vstack([rows, rows[::-1]]), 8.0
-    )
 
 
 MOTIONS: dict[str, Callable[[Robot, Array], ShownMotion]] = {
