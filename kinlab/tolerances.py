@@ -1,4 +1,8 @@
-"""Every tolerance of kinlab in one frozen object, each with its reason."""
+"""Every named tolerance of kinlab in one frozen object, each with its reason.
+
+Those of compiled kernels stand beside their kernels: a kernel's cache knows its own file only, and
+would keep a number that is changed here.
+"""
 
 from __future__ import annotations
 
@@ -78,6 +82,85 @@ class Tolerances:
 
     round_trip: float = 1e-10
     """URDF to DH and back: frames, M and g may move by this much (relative for M and g)."""
+
+    urdf_echo: float = 1e-9
+    """Relative difference between a number written into the engine and the one read back that is
+    still rounding."""
+
+    null_direction: float = 1e-6
+    """sigma_min / sigma_max of J below which a direction of joint space may leave the tool in
+    place; whether it does is then tried."""
+
+    tool_stays: float = 1e-9
+    """Metres and radians within which the tool stays where it is along such a direction."""
+
+    task_holds: float = 1e-7
+    """sigma_min / sigma_max of J at states in general position below which a task cannot be
+    held."""
+
+    axes_meet: float = 1e-9
+    """Metres or sine below which axes meet or are parallel, on tables with ten digits."""
+
+    dependent: float = 1e-7
+    """Relative volume below which columns are dependent at a singularity solved to 1e-12."""
+
+    same_number: float = 1e-9
+    """Relative difference below which two numbers that a user wrote down are one."""
+
+    same_line: float = 1e-8
+    """Direction, or distance over the arm's, below which two joint axes are one line: what is
+    solved for from poses carries the rounding of a few products."""
+
+    same_relation: float = 1e-7
+    """Relative difference below which a solved number is the one that a relation gives."""
+
+    solved_angle: float = 1e-7
+    """rad. Slack of an angle that is solved for from exact poses."""
+
+    same_body: float = 1e-8
+    """Relative difference of masses, centres and tensors that is still rounding of their moving
+    from one frame to another."""
+
+    exact_poses: float = 1e-7
+    """Noise below which poses are exact, and more than one slip can be looked for."""
+
+    effect_matches: float = 1e-9
+    """Share of the values within which the effect of an edit is the one that was looked for."""
+
+    no_effect: float = 1e-12
+    """An effect below this share of the values is rounding: the edit changes nothing."""
+
+    no_share: float = 1e-8
+    """A term of a sum with less than this share of the largest is not in it."""
+
+    same_function: float = 1e-9
+    """Two columns of unit length closer than this, up to their sign, are one function."""
+
+    row_stands_still: float = 1e-9
+    """A row of J whose entries stay below this over random poses cannot be moved by the arm."""
+
+    loop_acceleration: float = 1e-7
+    """Largest |Jc a + Jc_dot v| over |Jc_dot v| + |a| size that still counts as a closed loop."""
+
+    same_pose_of_fivebar: float = 0.003
+    """Two fully isotropic poses closer than this part of the linkage's size are one: one factor's
+    curve crosses that of the right angles, which gives the place to rounding; the other's
+    touches it, and descent along that one ends anywhere within a few 1e-4."""
+
+    equal_cranks: float = 1e-12
+    """Relative difference of the cranks of a five-bar below which they are equal."""
+
+    no_motion: float = 1e-9
+    """A speed, acceleration, ratio or efficiency of no more than this is none."""
+
+    pressure_angle: float = 1e-5
+    """rad. Pressure angle of a five-bar up to which a pose is called fully isotropic."""
+
+    pole_of_tan: float = 1e-12
+    """|cos x| below which x is an odd multiple of 90°, where tan x has no value."""
+
+    vanishes: float = 1e-12
+    """SI units. What an engine returns for zero is rounding residue of this size or less."""
 
 
 TOLERANCES = Tolerances()

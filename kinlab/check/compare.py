@@ -3,9 +3,8 @@
 The error of a state is max|hand - engine| / max(max|engine|, typical), over the entries of the
 answer; typical is the median over the states of max|engine|, so that a state where the quantity
 happens to vanish does not divide by nothing. Where the quantity vanishes in most states, it is
-its largest value, where it vanishes in all (below :data:`VANISHES`) 1, and never less than the
-quantity's own ``scale``. A NaN or infinity of the hand formula counts
-as an infinite error.
+its largest value, where it vanishes in all (below ``TOLERANCES.vanishes``) 1, and never less than
+the quantity's own ``scale``. A NaN or infinity of the hand formula counts as an infinite error.
 """
 
 from __future__ import annotations
@@ -23,9 +22,6 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
 from kinlab.tolerances import TOLERANCES
-
-VANISHES = 1e-12
-"""SI units. What an engine returns for zero is rounding residue of this size or less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,7 +161,9 @@ def error_sizes(engine: Array, scale: float = 0.0) -> Array:
         (N,).
     """
     size = np.max(np.abs(engine.reshape(len(engine), -1)), axis=1, initial=0.0)
-    typical = next((x for x in (float(np.median(size)), float(np.max(size))) if x > VANISHES), 1.0)
+    typical = next(
+        (x for x in (float(np.median(size)), float(np.max(size))) if x > TOLERANCES.vanishes), 1.0
+    )
     sizes: Array = np.maximum(size, max(typical, scale))
     return sizes
 

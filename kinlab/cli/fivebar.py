@@ -9,6 +9,7 @@ import typer
 
 from kinlab.cli.screen import Screen, screen, styled
 from kinlab.errors import OptionError
+from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -30,10 +31,6 @@ BOX = Annotated[
 
 _CONDITION = 3.0
 """Bound on the condition number of the workspace that `size` takes where none is given."""
-
-
-_RIGHT_ANGLE = 1e-5
-"""Pressure angle, rad, up to which a pose is called fully isotropic."""
 
 
 def register(app: typer.Typer) -> None:
@@ -105,7 +102,9 @@ def analyse(
     console.print(table)
     for pose in poses[signs]:
         place = f"({_fixed(pose.xy[0])}, {_fixed(pose.xy[1])}) m"
-        full = ", fully (pressure angles 0)" if max(pose.pressure) < _RIGHT_ANGLE else ""
+        full = (
+            ", fully (pressure angles 0)" if max(pose.pressure) < TOLERANCES.pressure_angle else ""
+        )
         console.print(f"isotropic in mode {_signs(signs)}: {place}{full}")
     circle = fivebar.largest_circle(signs, assembly)
     box = fivebar.largest_rectangle(signs, assembly)

@@ -27,6 +27,7 @@ from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
+from kinlab.tolerances import TOLERANCES
 
 # -------- What the names in a formula file claim to be: tau1, g2, M12, C11, J11, x, T, V
 
@@ -91,7 +92,6 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
 # -------- A file of formulas as text, examined entry by entry
 
 _FILE_LIMIT = 1 << 20
-_SAME = 1e-9
 _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
 
@@ -290,13 +290,13 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     """A user's symbol with a number: the robot's parameter of that value, or the number."""
     value = float(given.value)
     if name in words:
-        if abs(words[name] - value) > _SAME * abs(words[name]):
+        if abs(words[name] - value) > TOLERANCES.same_number * abs(words[name]):
             raise ExpressionError(
                 f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
                 "give the robot's number, or another name"
             )
         return tree.sym(name)
-    alike = [w for w, x in words.items() if abs(x - value) <= _SAME * abs(x)]
+    alike = [w for w, x in words.items() if abs(x - value) <= TOLERANCES.same_number * abs(x)]
     close = [w for w in alike if w[0].lower() == name[0].lower()]
     for found in (alike, close):
         if len(found) == 1:

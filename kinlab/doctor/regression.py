@@ -18,12 +18,10 @@ from kinlab.arrays import Array, first_largest, largest_first
 from kinlab.doctor.edits import Names
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
+from kinlab.tolerances import TOLERANCES
 
-_SMALL = 1e-8
 _SHORT = 6
 """More terms than this are no explanation."""
-_SAME = 1e-9
-"""Two columns of unit length closer than this, up to their sign, are one function."""
 
 
 @dataclass(frozen=True)
@@ -94,7 +92,7 @@ def _distinct(columns: Array) -> list[int]:
     """The columns of unit length that are not plus or minus one before them."""
     if not columns.shape[1]:
         return []
-    alike = np.triu(1.0 - np.abs(columns.T @ columns) < _SAME, 1)
+    alike = np.triu(1.0 - np.abs(columns.T @ columns) < TOLERANCES.same_function, 1)
     return [int(k) for k in np.flatnonzero(~alike.any(axis=0))]
 
 
@@ -118,9 +116,12 @@ def _few(columns: Array, difference: Array, scale: float) -> list[int] | None:
 def _needed(columns: Array, chosen: list[int], difference: Array, scale: float) -> list[int] | None:
     """The chosen columns with a share in the difference, if together they are all of it."""
     factors, *_ = np.linalg.lstsq(columns[:, chosen], difference, rcond=None)
-    if np.max(np.abs(columns[:, chosen] @ factors - difference)) > _SMALL * 0.1 * scale:
+    if (
+        np.max(np.abs(columns[:, chosen] @ factors - difference))
+        > TOLERANCES.no_share * 0.1 * scale
+    ):
         return None
-    share = np.abs(factors) > _SMALL * np.max(np.abs(factors))
+    share = np.abs(factors) > TOLERANCES.no_share * np.max(np.abs(factors))
     return [k for k, s in zip(chosen, share, strict=True) if s]
 
 

@@ -17,8 +17,8 @@ from kinlab.arrays import Array
 from kinlab.doctor.edits import Edit, Names, edits
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node, Path
+from kinlab.tolerances import TOLERANCES
 
-MATCH = 1e-9
 _CANDIDATES = 40
 _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
@@ -26,8 +26,6 @@ _TRIED = 150
 """Pairs that are written out and evaluated, the simplest first."""
 _DENSE = 50
 """Edits with equal effects that are tried as partners of one edit."""
-_NOTHING = 1e-12
-"""An effect below this share of the values is rounding: the edit changes nothing."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class Study:
     def fits(self, result: Node) -> bool:
         """Whether a formula has the values wanted."""
         gap = np.abs(tree.evaluate(result, self.at) - self.target)
-        return bool(np.max(gap) <= MATCH * self.scale)
+        return bool(np.max(gap) <= TOLERANCES.effect_matches * self.scale)
 
 
 def study(
@@ -99,7 +97,7 @@ def study(
         if edit.new not in memory:
             memory[edit.new] = tree.evaluate(edit.new, at)
         effect = climber.climb(edit.path, memory[edit.new]) - climber.value
-        if np.isfinite(effect).all() and np.max(np.abs(effect)) > _NOTHING * scale:
+        if np.isfinite(effect).all() and np.max(np.abs(effect)) > TOLERANCES.no_effect * scale:
             found.append(edit)
             rows.append(effect)
     for term in extra:
@@ -114,7 +112,7 @@ def study(
 def single(case: Study) -> list[Repair]:
     """All single edits that give the values wanted, the simplest first."""
     gaps = np.max(np.abs(case.effects - case.wanted), axis=1, initial=0.0)
-    good = [case.found[k] for k in np.flatnonzero(gaps <= MATCH * case.scale)]
+    good = [case.found[k] for k in np.flatnonzero(gaps <= TOLERANCES.effect_matches * case.scale)]
     return _best(Repair((edit,), apply(case.root, edit), edit.cost) for edit in good)
 
 
@@ -122,7 +120,7 @@ def double(case: Study) -> list[Repair]:
     """As :func:`single` with two edits whose effects add up."""
     if not len(case.effects):
         return []
-    pairs = _pairs(case.effects, case.wanted, MATCH * case.scale)
+    pairs = _pairs(case.effects, case.wanted, TOLERANCES.effect_matches * case.scale)
     return _together(case, [(case.found[one], case.found[two]) for one, two in pairs])
 
 
@@ -191,7 +189,7 @@ def _pairs(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
 def _log_size(ratio: Array) -> Array:
     """log|ratio|; minus infinity where the ratio is rounding about zero."""
     size = np.abs(ratio)
-    logs: Array = np.log(np.where(size > _NOTHING, size, 0.0))
+    logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
     return logs
 
 

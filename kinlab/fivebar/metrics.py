@@ -19,6 +19,7 @@ from kinlab.arrays import Array, first_largest, real_array, smallest_first
 from kinlab.errors import OptionError
 from kinlab.fivebar.arguments import HANGING, Mode, OnUnreachable, cross
 from kinlab.fivebar.geometry import Pose, grid, rate_matrix, solve_pose
+from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import FiveBar
@@ -159,12 +160,6 @@ def stiffness(linkage: FiveBar, xy: ArrayLike, k: ArrayLike, mode: Mode = HANGIN
 #
 # Sources: note 000 (000.iso); Huang et al. 2005, doi 10.1115/1.1898343.
 _DESCENT_STEPS, _NEWTON_STEPS = 60, 30
-_SAME_PLACE = 3e-3
-"""Two answers closer than this part of the linkage's size are one. At a fully isotropic pose
-one factor's curve crosses that of the right angles, which gives the place to rounding; the other's
-touches it, and descent along that one ends anywhere within a few 1e-4."""
-_EQUAL_CRANKS = 1e-12
-"""Relative difference of the cranks below which they are equal."""
 
 
 @dataclass(frozen=True)
@@ -216,7 +211,7 @@ def isotropic_poses(
         points = np.stack([np.zeros(len(points)), -np.hypot(points[:, 0], points[:, 1])], axis=1)
     places = []
     while len(points):
-        near = np.linalg.norm(points - points[0], axis=1) <= _SAME_PLACE * size
+        near = np.linalg.norm(points - points[0], axis=1) <= TOLERANCES.same_pose_of_fivebar * size
         places.append(points[near][first_largest(sharpness[near])])
         points, sharpness = points[~near], sharpness[~near]
     if not places:
@@ -230,7 +225,7 @@ def isotropic_poses(
 def _factors(linkage: FiveBar) -> tuple[int, ...]:
     """Which conditions stand for rows of one length: two factors, or for unequal cranks one, 0."""
     first, second = linkage.l1.tolist()
-    return (1, -1) if abs(first - second) <= _EQUAL_CRANKS * (first + second) else (0,)
+    return (1, -1) if abs(first - second) <= TOLERANCES.equal_cranks * (first + second) else (0,)
 
 
 def _solved(

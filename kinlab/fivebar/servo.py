@@ -28,6 +28,7 @@ from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.dynamics import RodModel, crank_inertia, joint_mass, rod_model, torques
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
+from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import FiveBar
@@ -266,9 +267,6 @@ def require_regular(linkage: FiveBar, box: Rectangle, mode: Mode) -> None:
 
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
-_LEAST = 1e-9
-"""A speed, acceleration, ratio or efficiency of no more than this is none."""
-
 
 @dataclass(frozen=True)
 class ServoSizing:
@@ -360,9 +358,9 @@ def size_servo(
     for name, value in (
         limits if gear_ratio is None else limits | {"gear_ratio": gear_ratio}
     ).items():
-        if not value > _LEAST:
+        if not value > TOLERANCES.no_motion:
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
-    if not _LEAST < efficiency <= 1.0:
+    if not TOLERANCES.no_motion < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
     if not any(np.any(getattr(linkage, name)) for name in _MASSES):
         raise InertiaError(

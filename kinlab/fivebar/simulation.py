@@ -22,8 +22,6 @@ from kinlab.fivebar.closed_chain import CRANKS, ClosedChain
 from kinlab.tolerances import TOLERANCES
 
 Torque = Callable[[float, Array, Array], ArrayLike]
-_LOOP_ACCELERATION = 1e-7
-"""Largest |Jc a + Jc_dot v| over |Jc_dot v| + |a| size that still counts as a closed loop."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +105,7 @@ class ConstraintSolver:
         bias = self._chain.closure_bias(q, qd)
         left = float(np.linalg.norm(rows @ qdd + bias))
         scale = np.linalg.norm(bias) + np.linalg.norm(qdd) * self._chain.size
-        if left > _LOOP_ACCELERATION * scale:
+        if left > TOLERANCES.loop_acceleration * scale:
             raise self._open(q, left)
         return qdd
 

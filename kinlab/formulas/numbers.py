@@ -15,13 +15,14 @@ import numpy as np
 
 from kinlab.errors import ExpressionError
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
+from kinlab.tolerances import TOLERANCES
 
 _MAX_LENGTH = 200
 _CONSTANTS = {"pi": math.pi, "π": math.pi}
 
 
 def _tan(angle: float) -> float:
-    if abs(math.cos(angle)) < _POLE:
+    if abs(math.cos(angle)) < TOLERANCES.pole_of_tan:
         raise ValueError("the tangent of 90 deg has no value")
     return math.tan(angle)
 
@@ -41,8 +42,6 @@ _BINARY: dict[type[ast.operator], Callable[[float, float], float]] = {
     ast.Mult: operator.mul,
     ast.Div: operator.truediv,
 }
-_POLE = 1e-12
-"""|cos x| below which x is meant as an odd multiple of 90°, where tan x has no value."""
 
 _TEXT = re.compile(
     r"(?:\s|[-+*/()]|(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?(?![0-9A-Za-z_.])|[A-Za-z]+|π)*",

@@ -13,15 +13,10 @@ from kinlab.inverse.branch_rows import miss
 from kinlab.inverse.kernel import pose_error
 from kinlab.inverse.structures import POINTING, POSITION, Form
 from kinlab.model.robot import Robot
-
-_LOST = 1e-6
-"""sigma_min / sigma_max of J below which a direction may be free."""
+from kinlab.tolerances import TOLERANCES
 
 _FAR = 0.05
 """Radians or metres that a free joint is moved along to see whether the tool stays."""
-
-_STAYS = 1e-9
-"""Metres and radians within which it does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +54,10 @@ def families_at(
     for row, values in enumerate(q):
         start = values[index]
         for tangent in _free(form, start, goal):
-            linear = all(_miss(form, start + t * tangent, goal) < _STAYS for t in (_FAR, -0.7, 1.9))
+            linear = all(
+                _miss(form, start + t * tangent, goal) < TOLERANCES.tool_stays
+                for t in (_FAR, -0.7, 1.9)
+            )
             if not linear and not _curve(form, start, tangent, goal):
                 continue
             direction = np.zeros(robot.n)
@@ -104,7 +102,7 @@ def _free(form: Form, q: Array, goal: Array) -> Array:
     _, values, vectors = np.linalg.svd(part)
     padded = np.zeros(form.real)
     padded[: len(values)] = values
-    free: Array = vectors[padded < _LOST * padded[0]]
+    free: Array = vectors[padded < TOLERANCES.null_direction * padded[0]]
     return free
 
 
@@ -128,6 +126,9 @@ def _curve(form: Form, start: Array, tangent: Array, goal: Array) -> bool:
                 np.vstack([part, tangent]), np.append(wanted, ahead), rcond=1e-9
             )
             q = q + step
-        if not _miss(form, q, goal) < _STAYS or abs(tangent @ (q - start)) < 0.5 * _FAR:
+        if (
+            not _miss(form, q, goal) < TOLERANCES.tool_stays
+            or abs(tangent @ (q - start)) < 0.5 * _FAR
+        ):
             return False
     return True

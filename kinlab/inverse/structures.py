@@ -15,6 +15,7 @@ from kinlab.inverse.closed_forms import PARALLEL, reversed_chain
 from kinlab.inverse.continuation import BOUNDS, generic_solutions
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import Axes, meeting_point
+from kinlab.tolerances import TOLERANCES
 
 WRIST, TRIPLE, POINT, PLANE, GENERAL = 0, 1, 2, 3, 4
 """Families: spherical wrist, three parallel axes, a point carried by three joints, all axes
@@ -35,9 +36,6 @@ _ENDLESS = (
     "robot {0!r}: its {1} moving joints leave J singular everywhere, so that no pose has a finite "
     "number of solutions"
 )
-
-_REGULAR = 1e-7
-"""sigma_min / sigma_max of J at states in general position below which a task cannot be held."""
 
 
 class Form(NamedTuple):
@@ -222,12 +220,15 @@ def _family(arm: Chain) -> tuple[int, int, Chain]:
 def _moves(arm: Chain, task: int) -> bool:
     """Whether no joint can do what others do: J has independent columns in general position."""
     n = len(arm.prismatic)
-    return _rank_share(arm, (0, 1, 2) if task == POSITION else (0, 1, 2, 3, 4, 5), n) > _REGULAR
+    return (
+        _rank_share(arm, (0, 1, 2) if task == POSITION else (0, 1, 2, 3, 4, 5), n)
+        > TOLERANCES.task_holds
+    )
 
 
 def _holds(arm: Chain, rows: tuple[int, ...]) -> bool:
     """Whether J has full rank in these rows at a state in general position."""
-    return _rank_share(arm, rows, len(rows)) > _REGULAR
+    return _rank_share(arm, rows, len(rows)) > TOLERANCES.task_holds
 
 
 def _rank_share(arm: Chain, rows: tuple[int, ...], rank: int) -> float:

@@ -15,14 +15,12 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.errors import StructureError, UrdfError
 from kinlab.model.urdf_records import Inertial, JointRecord, UrdfTree
+from kinlab.tolerances import TOLERANCES
 
 MOST_JOINTS = 100
 """Most moving joints of a chain: the engine's memory grows with the cube, 70 MB at 100."""
 
 _LEAST = 1e-300
-
-_MISS = 1e-9
-"""Relative difference between two readings that is still rounding."""
 
 
 def document(tree: UrdfTree, chain: list[str]) -> str:
@@ -165,7 +163,7 @@ def _compare(model: Any, tree: UrdfTree, chain: list[str], place: str) -> None:
         _same(model.jointPlacements[index].homogeneous, parent, f"{where}: placement")
         _same(_direction(model, index), _subspace(joint_record), f"{where}: axis")
         miss = np.abs(model.inertias[index].matrix() - inertias[name])
-        if np.any(miss > _MISS * np.maximum(_blocks(sizes[name]), 1e-300)):
+        if np.any(miss > TOLERANCES.urdf_echo * np.maximum(_blocks(sizes[name]), 1e-300)):
             raise UrdfError(f"{where}: Pinocchio read another mass, centre or inertia behind it")
         for key, vector in (
             ("lower", model.lowerPositionLimit),
@@ -225,5 +223,7 @@ def _subspace(joint: JointRecord) -> Array:
 
 
 def _same(read: Array, meant: Array, where: str) -> None:
-    if not np.all(np.abs(read - meant) <= _MISS * max(1.0, float(np.max(np.abs(meant))))):
+    if not np.all(
+        np.abs(read - meant) <= TOLERANCES.urdf_echo * max(1.0, float(np.max(np.abs(meant))))
+    ):
         raise UrdfError(f"{where}: Pinocchio read something else than the file says")

@@ -14,11 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot
-
-_MEET = 1e-9
-"""Metres or sine below which axes meet or are parallel, on tables with ten digits."""
-_FLAT = 1e-7
-"""Relative volume below which columns are dependent at a singularity solved to 1e-12."""
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True)
@@ -46,7 +42,10 @@ class Axes:
 
     def parallel(self, i: int, j: int) -> bool:
         """Whether axes i and j have the same direction or the opposite one."""
-        return float(np.linalg.norm(np.cross(self.direction[i], self.direction[j]))) < _MEET
+        return (
+            float(np.linalg.norm(np.cross(self.direction[i], self.direction[j])))
+            < TOLERANCES.axes_meet
+        )
 
     def column(self, i: int, at: Array) -> Array:
         """Velocity of the point ``at`` per unit speed of joint i, (3,)."""
@@ -67,7 +66,7 @@ def meeting_point(axes: Axes, joints: tuple[int, ...]) -> Array | None:
     left = np.concatenate(planes)
     right = np.concatenate([a @ p for a, p in zip(planes, axes.point[chosen], strict=True)])
     centre, *_ = np.linalg.lstsq(left, right, rcond=None)
-    return centre if float(np.linalg.norm(left @ centre - right)) < _MEET else None
+    return centre if float(np.linalg.norm(left @ centre - right)) < TOLERANCES.axes_meet else None
 
 
 def wrist_centre(axes: Axes) -> Array | None:
@@ -152,7 +151,7 @@ def _regional(axes: Axes, point: Array) -> list[str]:
         names.append("elbow")
     # the arm's plane is normal to axis 2; joint 1 must move the point out of it
     out = abs(float(columns[0] @ axes.direction[1]))
-    if out < _FLAT * float(np.linalg.norm(columns)):
+    if out < TOLERANCES.dependent * float(np.linalg.norm(columns)):
         names.append("shoulder")
     return names
 
@@ -160,7 +159,7 @@ def _regional(axes: Axes, point: Array) -> list[str]:
 def _flat(rows: Array) -> bool:
     """Whether vectors (k, 3) are linearly dependent."""
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
-    if float(lengths.min()) < _FLAT * float(lengths.max()):
+    if float(lengths.min()) < TOLERANCES.dependent * float(lengths.max()):
         return True
     values = np.linalg.svd(rows / lengths, compute_uv=False)
-    return bool(values[-1] < _FLAT)
+    return bool(values[-1] < TOLERANCES.dependent)

@@ -13,13 +13,12 @@ from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.extract import to_dh
 from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, generic_rank
+from kinlab.tolerances import TOLERANCES
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
 from kinlab.viewer.shapes import add_ellipsoids, empty_spec, look_at, set_stage
 
 _ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
-_STILL = 1e-9
-"""A row of J whose entries stay below this over random poses cannot be moved by the arm."""
 
 
 def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, Any]:
@@ -75,7 +74,7 @@ def judged_rows(robot: Robot) -> tuple[list[int], str]:
     """
     rng = np.random.default_rng(0)
     stack = jacobian(robot, rng.uniform(-1.0, 1.0, (20, robot.n)))
-    moving = [r for r in range(6) if np.abs(stack[:, r]).max() > _STILL]
+    moving = [r for r in range(6) if np.abs(stack[:, r]).max() > TOLERANCES.row_stands_still]
     linear = [r for r in moving if r < 3]
     if len(moving) > robot.n and 0 < len(linear) <= robot.n:
         moving = linear

@@ -19,8 +19,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import Chain, frames, inverse
 from kinlab.doctor.tables.words import Cause, number
 from kinlab.model.dh import DHLink, DHTable
-
-_REL = 1e-8
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +110,7 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             i + 1, link, float(bodies.mass[i]), com, 0.5 * (inertia + inertia.T), slack, poses
         )
         changes: dict[str, object] = {}
-        if abs(one.mass - link.mass) > _REL * max(one.mass, link.mass) + slack:
+        if abs(one.mass - link.mass) > TOLERANCES.same_body * max(one.mass, link.mass) + slack:
             causes.append(_mass_cause(one))
             changes["mass"] = one.mass
         massive = one.mass > 0.0
@@ -124,7 +123,7 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             causes.append(_com_cause(replace(one, com=clean, slack=slack * (table.n + 1) * size)))
             changes["com"] = clean
         limit = slack * (table.n + 1) * max(1.0, float(np.max(np.abs(inertia)))) + (
-            _REL * float(np.max(np.abs(inertia)))
+            TOLERANCES.same_body * float(np.max(np.abs(inertia)))
             + 1e-14
             + 1e-10 * float(np.max(np.abs(link.inertia)))
         )
@@ -136,7 +135,7 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
             changes["inertia"] = clean
         if bodies.armature is not None:
             meant = float(bodies.armature[i])
-            if abs(meant - link.armature) > _REL * max(meant, link.armature):
+            if abs(meant - link.armature) > TOLERANCES.same_body * max(meant, link.armature):
                 causes.append(_armature_cause(i + 1, link.armature, meant))
                 changes["armature"] = meant
         if changes:

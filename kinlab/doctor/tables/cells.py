@@ -33,7 +33,6 @@ from kinlab.doctor.tables.chain import (
 from kinlab.doctor.tables.readings import Reading
 from kinlab.doctor.tables.target import Target
 from kinlab.doctor.tables.words import (
-    EXACT,
     Cause,
     angle_cause,
     degrees,
@@ -43,6 +42,7 @@ from kinlab.doctor.tables.words import (
     tidy_length,
     wrapped,
 )
+from kinlab.tolerances import TOLERANCES
 
 _AXES = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 
@@ -153,7 +153,7 @@ def changed(first: Reading, values: dict[tuple[int, int], float], slack: float =
         written = float(chain.cells[row, column])
         name = COLUMNS[column]
         if column in (ALPHA, THETA):
-            cause = angle_cause(row + 1, name, written, value, max(slack, EXACT))
+            cause = angle_cause(row + 1, name, written, value, max(slack, TOLERANCES.solved_angle))
         else:
             slides = bool(chain.prismatic[row])
             cause = length_cause(row + 1, name, written, value, slides, slack)

@@ -24,6 +24,7 @@ from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.target import Target
 from kinlab.doctor.tables.words import pose_cause
 from kinlab.model.dh import DHTable
+from kinlab.tolerances import TOLERANCES
 
 _LARGEST = (5e-3, 5e-3)
 """Noise above this (over the arm's size, rad) is not taken for noise: something else is wrong."""
@@ -35,8 +36,6 @@ states) times the square root of their number, before it is called a slip."""
 _AS_GOOD = 12.0
 """Difference of chi-square below which two explanations count as equally good."""
 
-_EXACT = 1e-7
-"""Noise below which the poses are exact, and more than one slip can be looked for."""
 
 _CUTS = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 """Shares of the largest singular value below which a direction of the fit is left alone."""
@@ -78,7 +77,7 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
         key=lambda one: _chi(one, target, rough),
     )
     sigma, rank = _noise(full, target)
-    if max(sigma[0] / target.size, sigma[1]) < _EXACT:
+    if max(sigma[0] / target.size, sigma[1]) < TOLERANCES.exact_poses:
         return None
     if sigma[0] > _LARGEST[0] * target.size or sigma[1] > _LARGEST[1]:
         return None

@@ -15,11 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-
-_SAME = 1e-7
-"""Relative difference below which a solved number is the one that a relation gives."""
-EXACT = 1e-7
-"""rad. Slack of an angle that is solved for from exact poses."""
+from kinlab.tolerances import TOLERANCES
 
 SIX = 2.7
 """Cost of a base or tool all of whose six numbers are solved for: more than two slips of a known
@@ -124,7 +120,7 @@ def tidy_length(length: float, written: float) -> float:
 
 
 def angle_cause(
-    row: int, column: str, written: float, solved: float, slack: float = EXACT
+    row: int, column: str, written: float, solved: float, slack: float = TOLERANCES.solved_angle
 ) -> Cause:
     """Names a slip in alpha or theta.
 
@@ -166,7 +162,7 @@ def angle_cause(
             meant,
             "missing",
             f"{at} lacks {change}",
-            1.0 if _round(meant, EXACT) else 1.6,
+            1.0 if _round(meant, TOLERANCES.solved_angle) else 1.6,
         )
     kind, cost = _typed(written, meant)
     if cost > 1.7:
@@ -331,7 +327,7 @@ def _same_angle(one: float, two: float, slack: float) -> bool:
 
 
 def _close(one: float, two: float) -> bool:
-    return abs(one - two) <= _SAME * max(abs(one), abs(two)) + 1e-10
+    return abs(one - two) <= TOLERANCES.same_relation * max(abs(one), abs(two)) + 1e-10
 
 
 def _round(angle: float, slack: float) -> bool:

@@ -17,8 +17,7 @@ from kinlab.doctor.tables.cells import changed, one_change
 from kinlab.doctor.tables.chain import THETA, Chain, D, frames, inverse, tool_poses
 from kinlab.doctor.tables.readings import Reading
 from kinlab.doctor.tables.words import pose_cause, tidy_length, wrapped
-
-_LINE = 1e-8
+from kinlab.tolerances import TOLERANCES
 
 
 def same_arm(chain: Chain, reference: Reference) -> Reading | None:
@@ -97,12 +96,14 @@ def _zeros(chain: Chain, axes: ReferenceAxes) -> Chain | None:
 
 def _on(one: ReferenceAxes, two: ReferenceAxes, i: int) -> bool:
     """Whether axis i is the same line with the same sense in both."""
-    if np.max(np.abs(one.direction[i] - two.direction[i])) > _LINE:
+    if np.max(np.abs(one.direction[i] - two.direction[i])) > TOLERANCES.same_line:
         return False
     if one.slides[i]:
         return True
     gap = np.cross(one.point[i] - two.point[i], two.direction[i])
-    return bool(np.max(np.abs(gap)) < _LINE * max(1.0, float(np.max(np.abs(two.point)))))
+    return bool(
+        np.max(np.abs(gap)) < TOLERANCES.same_line * max(1.0, float(np.max(np.abs(two.point))))
+    )
 
 
 def _change(mine: ReferenceAxes, axes: ReferenceAxes, i: int) -> float | None:
@@ -233,4 +234,4 @@ def _tells(axes: ReferenceAxes, i: int) -> bool:
     if any(axes.slides[k] for k in near):
         return False
     normals = [np.cross(axes.direction[k], axes.direction[k + 1]) for k in near[:-1]]
-    return all(float(np.linalg.norm(normal)) > _LINE for normal in normals)
+    return all(float(np.linalg.norm(normal)) > TOLERANCES.same_line for normal in normals)
