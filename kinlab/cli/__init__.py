@@ -24,9 +24,11 @@ One file per group of commands; a new command is a new file and one line in ``_G
 from __future__ import annotations
 
 import io
+import os
 import signal
 import sys
 import threading
+from types import FrameType
 from typing import Any
 
 import typer
@@ -44,6 +46,9 @@ _GROUPS = (
     fivebar,
     view,
 )
+
+_IMPORTING = "<frozen importlib._bootstrap>"
+"""The file of the frames in which Python imports a module."""
 
 app = typer.Typer(
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",
@@ -70,6 +75,8 @@ def main() -> None:
             stream.reconfigure(errors="backslashreplace")
     in_front = threading.current_thread() is threading.main_thread()
     before = signal.signal(signal.SIGTERM, _stop) if in_front else None
+    if in_front and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupt)
     try:
         app()
     except KinlabError as problem:
@@ -87,6 +94,22 @@ def main() -> None:
     finally:
         if before is not None:
             signal.signal(signal.SIGTERM, before)
+        if in_front and signal.getsignal(signal.SIGINT) is _interrupt:
+            signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _interrupt(number: int, frame: FrameType | None) -> None:
+    """Ctrl-C, which ends the program at once while modules are being imported.
+
+    Some of those that we import catch every exception of their own imports, this one among them,
+    and go on as if nothing had been asked; nothing has to be cleaned up there.
+    """
+    while frame is not None:
+        if frame.f_code.co_filename == _IMPORTING:
+            os.write(2, b"kinlab: stopped\n")
+            os._exit(130)
+        frame = frame.f_back
+    signal.default_int_handler(number, frame)
 
 
 def _stop(number: int, frame: Any) -> None:

@@ -7,10 +7,13 @@ other exception), and what only the pool can see: ``crash`` and ``hang``.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import functools
 import json
 import os
 import pickle
+import random
 import resource
 import select
 import struct
@@ -194,6 +197,42 @@ def demand(
     if any(kind in bad for kind, _ in outcomes):
         raise AssertionError(shown(labels, outcomes, bad))
     return tally(outcomes)
+
+
+def some(jobs: dict[str, Any], short: int, always: Sequence[str] = ()) -> dict[str, Any]:
+    """The jobs of a run: all in the long mode, else the ones named and others drawn by the seed."""
+    rest = [name for name in jobs if name not in always]
+    drawn = random.Random(SEED).sample(rest, min(len(rest), count(short)))
+    return {name: job for name, job in jobs.items() if name in always or name in drawn}
+
+
+@functools.cache
+def _kept(judge: str) -> list[_Worker]:
+    return []
+
+
+def demand_one(judge: str, label: str, case: Any, *, seconds: float = 30.0) -> str:
+    """Judges one case, for Hypothesis; the worker is kept for the next one.
+
+    Returns:
+        The outcome.
+
+    Raises:
+        AssertionError: it is a bad one.
+    """
+    kept = _kept(judge)
+    if not kept or not kept[0].alive():
+        kept[:] = [_Worker(judge)]
+        atexit.register(kept[0].close)
+    kind, detail = kept[0].ask(case, seconds) or ("crash", "")
+    if kind in BAD:
+        raise AssertionError(f"KINLAB_FUZZ_SEED={SEED}; {label[:300]}\n{kind}: {detail}")
+    return kind
+
+
+def seeded(seed: int) -> int:
+    """A case's seed within this run's."""
+    return (SEED << 32) + seed
 
 
 def last_line() -> str:

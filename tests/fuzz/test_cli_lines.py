@@ -22,15 +22,15 @@ def test_known():
 
 
 def test_names():
-    fuzz_pool.demand("cli_cases:judge", cli_cases.named(fuzz_pool.SEED + 40, fuzz_pool.count(60)))
+    fuzz_pool.demand("cli_cases:judge", cli_cases.named(fuzz_pool.SEED + 40, fuzz_pool.count(16)))
 
 
 def test_paths():
     cases = cli_cases.paths()
     random.Random(fuzz_pool.SEED + 41).shuffle(cases)
-    fuzz_pool.demand("cli_cases:judge", cases[: fuzz_pool.count(50)], seconds=15)
+    fuzz_pool.demand("cli_cases:judge", cases[: fuzz_pool.count(24)], seconds=15)
 
 
 def test_random_lines():
-    cases = cli_cases.random_lines(fuzz_pool.SEED + 42, fuzz_pool.count(80))
+    cases = cli_cases.random_lines(fuzz_pool.SEED + 42, fuzz_pool.count(20))
     fuzz_pool.demand("cli_cases:judge", cases, seconds=60)

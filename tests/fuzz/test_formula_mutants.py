@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import formula_cases
 import fuzz_pool
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 KNOWN = {
     "g2": [
@@ -43,12 +45,19 @@ def test_known():
 
 
 def test_text():
-    cases = formula_cases.cases(fuzz_pool.SEED + 20, fuzz_pool.count(24), typeset=False)
+    cases = formula_cases.cases(fuzz_pool.SEED + 20, fuzz_pool.count(10), typeset=False)
     found = fuzz_pool.demand("formula_cases:judge", cases)
     assert found["right"] > len(cases) / 2
 
 
 def test_latex():
-    cases = formula_cases.cases(fuzz_pool.SEED + 21, fuzz_pool.count(12), typeset=True)
+    cases = formula_cases.cases(fuzz_pool.SEED + 21, fuzz_pool.count(5), typeset=True)
     found = fuzz_pool.demand("formula_cases:judge", cases)
     assert found["right"] > len(cases) / 2
+
+
+@settings(max_examples=fuzz_pool.count(10))
+@given(st.integers(0, 2**32 - 1), st.booleans())
+def test_any_formula(seed, typeset):
+    [(label, case)] = formula_cases.cases(fuzz_pool.seeded(seed), 1, typeset=typeset)
+    fuzz_pool.demand_one("formula_cases:judge", label, case)

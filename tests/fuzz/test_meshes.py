@@ -7,5 +7,5 @@ import mesh_cases
 
 
 def test_meshes():
-    cases = mesh_cases.cases(fuzz_pool.SEED + 50, fuzz_pool.count(60))
+    cases = mesh_cases.cases(fuzz_pool.SEED + 50, fuzz_pool.count(30))
     fuzz_pool.demand("mesh_cases:judge", cases)

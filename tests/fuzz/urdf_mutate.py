@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import functools
 import importlib.util
 import random
 import xml.etree.ElementTree as ET
@@ -233,6 +234,7 @@ def textual(rng: random.Random, text: str) -> tuple[str, str]:
     return text.replace("<robot ", '<robot xmlns="http://u" ', 1), "a namespace"
 
 
+@functools.cache
 def sources() -> list[tuple[str, str, str | None]]:
     """Name, text and tool of what is mutated."""
     out: list[tuple[str, str, str | None]] = [
