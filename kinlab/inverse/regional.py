@@ -5,8 +5,8 @@ along it: trigonometric polynomials of degree two at most, read off 25 samples. 
 Jacobian determinant the arm is singular where D = 0. There the map has a cusp where D is stationary
 along the kernel too: three solutions run together. Where D itself is stationary, singular curves
 cross in joint space and the arm is not generic. Both sets are enclosed in boxes of the whole torus
-of joints 2 and 3, so that none is missed; each is then solved to rounding. A node is a point of the
-section that two singular configurations share.
+of joints 2 and 3, so that none is missed (two within 0.02 rad may count as one); each is solved to
+rounding. A node is a point of the section that two singular configurations share.
 
 El Omri & Wenger, "How to recognize simply a non-singular posture changing 3-DOF manipulator", ICAR
 1995; Baili, Wenger & Chablat, "Kinematic analysis of a family of 3R manipulators", IFToMM Problems
@@ -119,8 +119,8 @@ class SingularPoints:
 
     Attributes:
         cusps: joints 2 and 3, (K, 2). crossings: where singular curves cross in joint space.
-        complete: the boxes show that there are no others; False: zeros may be missing, as where
-            they are curves.
+        complete: the boxes show that there are no others but within 0.02 rad of these; False:
+            zeros may be missing, as where they are curves.
     """
 
     cusps: Array

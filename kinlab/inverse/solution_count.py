@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
+from kinlab.arrays import real_array, whole
 from kinlab.inverse.branches import IKBranches, ik_branches
 from kinlab.inverse.families import IKFamily
-from kinlab.model.robot import Robot
+from kinlab.model.robot import Robot, require_robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,9 +79,12 @@ def solution_count(robot: Robot, T: ArrayLike, *, threads: int | None = None) ->
         :class:`SolutionCount`, or :class:`SolutionCounts` for a stack.
 
     Raises:
-        StateError, StructureError: as :func:`kinlab.ik_branches`.
+        StateError, StructureError: as :func:`kinlab.ik_branches`. OptionError: bad threads.
     """
-    found = ik_branches(robot, T, threads=threads)
+    require_robot(robot)
+    poses = real_array(T, f"robot {robot.name!r}: T")
+    workers = None if threads is None else whole(threads, "threads")
+    found = ik_branches(robot, poses, threads=workers)
     if isinstance(found, IKBranches):
         return _of_one(found)
     inside = np.asarray(found.within_limits).sum(axis=1)
