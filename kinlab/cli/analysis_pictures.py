@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
-    from kinlab.inverse.solution_map import SolutionMap
     from kinlab.model.robot import Robot
+    from kinlab.postures.solution_map import SolutionMap
     from kinlab.sweeps.workspace import WorkspaceMap
 
 

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.inverse.solution_map import SolutionMap
 from kinlab.plots.canvas import RED, new_axes
+from kinlab.postures.solution_map import SolutionMap
 
 _LABELS = {"rho": "distance from the first axis [m]", "z": "along the first axis [m]",
            "x": "x [m]", "y": "y [m]"}  # fmt: skip

@@ -13,9 +13,9 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.stacks import fk, jacobian
-from kinlab.inverse.cuspidality import is_cuspidal
-from kinlab.inverse.path import ik_path
 from kinlab.model.robot import Robot
+from kinlab.postures.cuspidality import is_cuspidal
+from kinlab.postures.path import ik_path
 from kinlab.viewer.arm import reach
 from kinlab.viewer.arm_page import judged_rows
 

@@ -13,7 +13,7 @@ ROOMS = sorted(file.parent for file in PACKAGE.rglob("__init__.py") if file.pare
 MARKERS = {"__init__.py", "__init__.pyi", "__main__.py", "py.typed", "__pycache__", "robots"}
 """What Python (and a wheel) asks for at the top, beside the house itself."""
 
-CROWDED = {"analysis": 18, "inverse": 18, "tables": 14, "viewer": 14}
+CROWDED = {"analysis": 18, "inverse": 15, "tables": 14, "viewer": 14}
 """Rooms above :data:`MOST` files; a number here may only become smaller,
 and a room that has come down to it leaves the list."""
 

@@ -3,7 +3,7 @@
 Two solutions of one pose on one side of every factor of det J may lie in one aspect. Between such
 pairs a path is sought, along straight lines first and then through a roadmap of sampled joint
 positions; it counts only when it is shown to stay clear of singularities between its samples
-(:mod:`kinlab.inverse.nonsingular`). Nothing is concluded from signs of det J at samples.
+(:mod:`kinlab.postures.nonsingular`). Nothing is concluded from signs of det J at samples.
 
 Wenger, "Uniqueness domains and regions of feasible paths for cuspidal manipulators", IEEE Trans.
 Robotics 20(4), 2004; Salunkhe, Spartalis, Capco, Chablat & Wenger, "Necessary and sufficient
@@ -27,10 +27,10 @@ from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
 from kinlab.fast.stacks import fk
 from kinlab.inverse.branches import ik_branches
-from kinlab.inverse.nonsingular import NonsingularPath, same_sign, show_nonsingular
-from kinlab.inverse.regional import Regional, first_axis, is_regional, singular_points
-from kinlab.inverse.roadmap import Roadmap
 from kinlab.model.robot import Robot, require_robot
+from kinlab.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
+from kinlab.postures.regional import Regional, first_axis, is_regional, singular_points
+from kinlab.postures.roadmap import Roadmap
 from kinlab.structure.task_space import TaskSpace, read_task, revolute, search_box
 
 CUSPIDAL, NONE_FOUND = "cuspidal", "none found"

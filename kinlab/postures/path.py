@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError
 from kinlab.fast.stacks import jacobian
-from kinlab.inverse.posture_change import PostureChange, posture_changes
 from kinlab.inverse.request import positive, read_guess, read_targets
 from kinlab.inverse.result import IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
 from kinlab.model.robot import Robot, require_robot
+from kinlab.postures.posture_change import PostureChange, posture_changes
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""

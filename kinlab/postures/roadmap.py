@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.inverse.nonsingular import NonsingularPath, same_sign, show_nonsingular
+from kinlab.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
 from kinlab.structure.task_space import TaskSpace, revolute
 
 _NEIGHBOURS = 12

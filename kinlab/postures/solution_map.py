@@ -11,7 +11,8 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array, number, whole
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk
-from kinlab.inverse.regional import (
+from kinlab.model.robot import Robot, require_robot
+from kinlab.postures.regional import (
     Regional,
     collapsed_points,
     first_axis,
@@ -20,8 +21,7 @@ from kinlab.inverse.regional import (
     singular_points,
     singular_segments,
 )
-from kinlab.inverse.solution_count import SolutionCounts, solution_count
-from kinlab.model.robot import Robot, require_robot
+from kinlab.postures.solution_count import SolutionCounts, solution_count
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import read_task, revolute
 

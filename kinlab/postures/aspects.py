@@ -23,8 +23,8 @@ from kinlab.analysis.minors import Factor, factors
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.inverse.cuspidality import square_task, yes_or_no
 from kinlab.model.robot import Robot, require_robot
+from kinlab.postures.cuspidality import square_task, yes_or_no
 from kinlab.structure.task_space import revolute
 
 _MOST_JOINTS = 3
