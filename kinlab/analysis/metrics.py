@@ -43,7 +43,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, real_array
+from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
@@ -355,8 +355,7 @@ def ellipsoid(
         StateError, NameUnknownError, OptionError: bad q, unknown kind or task, length <= 0.
         InertiaError: ``"dynamic"`` of a robot with a singular mass matrix.
     """
-    if kind not in ELLIPSOIDS:
-        raise NameUnknownError(f"ellipsoid {kind!r} is unknown; {near(str(kind), ELLIPSOIDS)}")
+    kind = word(kind, ELLIPSOIDS, "ellipsoid")
     space, size = read_task(robot, task), read_length(length)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:

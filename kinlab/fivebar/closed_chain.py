@@ -68,7 +68,10 @@ def _newton(
         if left > 0.5 * before:  # not converging, or as near as rounding lets it
             return x if left <= tolerance else None
         before = left
-        x = x - np.linalg.solve(slope, value - goal)
+        try:
+            x = x - np.linalg.solve(slope, value - goal)
+        except np.linalg.LinAlgError:  # singular to the last bit
+            return None
         if not inside(x):
             return None
     return None

@@ -149,7 +149,8 @@ def ik_branches(
     """
     require_robot(robot)
     held = () if given is None else _read_given(robot, given)
-    if np.ndim(T) == 3:
+    T = T if isinstance(T, np.ndarray) else real_array(T, f"robot {robot.name!r}: T")
+    if T.ndim == 3:
         targets = read_targets(robot, T)
         return _many(robot, held, targets, samples, threads)
     target = read_target(robot, T)

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, shown
 from kinlab.errors import OptionError
 from kinlab.fast.compiled import kernel as compiled
 from kinlab.fast.stacks import jacobian
@@ -116,12 +116,15 @@ def ik(
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
+    if not isinstance(history, (bool, np.bool_)):
+        raise OptionError(f"history is {shown(history)}; give True or False")
     if branch is not None:
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")
         return _on_branch(robot, asked, branch)
     arm, tolerance = setup(robot, task, asked.seed, max(asked.searches, STARTS)), asked.tolerances
-    plain = method == "lm" and isinstance(alpha, str) and alpha == "exact"
+    texts = isinstance(method, str) and isinstance(alpha, str)
+    plain = texts and method == "lm" and alpha == "exact"
     if plain and not history and tol_step is None:
         q, outcome, errors = _search(robot, arm, asked, 1)
         record = None

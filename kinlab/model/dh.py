@@ -67,7 +67,10 @@ class DHTable:
         if not isinstance(self.source, str):
             raise TableError(f"{place}: source is {shown(self.source)}; it must be text")
         convention = read_convention(self.convention, place)
-        links = tuple(self.links)
+        try:
+            links = tuple(self.links)
+        except TypeError:
+            raise TableError(f"{place}: links is {shown(self.links)}; give DHLinks") from None
         if not links:
             raise TableError(f"{place}: it has no links")
         if len(links) > table_io.MOST_LINKS:

@@ -37,11 +37,11 @@ def read_convention(value: object, place: str) -> Convention:
         TableError: missing or unknown, with ``place`` in front.
     """
     choices = 'choose "standard" or "modified"'
-    if value is None or value == "":
+    if value is None or (isinstance(value, str) and not value):
         raise TableError(f"{place}: convention is missing; {choices}")
     if isinstance(value, str) and value in tuple(Convention):
         return Convention(value)
-    raise TableError(f"{place}: convention {value!r} is unknown; {choices}")
+    raise TableError(f"{place}: convention {shown(value)} is unknown; {choices}")
 
 
 # -------- What an inertia tensor can be

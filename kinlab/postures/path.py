@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, seed_of
 from kinlab.errors import NameUnknownError
 from kinlab.fast.stacks import jacobian
 from kinlab.inverse.request import positive, read_guess, read_targets
@@ -90,6 +90,7 @@ def ik_path(
     targets = read_targets(robot, Ts)
     here, remarks = read_guess(robot, q0)
     largest = positive(max_step, "max_step")
+    seed = seed_of(seed)
     arm = setup(robot, task, seed)
     answers: list[IKResult] = []
     jumps = []

@@ -530,7 +530,9 @@ def judge(case: tuple[str, str, str]) -> tuple[str, str]:
             return "right", "left out"
         return "wrong", f"accepted: {str(answer)[:80]!r}"
     if kind == "far":
-        finite = all(np.isfinite(x).all() for x in have)
+        # at a singular q the force ellipsoid has an endless half axis, and that is right
+        sound = (lambda x: ~np.isnan(x)) if name == "ellipsoid" else np.isfinite
+        finite = all(sound(x).all() for x in have)
         clean_finite = all(np.isfinite(x).all() for x in _clean_answer(name))
         return (
             ("right", "")
