@@ -57,6 +57,13 @@ square root, some 1e-8."""
 _SHARP = 1e-12
 """A candidate that is this good needs no sharpening."""
 
+_BESIDE = 1e-5
+"""Of its distance from joint 1: a wrist this near to the first axis has branches that rounding
+may lose."""
+
+_STRAYED = 1e-3
+"""Radians or metres that sharpening may move a candidate which was already close."""
+
 _STRAIGHT = 1e-7
 """Metres or sines below which a branch has neither one name nor the other."""
 
@@ -229,6 +236,22 @@ def _same(prismatic, a, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _beside_axis(axis, centre, goal):  # type: ignore[no-untyped-def]
+    """Whether a point of the tool lies on the first axis, or too near to tell its sides apart."""
+    away = np.empty(3)
+    for i in range(3):
+        away[i] = goal[4 * i + 3] - axis[4 * i + 3]
+        for j in range(3):
+            away[i] += goal[4 * i + j] * centre[j]
+    along = axis[2] * away[0] + axis[6] * away[1] + axis[10] * away[2]
+    square = away[0] ** 2 + away[1] ** 2 + away[2] ** 2
+    across = 0.0
+    for i in range(3):
+        across += (away[i] - along * axis[4 * i + 2]) ** 2
+    return across < (_BESIDE * _BESIDE) * square
+
+
+@kernel
 def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, states, first, last):  # type: ignore[no-untyped-def]
     """All branches of rows first to last - 1, each on its own.
 
@@ -244,7 +267,7 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
         first, last: range of rows.
     """
     n, m = form.real, form.prismatic.shape[0]
-    candidates, found = np.zeros((MOST, m)), np.empty((8, 6))
+    candidates, found, start = np.zeros((MOST, m)), np.empty((8, 6)), np.empty(m)
     places, flat = np.empty((4, 3)), np.empty((2, m))
     axes, arm_axes, pose = np.empty((m, 6)), np.empty((n, 6)), np.empty(12)
     jac, order = np.zeros((6, m)), np.empty(6, np.int64)
@@ -304,21 +327,34 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
                     if how[i] == SINGULAR_END:
                         state |= DOUBLE
                     number += 1
+        if form.family == WRIST and _beside_axis(fixed[0], form.centre_tool, goal):
+            state |= UNDECIDED
+        if form.family == POINT and _beside_axis(form.fixed[0], np.zeros(3), target):
+            state |= UNDECIDED
         count = 0
         for i in range(number):
             trial = candidates[i]
             frames(form.arm_fixed, form.arm_prismatic, trial, arm_axes, pose)
             position, rotation = miss(form.task, pose, target, r, e)
-            rough = form.family == GENERAL or max(position, rotation) > _SHARP
+            before = max(position, rotation)
+            rough = form.family == GENERAL or before > _SHARP
             if rough and form.family != PLANE:
+                start[:] = trial
                 sharpen(form.fixed, form.prismatic, target, trial, axes, pose, jac, order, r, e)
                 frames(form.arm_fixed, form.arm_prismatic, trial, arm_axes, pose)
                 position, rotation = miss(form.task, pose, target, r, e)
             error = max(position, rotation)
             if not error <= TOLERANCE:
-                if error < _CLOSE and not form.real < m:
+                near = min(before, error) < _CLOSE and not form.real < m
+                if near or state & DOUBLE:
                     state |= UNDECIDED
                 continue
+            if rough and form.family != PLANE and form.family != GENERAL and before < _CLOSE:
+                # sharpening beside a singular pose may end at another branch: the one it came
+                # from is then neither found nor dismissed
+                for j in range(m):
+                    if abs(trial[j] - start[j]) > _STRAYED:
+                        state |= UNDECIDED
             wrap(form.arm_prismatic, lower, upper, centre, trial[:n])
             nothing = False
             for j in range(count):

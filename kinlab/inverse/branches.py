@@ -203,8 +203,10 @@ def _answer(
         names = tuple(name for name, kept in zip(names, keep, strict=True) if kept)
         why = f"a solution of the compiled chain misses {TOLERANCE:g} by Pinocchio"
     elif state:
-        families = families_at(robot, arm.known.form, arm.joints, q, goal)
-        complete = state == DOUBLE and not families
+        # a closed form flags its singular branches itself; beside them there is no family
+        if state != UNDECIDED or arm.known.form.family == GENERAL:
+            families = families_at(robot, arm.known.form, arm.joints, q, goal)
+        complete = state == DOUBLE and not families and len(q) > 0
         why = _doubts(state, families, why)
     return IKBranches(
         q,
@@ -400,7 +402,7 @@ def _arm(robot: Robot, held: tuple[tuple[int, float], ...]) -> _Arm:
             upper,
             np.clip(0.0, lower, upper),
             words_of(known.form),
-            free == 0,
+            free == 0 and known.sure,
         )
     return found
 

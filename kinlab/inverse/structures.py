@@ -74,17 +74,24 @@ class Form(NamedTuple):
 
 
 class Known(NamedTuple):
-    """What is kept of an arm: its form, what it is called, what its completeness rests on."""
+    """What is kept of an arm: its form, what it is called, what its completeness rests on.
+
+    ``sure`` is false where branches may be missing at any pose; the evidence says why.
+    """
 
     form: Form
     method: str
     evidence: str
     solutions: int
+    sure: bool
 
 
 _FORMS: WeakKeyDictionary[Robot, dict[tuple[tuple[int, float], ...], Known]] = WeakKeyDictionary()
 
 _KEPT = 64
+
+_ROUNDING, _NEARLY = 1e-12, 3e-4
+"""Between these, of the arm's size or as a sine, axes meet or are parallel only nearly."""
 
 
 def known_form(robot: Robot, given: tuple[tuple[int, float], ...] = ()) -> Known:
@@ -172,6 +179,9 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
             else (f"{generic.quiet} loops of the pose in a row brought no further one")
         )
         evidence = f"{count} solutions in complex joints at a generic pose ({why}), each followed"
+    doubt = _doubt(arm, family, count)
+    if doubt:
+        evidence = f"{evidence}; {doubt}"
     back, kinds = np.empty_like(solved.fixed), np.empty_like(solved.prismatic)
     reversed_chain(solved.fixed, solved.prismatic, back, kinds)
     form = Form(
@@ -192,7 +202,49 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
         starts,
         length,
     )
-    return Known(form, _METHODS[family], evidence, count)
+    return Known(form, _METHODS[family], evidence, count, not doubt)
+
+
+def _doubt(arm: Chain, family: int, count: int) -> str:
+    """Why branches of this arm may be missing at any pose, or nothing.
+
+    Real solutions are even in number and complex ones come in pairs, so an odd count lacks one.
+    Where axes nearly meet or are nearly parallel, solutions crowd together: loops of the pose may
+    not tell them apart, and a closed form of the exact arm is not this arm's.
+    """
+    if family == GENERAL and count % 2 == 1:
+        return "an odd count, so that some may be missing"
+    full = family == GENERAL and count >= BOUNDS.get(int(np.sum(arm.prismatic)), 2)
+    if full or family == PLANE:
+        return ""
+    steps, turns = steps_of(arm.fixed), ~arm.prismatic
+    lines, pose = [], np.eye(4)
+    for step in steps[:-1]:
+        pose = pose @ step
+        lines.append((pose[:3, 3].copy(), pose[:3, 2].copy()))
+    size = max(float(np.linalg.norm(arm.fixed[1:, [3, 7, 11]], axis=1).sum()), 1e-9)
+    feet: list[Array | None] = []
+    for i in range(len(lines) - 1):
+        (p, u), (o, w) = lines[i], lines[i + 1]
+        normal = np.cross(u, w)
+        sine = float(np.linalg.norm(normal))
+        if _ROUNDING < sine < _NEARLY:
+            return f"axes {i + 1} and {i + 2} are nearly parallel, so that some may be missing"
+        foot = None
+        if sine >= _NEARLY and turns[i] and turns[i + 1]:
+            gap = abs(float(normal @ (o - p))) / sine
+            if _ROUNDING * size < gap < _NEARLY * size:
+                return f"axes {i + 1} and {i + 2} nearly meet, so that some may be missing"
+            if gap <= _ROUNDING * size:
+                foot = p + u * float(np.cross(o - p, w) @ normal) / sine**2
+        feet.append(foot)
+    for i in range(len(feet) - 1):
+        one, other = feet[i], feet[i + 1]
+        if one is not None and other is not None:
+            gap = float(np.linalg.norm(one - other))
+            if _ROUNDING * size < gap < _NEARLY * size:
+                return f"axes {i + 1} to {i + 3} nearly meet, so that some may be missing"
+    return ""
 
 
 def _family(arm: Chain) -> tuple[int, int, Chain]:
