@@ -12,6 +12,7 @@ import os
 import signal
 import sys
 import warnings
+import weakref
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
@@ -51,9 +52,14 @@ class Guest:
         self._pipe: Any = None
         if not Path(path).is_file():
             raise FileError(f"{path}: no such file")
-        records = self._start()
-        self.formulas = [
-            replace(record, function=_Call(self, k, record.id)) for k, record in enumerate(records)
+        self._records = self._start()
+
+    @property
+    def formulas(self) -> list[Formula]:
+        """The marked functions; the process ends when neither they nor this are in use."""
+        return [
+            replace(record, function=_Call(self, k, record.id))
+            for k, record in enumerate(self._records)
         ]
 
     def call(self, index: int, name: str, stacks: tuple[Array, ...]) -> Any:
@@ -89,6 +95,7 @@ class Guest:
             process.start()
         other.close()
         self._process = process
+        weakref.finalize(self, process.kill)
         records: list[Formula] = self._answer(self._path, load=True)
         return records
 

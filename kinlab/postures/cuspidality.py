@@ -189,6 +189,7 @@ def posture_path(
         if outside.any():
             joint = robot.joint_names[int(np.argmax(outside))]
             raise StateError(f"robot {robot.name!r}: {name} is outside the limits of {joint}")
+    rng, nodes = np.random.default_rng(seed_of(seed)), whole(nodes, "nodes")
     parts = factors(space) or ()
     side = _sides(space, parts, ends)
     if side[0] != side[1]:
@@ -197,8 +198,7 @@ def posture_path(
     quiet: Progress = lambda what, done, total: None  # noqa: E731
     path = _straight(space, pairs, low, high, quiet)
     if path is None:
-        rng = np.random.default_rng(seed_of(seed))
-        path = _by_roadmap(space, parts, pairs, low, high, whole(nodes, "nodes"), rng, quiet)
+        path = _by_roadmap(space, parts, pairs, low, high, nodes, rng, quiet)
     return path
 
 

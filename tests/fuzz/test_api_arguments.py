@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+
 import api_cases
 import fuzz_pool
 
@@ -17,7 +19,8 @@ def test_every_public_function_is_attacked():
     attacked = {function for function, _ in api_cases.CALLS.values()}
     left = {"Comparison", "Convention", "KinlabError", "Robot", "SweepResult", "WorkspaceMap",
             "__version__", "errors", "hand_formula", "view", "viewer"}  # fmt: skip
-    assert set(kl.__all__) - attacked <= left
+    rooms = {name for name in kl.__all__ if inspect.ismodule(getattr(kl, name))}
+    assert set(kl.__all__) - attacked - rooms <= left
 
 
 def test_hostile_arguments():

@@ -158,6 +158,15 @@ def _save(folder: Path, words: list[str]) -> tuple[int, str]:
 
     from kinlab.cli import main
 
+    if any(
+        word.endswith(".py") for word in words
+    ):  # run in a child, which must not be the browser's
+        command = [sys.executable, "-m", "kinlab", *words]
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+        done = subprocess.run(
+            command, cwd=folder, env=environment, capture_output=True, text=True, check=False
+        )
+        return done.returncode, done.stdout + done.stderr
     printed, before, place = io.StringIO(), sys.argv, os.getcwd()  # noqa: PTH109
     try:
         os.chdir(folder)
