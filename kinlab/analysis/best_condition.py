@@ -171,9 +171,14 @@ def _follow(space: TaskSpace, length: float | None, x: Array) -> tuple[Array, fl
 
     for power in _POWERS:
         answer = minimize(
-            cost, x, args=(power,), jac=True, method="L-BFGS-B", bounds=bounds,
+            cost,
+            x,
+            args=(power,),
+            jac=True,
+            method="L-BFGS-B",
+            bounds=bounds,
             options={"maxiter": 300, "ftol": 1e-15},
-        )  # fmt: skip
+        )
         x = answer.x
     n = space.robot.n
     if len(x) > n:

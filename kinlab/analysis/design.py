@@ -147,15 +147,23 @@ def design_isotropic(
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     finite = condition[sound & np.isfinite(condition)]
     return DesignSearch(
-        space.name, space.suggested, how,
+        space.name,
+        space.suggested,
+        how,
         "sum of the open lengths kept" if system.scalable else "set by the numbers that stay",
-        designs, float(finite.min(initial=np.inf)), seeds, int(accepted.sum()), seed,
+        designs,
+        float(finite.min(initial=np.inf)),
+        seeds,
+        int(accepted.sum()),
+        seed,
         Evidence(
-            f"{seeds} starts in the open numbers and q (seed {seed})", int(accepted.sum()), seeds,
+            f"{seeds} starts in the open numbers and q (seed {seed})",
+            int(accepted.sum()),
+            seeds,
             "every listed design is isotropic to 1e-8 by the engine" if designs else "",
             "that there is no other design" if designs else "that no such design exists",
         ),
-    )  # fmt: skip
+    )
 
 
 def _designs(

@@ -119,14 +119,19 @@ def factored_determinant(robot: Robot, task: Any = "auto", *, seed: int = 0) -> 
         if expression in singular
     )
     return FactoredDeterminant(
-        robot.name, space.name, space.suggested, derived.expression, factors, derived.complete,
+        robot.name,
+        space.name,
+        space.suggested,
+        derived.expression,
+        factors,
+        derived.complete,
         symbolic.to_function(arm, derived.expression),
         Evidence(
             f"{_STARTS} starts for the zeros of each factor (seed {seed})",
             proved="det J is the product, by exact algebra on the table's numbers",
             found="what the zeros of a factor mean, from a few of them; which have none",
         ),
-    )  # fmt: skip
+    )
 
 
 def vanishing_factors(
@@ -139,9 +144,10 @@ def vanishing_factors(
     """
     state = joint_vector(robot, q, "q")
     return tuple(
-        f for f in determinant.factors
+        f
+        for f in determinant.factors
         if abs(float(f.function(state))) <= 1e-8 * _size(robot, f.function)
-    )  # fmt: skip
+    )
 
 
 def _meaning(
@@ -162,9 +168,10 @@ def _meaning(
     examples = [describe_singularity(robot, q, mask) for q in zeros]
     meaning = "/".join(sorted({e.kind for e in examples})) or "never zero"
     names = tuple(
-        name for name, q in zip(robot.joint_names, arm.q, strict=True)
+        name
+        for name, q in zip(robot.joint_names, arm.q, strict=True)
         if q in expression.free_symbols
-    )  # fmt: skip
+    )
     return SingularFactor(
         expression,
         power,

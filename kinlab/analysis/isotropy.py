@@ -157,19 +157,32 @@ def find_isotropic(
         spread = (float(low), float(middle), float(high))
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     return IsotropySearch(
-        robot.name, space.name, space.rows, space.suggested, how, configurations, best_q,
-        best_condition, best_length, seeds, seed, int(isotropic.sum()), spread,
+        robot.name,
+        space.name,
+        space.rows,
+        space.suggested,
+        how,
+        configurations,
+        best_q,
+        best_condition,
+        best_length,
+        seeds,
+        seed,
+        int(isotropic.sum()),
+        spread,
         _evidence(seeds, seed, int(isotropic.sum()), least),
-    )  # fmt: skip
+    )
 
 
 def _evidence(seeds: int, seed: int, met: int, least: LeastCondition | None) -> Evidence:
     if least is None:
         return Evidence(
-            f"{seeds} starts within the limits (seed {seed})", met, seeds,
+            f"{seeds} starts within the limits (seed {seed})",
+            met,
+            seeds,
             f"J J^T = a 1 to {ISOTROPIC:g} at every listed configuration",
             "that there is no other family",
-        )  # fmt: skip
+        )
     # no start of N ended lower: with a share p of such starts the chance of that is (1 - p)^N
     share = 1.0 - 0.05 ** (1.0 / least.starts)
     stopped = "once it was met often enough" if least.met >= ENOUGH else "at the end"

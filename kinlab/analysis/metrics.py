@@ -216,9 +216,14 @@ def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.
     numbers = {name: float(KINDS[name](sigma)) for name in KINDS if name != "asada"}
     rank = int(np.sum(sigma > SINGULAR * sigma[0])) if sigma[0] > 0.0 else 0
     return Dexterity(
-        space.name, space.suggested, size if space.mixed else None, sigma,
-        condition=float(condition_number(sigma)), rank=rank, **numbers,
-    )  # fmt: skip
+        space.name,
+        space.suggested,
+        size if space.mixed else None,
+        sigma,
+        condition=float(condition_number(sigma)),
+        rank=rank,
+        **numbers,
+    )
 
 
 SINGULAR = 1e-10
@@ -371,6 +376,10 @@ def ellipsoid(
         inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
         left, sigma = left[:, ::-1], inverse[::-1]
     return Ellipsoid(
-        kind, space.name, space.suggested, size if space.mixed else None, frozen(left),
+        kind,
+        space.name,
+        space.suggested,
+        size if space.mixed else None,
+        frozen(left),
         frozen(sigma),
-    )  # fmt: skip
+    )

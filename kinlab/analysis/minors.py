@@ -245,9 +245,12 @@ def _work_out(space: TaskSpace) -> tuple[Factor, ...] | None:
     for i, inverse in enumerate(inverses):
         tensor = np.moveaxis(np.tensordot(inverse, tensor, axes=(1, i)), 0, i)
     return _split(
-        joints, tuple(degrees[i] for i in joints), tuple(bool(turns[i]) for i in joints), tensor,
+        joints,
+        tuple(degrees[i] for i in joints),
+        tuple(bool(turns[i]) for i in joints),
+        tensor,
         robot.n - space.m + 1,
-    )  # fmt: skip
+    )
 
 
 def _minors(space: TaskSpace, q: Array, columns: list[tuple[int, ...]]) -> Array:
@@ -292,9 +295,12 @@ def _line(robot: Robot, i: int, turns: bool, count: int) -> tuple[Array, Array]:
 
 
 def _split(
-    joints: tuple[int, ...], degrees: tuple[int, ...], turns: tuple[bool, ...], tensor: Array,
+    joints: tuple[int, ...],
+    degrees: tuple[int, ...],
+    turns: tuple[bool, ...],
+    tensor: Array,
     codimension: int,
-) -> tuple[Factor, ...]:  # fmt: skip
+) -> tuple[Factor, ...]:
     """Takes factors over separate groups of joints apart."""
     d = len(joints)
     if not d:
@@ -312,9 +318,14 @@ def _split(
                     quotient = quotient[(slice(None),) * i + (0,)]
                 return (
                     Factor((joints[i],), (1,), (True,), line, 1),
-                    *_split(tuple(joints[k] for k in left), lower, tuple(turns[k] for k in left),
-                            quotient, codimension),
-                )  # fmt: skip
+                    *_split(
+                        tuple(joints[k] for k in left),
+                        lower,
+                        tuple(turns[k] for k in left),
+                        quotient,
+                        codimension,
+                    ),
+                )
     for size in range(1, d):
         for group in combinations(range(d), size):
             rest = [i for i in range(d) if i not in group]
@@ -331,9 +342,12 @@ def _split(
             parts: tuple[Factor, ...] = ()
             for chosen, part, equations in ((list(group), one, 1), (rest, two, codimension)):
                 parts += _split(
-                    tuple(joints[k] for k in chosen), tuple(degrees[k] for k in chosen),
-                    tuple(turns[k] for k in chosen), part, equations,
-                )  # fmt: skip
+                    tuple(joints[k] for k in chosen),
+                    tuple(degrees[k] for k in chosen),
+                    tuple(turns[k] for k in chosen),
+                    part,
+                    equations,
+                )
             return parts
     functions = np.moveaxis(tensor, -1, 0).reshape(tensor.shape[-1], -1)
     _, sizes, right = np.linalg.svd(functions, full_matrices=False)

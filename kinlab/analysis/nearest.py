@@ -94,9 +94,14 @@ def nearest_singularity(
     meets = bool(bound >= distance - 2.0 * GOAL)
     found = None if state is None else describe_singularity(robot, state, space_mask(space.rows))
     return NearestSingularity(
-        distance, bound, meets, found, sigma, space.scale,
+        distance,
+        bound,
+        meets,
+        found,
+        sigma,
+        space.scale,
         _evidence(searched, distance, bound, meets),
-    )  # fmt: skip
+    )
 
 
 def _evidence(searched: str, distance: float, bound: float, meets: bool) -> Evidence:
@@ -193,8 +198,12 @@ def slope_bound(space: TaskSpace) -> float:
     reach = np.array([sum(steps[i + 1 :]) + float(travel[i:].sum()) for i in range(robot.n)])
     column = np.where(turns, (reach / space.scale) ** 2 + 1.0, 1.0)
     # joint j turns every column, those before it by at most their length as seen from j
-    slope = [float(column[j:].sum() + j * (reach[j] / space.scale) ** 2) if turns[j] else float(j)
-             / space.scale**2 for j in range(robot.n)]  # fmt: skip
+    slope = [
+        float(column[j:].sum() + j * (reach[j] / space.scale) ** 2)
+        if turns[j]
+        else float(j) / space.scale**2
+        for j in range(robot.n)
+    ]
     return float(np.sqrt(sum(slope)))
 
 

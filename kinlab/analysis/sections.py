@@ -289,15 +289,20 @@ def _curves(system: _SectionSystem, rng: np.random.Generator, step: float) -> li
     solved = wrap(robot, system.states(x))
     inside = np.all((solved >= lower - sets.ROUNDING) & (solved <= upper + sets.ROUNDING), axis=1)
     x[:, : len(moving)] = solved[:, moving]
-    return [system.states(points) for points in trace_from(
-        system, x[inside & (norm <= sets.CONVERGED)], step
-    )]  # fmt: skip
+    return [
+        system.states(points)
+        for points in trace_from(system, x[inside & (norm <= sets.CONVERGED)], step)
+    ]
 
 
 def _with_edges(
-    robot: Robot, moving: tuple[int, ...], origin: Array, axis: Array, start: Array,
+    robot: Robot,
+    moving: tuple[int, ...],
+    origin: Array,
+    axis: Array,
+    start: Array,
     drawn: list[SectionCurve],
-) -> tuple[SectionCurve, ...]:  # fmt: skip
+) -> tuple[SectionCurve, ...]:
     """Marks where one side of a curve is out of reach."""
     reach = _Reach(robot, moving, origin, axis, start)
     out = []
@@ -366,9 +371,14 @@ class _Reach:
                 jacobian(self.robot, state), positions, self.origin, self.axis
             )
             rows = rows[..., self.moving]
-            damping = 1e-6 * self.size**2 * np.eye(2) * np.minimum(
-                1.0, np.linalg.norm(miss, axis=1) / self.size
-            )[:, np.newaxis, np.newaxis]  # fmt: skip
+            damping = (
+                1e-6
+                * self.size**2
+                * np.eye(2)
+                * np.minimum(1.0, np.linalg.norm(miss, axis=1) / self.size)[
+                    :, np.newaxis, np.newaxis
+                ]
+            )
             gram = rows @ rows.swapaxes(1, 2) + damping + 1e-14 * np.eye(2)
             step = np.einsum("nri,nr->ni", rows, np.linalg.solve(gram, miss[..., None])[..., 0])
             largest = np.abs(step).max(axis=1, keepdims=True)

@@ -211,9 +211,13 @@ def find_singularities(
     families.sort(key=lambda f: (f.kind, len(f.deciding), f.deciding, _rounded(f.pinned)))
     effort = Effort(len(starts), int(good.sum()), last_new, seed)
     return SingularitySearch(
-        robot.name, space.name, space.suggested, tuple(families), effort,
+        robot.name,
+        space.name,
+        space.suggested,
+        tuple(families),
+        effort,
         _evidence(space, effort, exact),
-    )  # fmt: skip
+    )
 
 
 @dataclass

@@ -73,9 +73,14 @@ def view(
 
 
 def _open(
-    name: str, tip: str | None, q: str | None, animate: str | None, meshes: bool,
-    against: str | None = None, branches: bool = False,
-) -> Page:  # fmt: skip
+    name: str,
+    tip: str | None,
+    q: str | None,
+    animate: str | None,
+    meshes: bool,
+    against: str | None = None,
+    branches: bool = False,
+) -> Page:
     from kinlab.errors import NameUnknownError, OptionError
     from kinlab.fivebar.files import presets
     from kinlab.model.library import load

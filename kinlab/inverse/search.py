@@ -136,9 +136,16 @@ def ik(
     if end == kernel.OUTSIDE or position > tolerance[0] or rotation > tolerance[1]:
         status = _why(robot, arm, asked, 0, q, outcome, errors)
     return IKResult(
-        q[0], status is IKStatus.CONVERGED, status, position, rotation, iterations, searches - 1,
-        asked.remarks, record if history else None,
-    )  # fmt: skip
+        q[0],
+        status is IKStatus.CONVERGED,
+        status,
+        position,
+        rotation,
+        iterations,
+        searches - 1,
+        asked.remarks,
+        record if history else None,
+    )
 
 
 def ik_batch(
@@ -184,9 +191,15 @@ def ik_batch(
     for row in np.flatnonzero(~success):
         status[row] = _why(robot, arm, asked, int(row), q, outcome, errors).value
     return IKBatch(
-        q, success, status, errors[:, 0].copy(), errors[:, 1].copy(), outcome[:, 1].copy(),
-        outcome[:, 2] - 1, asked.remarks,
-    )  # fmt: skip
+        q,
+        success,
+        status,
+        errors[:, 0].copy(),
+        errors[:, 1].copy(),
+        outcome[:, 1].copy(),
+        outcome[:, 2] - 1,
+        asked.remarks,
+    )
 
 
 def _search(

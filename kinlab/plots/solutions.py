@@ -9,8 +9,12 @@ import numpy as np
 from kinlab.plots.canvas import RED, new_axes
 from kinlab.postures.solution_map import SolutionMap
 
-_LABELS = {"rho": "distance from the first axis [m]", "z": "along the first axis [m]",
-           "x": "x [m]", "y": "y [m]"}  # fmt: skip
+_LABELS = {
+    "rho": "distance from the first axis [m]",
+    "z": "along the first axis [m]",
+    "x": "x [m]",
+    "y": "y [m]",
+}
 _SHADES = ("#ffffff", "#eef2f7", "#cfe0f1", "#b5cfe8", "#86b0d8", "#5f93c6", "#3d76b0")
 
 
@@ -37,24 +41,32 @@ def plot_solutions(chart: SolutionMap, *, axes: Any = None) -> Any:
     most = max(int(count.max(initial=0)), 1)
     shades = [_SHADES[min(i, len(_SHADES) - 1)] for i in range(most + 1)]
     axes.pcolormesh(
-        chart.u, chart.v, np.asarray(count).T, cmap=ListedColormap(shades),
-        norm=BoundaryNorm(np.arange(most + 2) - 0.5, most + 1), shading="nearest", rasterized=True,
-    )  # fmt: skip
+        chart.u,
+        chart.v,
+        np.asarray(count).T,
+        cmap=ListedColormap(shades),
+        norm=BoundaryNorm(np.arange(most + 2) - 0.5, most + 1),
+        shading="nearest",
+        rasterized=True,
+    )
     axes.add_collection(LineCollection(list(chart.curves), colors=RED, linewidths=1.3))
     handles: list[Any] = [
         Patch(facecolor=shades[i], edgecolor="0.6", label=f"{i}") for i in np.unique(count)
     ]
     handles.extend(axes.plot([], [], color=RED, lw=1.3, label="singular"))
     for points, mark, name in (
-        (chart.cusps, "o", "cusp"), (chart.nodes, "s", "node"),
+        (chart.cusps, "o", "cusp"),
+        (chart.nodes, "s", "node"),
         (chart.collapsed, "D", "singular line"),
-    ):  # fmt: skip
+    ):
         if len(points):
-            handles.extend(axes.plot(*points.T, mark, color="black", ms=4.5, mfc="white",
-                                     label=name, zorder=4))  # fmt: skip
+            handles.extend(
+                axes.plot(*points.T, mark, color="black", ms=4.5, mfc="white", label=name, zorder=4)
+            )
     axes.set_aspect("equal")
     axes.set_xlabel(_LABELS[chart.labels[0]])
     axes.set_ylabel(_LABELS[chart.labels[1]])
-    axes.figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), fontsize=9,
-                       frameon=False)  # fmt: skip
+    axes.figure.legend(
+        handles=handles, loc="outside lower center", ncols=len(handles), fontsize=9, frameon=False
+    )
     return axes

@@ -225,14 +225,22 @@ def _cut(robot: Robot, joints: tuple[int, ...], parts: list[Factor], limits: boo
         q[index] = lower + (np.array(place) + 0.5) * cell
         found.append(
             Aspect(
-                tuple(int(v) for v in signs[place]), frozen(q), float(sizes[order[label]])
-                / labels.size,
+                tuple(int(v) for v in signs[place]),
+                frozen(q),
+                float(sizes[order[label]]) / labels.size,
             )
-        )  # fmt: skip
+        )
     return AspectGroup(
-        names, tuple(found), float(np.mean(labels < 0)), _separate(signs, labels, turning),
-        frozen(cell), labels, joints, frozen(lower), turning,
-    )  # fmt: skip
+        names,
+        tuple(found),
+        float(np.mean(labels < 0)),
+        _separate(signs, labels, turning),
+        frozen(cell),
+        labels,
+        joints,
+        frozen(lower),
+        turning,
+    )
 
 
 def _signs(part: Factor, lower: Array, cell: Array, counts: Any) -> Any:

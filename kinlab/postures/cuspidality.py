@@ -87,9 +87,14 @@ class _Pairs:
 
 
 def is_cuspidal(
-    robot: Robot, *, poses: int = 200, nodes: int = 1500, limits: bool = True, seed: int = 0,
+    robot: Robot,
+    *,
+    poses: int = 200,
+    nodes: int = 1500,
+    limits: bool = True,
+    seed: int = 0,
     progress: Progress | None = None,
-) -> Cuspidality:  # fmt: skip
+) -> Cuspidality:
     """Seeks a change of posture without a singularity.
 
     Args:
@@ -145,9 +150,15 @@ def is_cuspidal(
         + path.evidence.proved,
     )
     return Cuspidality(
-        robot.name, space.name, CUSPIDAL, fk(robot, path.q[0]), path, count, len(pairs.one),
+        robot.name,
+        space.name,
+        CUSPIDAL,
+        fk(robot, path.q[0]),
+        path,
+        count,
+        len(pairs.one),
         evidence,
-    )  # fmt: skip
+    )
 
 
 def _near_cusps(robot: Robot, rng: np.random.Generator) -> Array:
@@ -161,9 +172,14 @@ def _near_cusps(robot: Robot, rng: np.random.Generator) -> Array:
 
 
 def posture_path(
-    robot: Robot, one: ArrayLike, two: ArrayLike, *, nodes: int = 1500, limits: bool = True,
+    robot: Robot,
+    one: ArrayLike,
+    two: ArrayLike,
+    *,
+    nodes: int = 1500,
+    limits: bool = True,
     seed: int = 0,
-) -> NonsingularPath | None:  # fmt: skip
+) -> NonsingularPath | None:
     """A path between two joint positions that is shown to meet no singularity.
 
     Args:
@@ -322,16 +338,17 @@ def _straight(
     if not starts:
         return None
     one, two = np.array(starts), np.array(ends)
-    chosen = np.concatenate([
-        same_sign(space, one[i : i + 512], two[i : i + 512]) for i in range(0, len(one), 512)
-    ])  # fmt: skip
+    chosen = np.concatenate(
+        [same_sign(space, one[i : i + 512], two[i : i + 512]) for i in range(0, len(one), 512)]
+    )
     one, two = one[chosen], two[chosen]
     if not len(one):
         return None
     share = np.linspace(0.0, 1.0, 33)[:, np.newaxis]
     states = one[:, np.newaxis] + share * (two - one)[:, np.newaxis]
-    values = np.linalg.svd(space.jacobian(states.reshape(-1, one.shape[1]), space.scale),
-                           compute_uv=False)[:, -1].reshape(len(one), -1)  # fmt: skip
+    values = np.linalg.svd(
+        space.jacobian(states.reshape(-1, one.shape[1]), space.scale), compute_uv=False
+    )[:, -1].reshape(len(one), -1)
     order = np.argsort(-values.min(axis=1), kind="stable")
     for done, row in enumerate(order):
         tell("straight lines", done, len(order))
@@ -342,16 +359,20 @@ def _straight(
 
 
 def _by_roadmap(
-    space: TaskSpace, parts: tuple[Factor, ...], pairs: _Pairs, low: Array, high: Array,
-    nodes: int, rng: np.random.Generator, tell: Progress,
-) -> NonsingularPath | None:  # fmt: skip
+    space: TaskSpace,
+    parts: tuple[Factor, ...],
+    pairs: _Pairs,
+    low: Array,
+    high: Array,
+    nodes: int,
+    rng: np.random.Generator,
+    tell: Progress,
+) -> NonsingularPath | None:
     sides = sorted(set(pairs.sides), key=lambda s: (-pairs.sides.count(s), s))[:_ROADMAPS]
     for done, side in enumerate(sides):
         tell("roadmaps", done, len(sides))
         rows = [i for i, s in enumerate(pairs.sides) if s == side][:_PAIRS]
-        goals = [
-            ways_round(space.robot, pairs.one[i], pairs.two[i], low, high) for i in rows
-        ]  # fmt: skip
+        goals = [ways_round(space.robot, pairs.one[i], pairs.two[i], low, high) for i in rows]
         given = np.concatenate([pairs.one[rows], *goals])
         map_ = Roadmap.sample(space, _on(space, parts, side), given, low, high, nodes, rng)
         first = len(rows)
@@ -382,6 +403,12 @@ def _none(
     if not pairs:
         found += ": no pose was met with two solutions on one side of every factor of det J"
     return Cuspidality(
-        space.robot.name, space.name, NONE_FOUND, None, None, poses, pairs,
+        space.robot.name,
+        space.name,
+        NONE_FOUND,
+        None,
+        None,
+        poses,
+        pairs,
         Evidence(searched, found=found),
-    )  # fmt: skip
+    )

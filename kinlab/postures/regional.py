@@ -103,8 +103,9 @@ class Regional:
         parts = []
         for part in factors(read_task(robot, "auto")) or ():
             parts.append(_part(part, place, slope, x))
-        return cls(robot, origin, axis, size, place, _factor(_det(slope)[:, np.newaxis], 6),
-                   tuple(parts))  # fmt: skip
+        return cls(
+            robot, origin, axis, size, place, _factor(_det(slope)[:, np.newaxis], 6), tuple(parts)
+        )
 
     def points(self, x: Array) -> Array:
         """(rho, z) in metres of joints 2 and 3 at x (N, 2), (N, 2)."""

@@ -43,9 +43,15 @@ class Roadmap:
 
     @classmethod
     def sample(
-        cls, space: TaskSpace, inside: Callable[[Array], Any], given: Array, low: Array,
-        high: Array, nodes: int, rng: np.random.Generator,
-    ) -> Roadmap:  # fmt: skip
+        cls,
+        space: TaskSpace,
+        inside: Callable[[Array], Any],
+        given: Array,
+        low: Array,
+        high: Array,
+        nodes: int,
+        rng: np.random.Generator,
+    ) -> Roadmap:
         """A map of given positions (M, n) and samples on their side of det J.
 
         Args:
@@ -134,10 +140,12 @@ def _lines(space: TaskSpace, q: Array) -> list[dict[int, float]]:
     one = np.repeat(np.arange(len(q)), near.shape[1] - 1)
     two, length = near[:, 1:].ravel(), apart[:, 1:].ravel()
     sigma = _sigma(space, q)
-    free = np.concatenate([
-        same_sign(space, q[one[i : i + 2048]], q[two[i : i + 2048]], _SAMPLES)
-        for i in range(0, len(one), 2048)
-    ])  # fmt: skip
+    free = np.concatenate(
+        [
+            same_sign(space, q[one[i : i + 2048]], q[two[i : i + 2048]], _SAMPLES)
+            for i in range(0, len(one), 2048)
+        ]
+    )
     lines: list[dict[int, float]] = [{} for _ in q]
     for i, j, way in zip(one[free], two[free], length[free], strict=True):
         # far from singularities a line is cheap

@@ -96,9 +96,7 @@ def solution_count(robot: Robot, T: ArrayLike, *, threads: int | None = None) ->
         proved="each counted solution meets its pose to 1e-9 m and rad",
         found=("that there is no other, at every pose" if every else f"as all there are: {some}"),
     )
-    return SolutionCounts(
-        found.counts, inside, found.complete, found.method, evidence, found
-    )  # fmt: skip
+    return SolutionCounts(found.counts, inside, found.complete, found.method, evidence, found)
 
 
 def _of_one(found: IKBranches) -> SolutionCount:
@@ -109,6 +107,10 @@ def _of_one(found: IKBranches) -> SolutionCount:
         found=other,
     )
     return SolutionCount(
-        len(found), int(np.sum(found.within_limits)), found.complete, found.families,
-        found.method, evidence,
-    )  # fmt: skip
+        len(found),
+        int(np.sum(found.within_limits)),
+        found.complete,
+        found.families,
+        found.method,
+        evidence,
+    )

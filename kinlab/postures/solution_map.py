@@ -134,19 +134,29 @@ def _regional(robot: Robot, cells: int) -> SolutionMap:
             f"{len(cusps)} or of a crossing"
         )
     return SolutionMap(
-        robot.name, ("rho", "z"), u, v, counts.count.reshape(shape),
-        counts.within_limits.reshape(shape), counts.complete.reshape(shape), curves, cusps,
-        arm.points(crossed[:, :2]), "quaternary" if four else "binary", generic,
+        robot.name,
+        ("rho", "z"),
+        u,
+        v,
+        counts.count.reshape(shape),
+        counts.within_limits.reshape(shape),
+        counts.complete.reshape(shape),
+        curves,
+        cusps,
+        arm.points(crossed[:, :2]),
+        "quaternary" if four else "binary",
+        generic,
         collapsed_points(arm),
         Evidence(
             f"{len(flat)} points of the half section and {_DRAWN} random ones that "
             "are reached; cusps and crossings in boxes of the whole "
             "torus of joints 2 and 3",
             proved=proved + ("; some pose has more than two solutions" if four else ""),
-            found="the nodes" + ("" if four else "; that no pose has more than two solutions")
+            found="the nodes"
+            + ("" if four else "; that no pose has more than two solutions")
             + ("" if special.complete else "; the cusps"),
         ),
-    )  # fmt: skip
+    )
 
 
 def _planar(robot: Robot, cells: int, angle: float) -> SolutionMap:
@@ -161,14 +171,25 @@ def _planar(robot: Robot, cells: int, angle: float) -> SolutionMap:
     shape = (len(u), len(v))
     held = "" if robot.n == 2 else f", the tool at {angle:g} rad"
     return SolutionMap(
-        robot.name, ("x", "y"), u, v, counts.count.reshape(shape),
-        counts.within_limits.reshape(shape), counts.complete.reshape(shape), curves,
-        np.empty((0, 2)), np.empty((0, 2)), "", None, np.empty((0, 2)),
+        robot.name,
+        ("x", "y"),
+        u,
+        v,
+        counts.count.reshape(shape),
+        counts.within_limits.reshape(shape),
+        counts.complete.reshape(shape),
+        curves,
+        np.empty((0, 2)),
+        np.empty((0, 2)),
+        "",
+        None,
+        np.empty((0, 2)),
         Evidence(
-            f"{len(flat)} points of the plane{held}", proved="each counted solution is one",
+            f"{len(flat)} points of the plane{held}",
+            proved="each counted solution is one",
             found="that there is no other at any of them",
         ),
-    )  # fmt: skip
+    )
 
 
 def _planar_curves(robot: Robot, angle: float) -> Array:
