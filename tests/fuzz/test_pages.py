@@ -22,6 +22,8 @@ import pytest
 
 import kinlab as kl
 
+pytestmark = pytest.mark.campaign
+
 FLAGS = ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
          "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]  # fmt: skip
 MARKUP = [

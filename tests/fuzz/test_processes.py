@@ -20,6 +20,8 @@ import pytest
 import kinlab as kl
 from kinlab.check import guest
 
+pytestmark = pytest.mark.campaign
+
 FORK = """
 import multiprocessing, numpy as np, kinlab as kl
 robot = kl.load("planar2r")
