@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shaped, shown, whole
+from kinlab.arrays import Array, shaped, shown
 from kinlab.errors import OptionError, SingularError, UnreachableError
 from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_mode
 from kinlab.tolerances import TOLERANCES
@@ -127,7 +127,11 @@ class ClosedChain:
             UnreachableError: the rods cannot meet there; the message holds the gap that is left.
             OptionError: another assembly, or a guess of the other sign.
         """
-        if whole(assembly, "assembly", -1, 1) not in (1, -1):
+        if (
+            not isinstance(assembly, (int, np.integer))
+            or assembly not in (1, -1)
+            or assembly is True
+        ):
             raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
         name, data = self.linkage.name, self.model.createData()
         angles = shaped(theta, (2,), f"{name}: theta")

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shown, whole
+from kinlab.arrays import Array, shown
 from kinlab.errors import OptionError, SingularError, StateError, UnreachableError
 from kinlab.fivebar.arguments import (
     HANGING,
@@ -274,7 +274,7 @@ def fk(
         StateError: theta of another shape, or not finite.
         OptionError: an assembly other than +1 and -1.
     """
-    if whole(assembly, "assembly", -1, 1) not in (1, -1):
+    if not isinstance(assembly, (int, np.integer)) or assembly not in (1, -1) or assembly is True:
         raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
     masked = read_on_unreachable(on_unreachable)
     angles, single = read_points(theta, f"{linkage.name}: theta")
