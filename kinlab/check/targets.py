@@ -10,7 +10,8 @@ from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
 from kinlab.check.guest import FunctionLostError, Guest
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.table_check import checks_of
-from kinlab.errors import FileError, NameUnknownError, near
+from kinlab.check.unread import Unread
+from kinlab.errors import FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas.record import Formula
 from kinlab.model.library import shipped
 
@@ -30,6 +31,11 @@ class Task:
     robot: Any
     name: str
     file: str = ""
+
+    @property
+    def ships(self) -> bool:
+        """Whether formula and mechanism come with kinlab, so that names say all."""
+        return not self.file and (isinstance(self.robot, str) or self.name in shipped())
 
     @property
     def label(self) -> str:
@@ -60,21 +66,46 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
         FileError: a file that cannot be read, or a .py file without a marked function.
         FormulaError: a .py file that raises, ends its process or does not come back.
     """
+    found, unread = read_tasks(arguments)
+    if unread:
+        raise unread[0].problem
+    return found
+
+
+def read_tasks(arguments: Iterable[str]) -> tuple[list[Task], list[Unread]]:
+    """As :func:`tasks`, for those who go on without what cannot be read.
+
+    Returns:
+        What is to run, in order; and the arguments, or the functions of a file, that cannot.
+    """
     wanted = list(arguments)
     if not wanted:
         pairs = plan(catalogue())
         return [_one(record, name) for record, name in pairs] + [
             task for name in shipped() for task in _table(name)
-        ]
+        ], []
     found: list[Task] = []
+    unread: list[Unread] = []
     for text in wanted:
-        found += _tasks_of(text)
-    return found
+        try:
+            if text.endswith(".py"):
+                _read_functions(text, found, unread)
+            else:
+                found += _tasks_of(text)
+        except KinlabError as problem:
+            unread.append(Unread(text, problem))
+    return found, unread
+
+
+def _read_functions(path: str, found: list[Task], unread: list[Unread]) -> None:
+    for record in _user_formulas(path):
+        try:
+            found += [Task(record, name, name, path) for _, name in plan([record])]
+        except KinlabError as problem:
+            unread.append(Unread(f"{path}: {record.key}", problem))
 
 
 def _tasks_of(text: str) -> list[Task]:
-    if text.endswith(".py"):
-        return [Task(record, name, name, text) for record, name in plan(_user_formulas(text))]
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
         return [_one(record, name) for record, name in plan(by_id)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -53,6 +53,7 @@ def arm_of(table: DHTable) -> Arm:
     )
 
 
+@lru_cache(maxsize=64)
 def numbers(robot: Robot) -> Arm:
     """The plain numbers of a robot's DH table, extracted where it comes from a URDF."""
     return arm_of(to_dh(robot) if robot.table is None else robot.table)
