@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from kinlab.formulas.kept import answers_kept
+from kinlab.formulas.record import answers_kept
 from kinlab.host.processes import cores, end_with_parent
 
 if TYPE_CHECKING:
@@ -168,12 +168,11 @@ def _serve(pipe: Any) -> None:
             name, keys, samples, seed = pipe.recv()
         except EOFError:
             os._exit(0)
-        answers: Answers = []
+        answers: Answers
         try:
             with answers_kept():
-                for key in keys:
-                    row = run_one(records[key], name, samples, seed)
-                    answers.append((row.robot, row.corrected, row.printed))
+                rows = [run_one(records[key], name, samples, seed) for key in keys]
+            answers = [(row.robot, row.corrected, row.printed) for row in rows]
         except Exception:  # noqa: BLE001  the parent runs it again and says what is wrong
             answers = None
         pipe.send(answers)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -51,6 +51,7 @@ AGAINST = Annotated[
         "cell of the tables is wrong.",
     ),
 ]
+
 
 def register(app: typer.Typer) -> None:
     """Adds the command of this file."""
@@ -102,6 +103,7 @@ def check(
             if helpers is None and sum(task.ships for task in todo) >= ENOUGH:
                 helpers = stack.enter_context(Helpers())
             _run(todo, samples, seed, helpers, found)
+    found.unread.sort(key=lambda one: _place(one.what, what or []))
     if found.nothing and len(found.unread) == 1 and not report:
         raise found.unread[0].problem
     if json:
@@ -160,6 +162,12 @@ def _formula_files(what: list[str], samples: int, seed: int, found: _Found) -> l
         found.judged += judged
         found.unread += unread
     return rest
+
+
+def _place(unread: str, what: list[str]) -> int:
+    """Which argument something belongs to; behind all, where it belongs to none."""
+    mine = (k for k, one in enumerate(what) if unread == one or unread.startswith(f"{one}: "))
+    return next(mine, len(what))
 
 
 def _run(

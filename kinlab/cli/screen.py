@@ -25,9 +25,7 @@ def visible(text: str) -> str:
     pairs go too.
     """
     lines = text.split("\n")
-    return "\n".join(
-        line if line.isprintable() else "".join(map(_shown, line)) for line in lines
-    )
+    return "\n".join(line if line.isprintable() else "".join(map(_shown, line)) for line in lines)
 
 
 def _shown(letter: str) -> str:

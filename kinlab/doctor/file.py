@@ -91,6 +91,9 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
 
 # -------- A file of formulas as text, examined entry by entry
 
+_FEWEST = 10
+"""States that :func:`prepare` asks for at least."""
+
 _FILE_LIMIT = 1 << 20
 _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
@@ -159,7 +162,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
     """
     wanted, titles = _claims(file, robot)
     for plain, formulas in wanted.items():
-        _answers(plain, formulas, titles, robot, file, 1, 0)
+        _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
 
 
 def _claims(file: FormulaFile, robot: Robot) -> tuple[dict[str, dict[str, Node]], dict[str, str]]:

@@ -16,7 +16,13 @@ from kinlab.check.targets import Task
 from kinlab.check.unread import Unread
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of, require_sound, robot_of
+from kinlab.doctor.file import (
+    examine_formulas,
+    in_robot_names,
+    quantity_of,
+    require_sound,
+    robot_of,
+)
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
 from kinlab.formulas.marks import differences
@@ -84,12 +90,16 @@ def of_document(
     for entry in entries_of(document):
         try:
             alone = formula_file(with_entries(document, {entry}), path)
-            require_sound(alone, robot_of(alone))
+            try:
+                robot = robot_of(alone)
+            except KinlabError as missing:
+                return [], [Unread(path, missing)]
+            require_sound(alone, robot)
         except KinlabError as problem:
             bad.append(Unread(f"{path}: {entry}", problem))
             left = with_entries(left, set(entries_of(left)) - {entry})
     if not bad or not entries_of(left):
-        return [], [whole] if len({one.reason for one in bad}) < 2 else bad
+        return [], bad if len(bad) > 1 else [whole]
     try:
         return of_file(formula_file(left, path), samples, seed), bad
     except KinlabError as problem:

@@ -14,7 +14,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
-from kinlab.engine.kinematics import each_state, statics
+from kinlab.engine.kinematics import each_call, each_state, statics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
 from kinlab.model.robot import Robot, require_inertia, scratch
 
@@ -35,7 +35,7 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
     """
     require_inertia(robot)
     q = joint_vector(robot, q, "q")
-    return _mass_matrix(robot, q) if q.ndim == 1 else each_state(robot, _mass_matrix, q)
+    return _mass_matrix(robot, q) if q.ndim == 1 else each_call(robot, pin.crba, q)
 
 
 def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
@@ -55,7 +55,9 @@ def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     """
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
-    return each_state(robot, _coriolis, q, v)
+    return (
+        _coriolis(robot, q, v) if q.ndim == 1 else each_call(robot, pin.computeCoriolisMatrix, q, v)
+    )
 
 
 def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
@@ -97,7 +99,7 @@ def inverse_dynamics(
     if tau is not None:
         return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-    tau = each_state(robot, _inverse, q, v, a)
+    tau = _inverse(robot, q, v, a) if q.ndim == 1 else each_call(robot, pin.rnea, q, v, a)
     if wrench is not None:
         tau = tau + statics(robot, q, wrench)
     return finite_answer(robot, tau, "inverse_dynamics")
@@ -126,7 +128,8 @@ def forward_dynamics(
     q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
     if wrench is not None:
         tau = tau - statics(robot, q, wrench)
-    return finite_answer(robot, each_state(robot, _forward, q, v, tau), "forward_dynamics")
+    a = _forward(robot, q, v, tau) if q.ndim == 1 else each_call(robot, pin.aba, q, v, tau)
+    return finite_answer(robot, a, "forward_dynamics")
 
 
 def plain_inverse(robot: Robot, q: Any, v: Any, a: Any) -> Array | None:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.engine.states import joint_vector, joint_vectors
 from kinlab.errors import NameUnknownError, StateError, near
-from kinlab.formulas.kept import once
+from kinlab.formulas.record import once
 from kinlab.model.robot import Robot, scratch
 
 FRAMES = {
@@ -176,6 +176,21 @@ def _each_row(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Arra
     for i, row in enumerate(rows, 1):
         out[i] = single(robot, *row, *rest)
     return out
+
+
+def each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    """Pinocchio's ``call(model, data, *state)`` for each row of stacks: half of the time of
+    :func:`each_state` for what it answers by value."""
+    rows: Array = once(_each_call, robot, call, *stacks)
+    return rows
+
+
+def _each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    model, data = robot.model, scratch(robot)
+    if not len(stacks[0]):
+        sample = call(model, data, *(np.zeros(robot.n) for _ in stacks))
+        return np.empty((0, *np.shape(sample)))
+    return np.array([call(model, data, *state) for state in zip(*stacks, strict=True)])
 
 
 def tool_pose(robot: Robot, q: Array) -> Array:

@@ -7,7 +7,6 @@ module          what it holds
                 signs mean
 ``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered or
                 cancelled
-``kept``        Answers kept for a while: one question about the same numbers is answered once
 ``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
                 reads
 ``marks``       Where a formula and its corrected form differ, for the eye

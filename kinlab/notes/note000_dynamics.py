@@ -7,8 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kinlab.formulas.kept import once
-from kinlab.formulas.record import Printed, formula
+from kinlab.formulas.record import Printed, formula, once
 from kinlab.notes import arm as mass
 from kinlab.notes.arm import (
     Arm,
