@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from console import kinlab as run
 
 import kinlab as kl
 from kinlab.errors import FileError, MissingExtraError, NameUnknownError, OptionError
@@ -238,14 +239,6 @@ def test_figures_without_matplotlib_name_the_extra(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingExtraError, match=r"kinlab\[plots\]"):
         canvas.new_axes()
-
-
-def run(*arguments, cwd):
-    environment = {**os.environ, "COLUMNS": "160", "NO_COLOR": "1"}
-    return subprocess.run(
-        [sys.executable, "-m", "kinlab", *arguments],
-        capture_output=True, text=True, cwd=cwd, env=environment, check=False,
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(
