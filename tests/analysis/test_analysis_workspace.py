@@ -127,6 +127,7 @@ def test_boundary_refuses_other_arms():
 def test_map_values_are_the_metric_and_points_the_tool():
     robot = kl.load("planar2r")
     chart = kl.sample_workspace(robot, samples=2000, seed=4)
+    assert "2,000 random states within the joint limits, seed 4" in chart.evidence.searched
     q = np.random.default_rng(4).uniform(-PI, PI, (2000, 2))
     assert np.allclose(chart.points, kl.fk(robot, q)[:, :3, 3], atol=0)
     assert np.allclose(chart.values, kl.manipulability(robot, q, "inverse_condition", "xy"), atol=0)
@@ -167,6 +168,7 @@ def test_stopping_keeps_what_was_computed():
 
     robot = kl.load("planar3r")
     part = kl.sample_workspace(robot, samples=3 * BLOCK, progress=stop)
+    assert "stopped before its end" in part.evidence.searched
     assert not part.complete and len(part.values) == BLOCK
     whole = kl.sample_workspace(robot, samples=3 * BLOCK)
     assert np.array_equal(part.values, whole.values[:BLOCK])
