@@ -47,7 +47,8 @@ from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.model.robot import Robot, require_inertia
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import require_inertia
 from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 
@@ -116,7 +117,7 @@ def condition_number(sigma: Array) -> Array:
 
 
 def manipulability(
-    robot: Robot,
+    robot: ArmLike,
     q: ArrayLike,
     kind: str = "yoshikawa",
     task: Any = "pose",
@@ -144,6 +145,7 @@ def manipulability(
         OptionError: a mask that is none, length <= 0.
         InertiaError: ``"asada"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     measure = read_kind(kind)
     space, size = read_task(robot, task), read_length(length)
     states = joint_vector(robot, q, "q")
@@ -197,7 +199,7 @@ class Dexterity:
     rank: int
 
 
-def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
+def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
     """Every measure at one q.
 
     Args:
@@ -208,6 +210,7 @@ def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`manipulability`.
     """
+    robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
@@ -255,7 +258,7 @@ class CharacteristicLength:
 
 
 def characteristic_length(
-    robot: Robot, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
+    robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
 ) -> CharacteristicLength:
     """The length that minimises the condition number at q, or the effect of a given one.
 
@@ -269,6 +272,7 @@ def characteristic_length(
         StateError, NameUnknownError, OptionError: bad q, unknown task, length <= 0, or a
             singular q, at which every length is as bad as any other.
     """
+    robot = as_robot(robot)
     space = read_task(robot, task)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
@@ -346,7 +350,7 @@ class Ellipsoid:
 
 
 def ellipsoid(
-    robot: Robot, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
+    robot: ArmLike, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
 ) -> Ellipsoid:
     """An ellipsoid at one q; the three kinds are defined at the top of this module.
 
@@ -360,6 +364,7 @@ def ellipsoid(
         StateError, NameUnknownError, OptionError: bad q, unknown kind or task, length <= 0.
         InertiaError: ``"dynamic"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     kind = word(kind, ELLIPSOIDS, "ellipsoid")
     space, size = read_task(robot, task), read_length(length)
     state = joint_vector(robot, q, "q")

@@ -20,7 +20,7 @@ from kinlab.analysis.metrics import SINGULAR
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.model.robot import Robot
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import read_task
 
 
@@ -46,7 +46,7 @@ class Redundancy:
     evidence: Evidence
 
 
-def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
+def redundancy(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Redundancy:
     """Null space and right pseudo-inverse of the task's J at one q.
 
     Args:
@@ -57,6 +57,7 @@ def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
     Raises:
         StateError, NameUnknownError, OptionError: bad q, unknown task.
     """
+    robot = as_robot(robot)
     space = read_task(robot, task)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:

@@ -21,7 +21,8 @@ from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECID
 from kinlab.inverse.families import IKFamily, families_at
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.inverse.structures import GENERAL, Known, known_form
-from kinlab.model.robot import Robot, require_robot, scratch
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot, scratch
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
@@ -112,7 +113,7 @@ _ARMS: WeakKeyDictionary[Robot, dict[Any, _Arm]] = WeakKeyDictionary()
 
 
 def ik_branches(
-    robot: Robot,
+    robot: ArmLike,
     T: ArrayLike,
     *,
     given: Mapping[str | int, float] | None = None,
@@ -147,7 +148,7 @@ def ik_branches(
         NameUnknownError: a given joint does not exist.
         OptionError: a value that is no finite number.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     held = () if given is None else _read_given(robot, given)
     T = T if isinstance(T, np.ndarray) else real_array(T, f"robot {robot.name!r}: T")
     if T.ndim == 3:

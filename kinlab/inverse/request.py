@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array, rigid_transform, seed_of, whole
 from kinlab.errors import OptionError, StateError
 from kinlab.fast.compiled import kernel
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 RESTARTS = 40
@@ -81,7 +81,6 @@ def read_request(
     Raises:
         StateError, OptionError, StructureError: as those.
     """
-    require_robot(robot)
     targets = read_targets(robot, poses) if many else read_target(robot, poses)[np.newaxis]
     tolerances = positive(tol_position, "tol_position"), positive(tol_rotation, "tol_rotation")
     searches, number = 1 + whole(restarts, "restarts", 0), seed_of(seed)

@@ -34,6 +34,7 @@ from kinlab.inverse.setup import (
     search_of,
     setup,
 )
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, scratch
 
 TOL_STEP = 1e-13
@@ -59,7 +60,7 @@ singularity."""
 
 
 def ik(
-    robot: Robot,
+    robot: ArmLike,
     T: ArrayLike,
     q0: ArrayLike | None = None,
     method: str = "lm",
@@ -113,6 +114,7 @@ def ik(
         NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
+    robot = as_robot(robot)
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
@@ -149,7 +151,7 @@ def ik(
 
 
 def ik_batch(
-    robot: Robot,
+    robot: ArmLike,
     Ts: ArrayLike,
     q0: ArrayLike | None = None,
     tol_position: float = 1e-6,
@@ -181,6 +183,7 @@ def ik_batch(
         StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik`; a bad
             pose is named by its row.
     """
+    robot = as_robot(robot)
     asked = read_request(
         robot, Ts, True, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )

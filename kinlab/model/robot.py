@@ -18,7 +18,7 @@ from kinlab.arrays import Array, frozen, set_fields
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
-from kinlab.model.urdf_write import to_urdf
+from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
@@ -96,7 +96,7 @@ class Robot:
         Returns:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
-        text = to_urdf(table)
+        text = written(table)
         chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
@@ -153,22 +153,6 @@ class Robot:
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
-def require_robot(robot: object) -> None:
-    """Refuses what is no robot.
-
-    Raises:
-        StructureError: saying how to make one of it.
-    """
-    if isinstance(robot, Robot):
-        return
-    if isinstance(robot, str):
-        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
-    if isinstance(robot, DHTable):
-        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
-    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
-    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
-
-
 def scratch(robot: Robot) -> Any:
     """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
     try:
@@ -192,8 +176,6 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
 

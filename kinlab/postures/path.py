@@ -15,7 +15,8 @@ from kinlab.inverse.request import positive, read_guess, read_targets
 from kinlab.inverse.result import IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.postures.posture_change import PostureChange, posture_changes
 
 NEAR_SINGULAR = 1e-2
@@ -53,7 +54,7 @@ class IKPath:
 
 
 def ik_path(
-    robot: Robot,
+    robot: ArmLike,
     Ts: ArrayLike,
     q0: ArrayLike,
     tol_position: float = 1e-6,
@@ -86,7 +87,7 @@ def ik_path(
         StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik_batch`;
             NameUnknownError also where the first pose has no such branch.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     targets = read_targets(robot, Ts)
     here, remarks = read_guess(robot, q0)
     largest = positive(max_step, "max_step")

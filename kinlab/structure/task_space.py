@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import jacobian
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
 AUTO = "auto"
@@ -112,7 +112,6 @@ def read_task(robot: Robot, task: Any) -> TaskSpace:
     Raises:
         NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
     """
-    require_robot(robot)
     if task is None or (isinstance(task, str) and task == AUTO):
         rows = suggest_rows(robot)
         return TaskSpace(robot, rows, plain_name(rows), suggested=True)
