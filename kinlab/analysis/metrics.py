@@ -120,7 +120,7 @@ def manipulability(
     robot: ArmLike,
     q: ArrayLike,
     kind: str = "yoshikawa",
-    task: Any = "pose",
+    task: Any = "auto",
     length: float = 1.0,
 ) -> Any:
     """A measure of dexterity at q; the definitions stand at the top of this module.
@@ -132,12 +132,12 @@ def manipulability(
             ``"isotropy"``.
         task: ``"pose"``, ``"position"``, ``"orientation"``, ``"xy"``, ``"xytheta"``, a mask of
             six booleans, or ``"auto"`` for the largest that suits the arm. An arm with fewer
-            joints than task rows has a flat ellipsoid: every measure is 0 at every q.
+            joints than the task has rows is flat: every measure is 0 at every q.
         length: characteristic length in metres by which entries in metres are divided; 1 m
             leaves the SI numbers, and then a mixed task weighs 1 m like 1 rad.
 
     Returns:
-        A float, or (N,). Finite and 0 at singularities.
+        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities.
 
     Raises:
         StateError: q of the wrong shape or type, or not finite.
@@ -153,7 +153,35 @@ def manipulability(
     if kind == "asada":
         matrix = weighted(matrix, mass_matrix(robot, states))
     value = measure(singular_values(matrix))
-    return float(value) if states.ndim == 1 else value
+    return Value(value, space.name) if states.ndim == 1 else Values(value, space.name)
+
+
+class Value(float):
+    """A measure at one q: a number that knows its task."""
+
+    task: str
+
+    def __new__(cls, value: Any, task: str) -> Value:
+        made = super().__new__(cls, value)
+        made.task = task
+        return made
+
+    def __getnewargs__(self) -> Any:
+        return float(self), self.task
+
+
+class Values(np.ndarray[Any, np.dtype[np.float64]]):
+    """A measure at many q, (N,): an array that knows its task, as do slices of it."""
+
+    task: str
+
+    def __new__(cls, values: Array, task: str) -> Values:
+        made = np.asarray(values, dtype=np.float64).view(cls)
+        made.task = task
+        return made
+
+    def __array_finalize__(self, made_from: Any) -> None:
+        self.task = getattr(made_from, "task", "")
 
 
 def read_kind(kind: Any) -> Callable[[Array], Array]:

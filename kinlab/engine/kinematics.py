@@ -207,7 +207,7 @@ def frame_pose(robot: Robot, q: Array, index: int) -> Array:
 
 
 def frame_jacobian(robot: Robot, q: Array, frame: Any, index: int) -> Array:
-    """:func:`jacobian` of one checked state, in Pinocchio's name of the axes, by a frame's index."""
+    """As :func:`frame_pose` for :func:`jacobian`, with the axes in Pinocchio's name of them."""
     data = scratch(robot)
     pin.computeJointJacobians(robot.model, data, q)
     pin.updateFramePlacement(robot.model, data, index)

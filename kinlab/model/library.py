@@ -221,7 +221,7 @@ def no_arm(given: Any) -> StructureError:
     if kind == "FiveBar":
         told = "a five-bar's functions are its methods, as five_bar.ik(xy)"
     else:
-        told = "give a Robot, a DHTable, a pin.Model, a name (kinlab list), or a path"
+        told = "give a Robot, a DHTable, a pin.Model, a name (kinlab list), or a path of kl.load"
     return StructureError(f"robot: {kind} is no serial arm; {told}")
 
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array, frozen, set_fields
+from kinlab.arrays import Array, frozen, set_fields, shown
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
@@ -63,6 +63,10 @@ class Robot:
                 "floating base; continuous joints as revolute)"
             )
         n = int(self.model.nv)
+        if not n:
+            raise StructureError(
+                f"robot {self.name!r}: the model has no joint, so nothing moves; kl.load makes robots"
+            )
         set_fields(
             self,
             n=n,
@@ -187,8 +191,9 @@ def frame_id(robot: Robot, name: str) -> int:
         NameUnknownError: with the near names.
     """
     names = [str(frame.name) for frame in robot.model.frames]
-    if name not in names:
-        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+    if not isinstance(name, str) or name not in names:
+        told = near(name if isinstance(name, str) else "", names)
+        message = f"robot {robot.name!r}: frame {shown(name)} does not exist; {told}"
         raise NameUnknownError(message)
     return _frame_index(robot.model, name)
 

@@ -25,6 +25,9 @@ from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name,
 AUTO = "auto"
 """The task that suits the arm: as many coordinates as it can move independently."""
 
+ENDLESS = 1e6
+"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
+
 _SAMPLE = 8
 """States that show the generic rank of J: one is enough almost surely, eight are cheap."""
 
@@ -165,12 +168,15 @@ def read_length(length: Any) -> float:
 
 
 def search_box(robot: Robot) -> tuple[Array, Array]:
-    """Where searches draw q: the limits, at most one turn about zero for a revolute joint."""
-    turn = np.where(revolute(robot), np.pi, np.inf)
-    wide = robot.upper - robot.lower >= 2.0 * np.pi
-    lower = np.where(wide, np.maximum(robot.lower, -turn), robot.lower)
-    upper = np.where(wide, np.minimum(robot.upper, turn), robot.upper)
-    return lower, upper
+    """Where searches draw q: the limits, at most one turn about zero for a revolute joint.
+
+    Of a slide without limits (Pinocchio writes the largest float), one metre either way.
+    """
+    turns = revolute(robot)
+    low, high = np.maximum(robot.lower, -ENDLESS), np.minimum(robot.upper, ENDLESS)
+    half = np.where(turns, np.pi, np.where(high - low >= ENDLESS, 1.0, np.inf))
+    wide = high - low >= 2.0 * half
+    return np.where(wide, np.maximum(low, -half), low), np.where(wide, np.minimum(high, half), high)
 
 
 def revolute(robot: Robot) -> Any:
