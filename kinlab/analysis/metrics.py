@@ -113,7 +113,8 @@ def singular_values(jacobians: ArrayLike) -> Array:
 def condition_number(sigma: Array) -> Array:
     """Greatest over least singular value; infinity at a singularity, on purpose."""
     ratio = inverse_condition(sigma)
-    return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=ratio > 0.0)
+    large = ratio >= np.finfo(np.float64).tiny  # of anything less there is no inverse
+    return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=large)
 
 
 def manipulability(
@@ -245,7 +246,7 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     sigma = singular_values(space.jacobian(state, size))
     numbers = {name: float(KINDS[name](sigma)) for name in KINDS if name != "asada"}
-    rank = int(np.sum(sigma > SINGULAR * sigma[0])) if sigma[0] > 0.0 else 0
+    rank = int(np.sum(regular(sigma)))
     return Dexterity(
         space.name,
         space.suggested,
@@ -259,6 +260,11 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
 
 SINGULAR = 1e-10
 """sigma_min / sigma_max at and below which a configuration counts as singular."""
+
+
+def regular(sigma: Array) -> Any:
+    """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
+    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
 
 
 OPTIMAL = "optimal"
@@ -405,8 +411,9 @@ def ellipsoid(
     left: Array = np.linalg.svd(matrix)[0]
     sigma: Array = singular_values(matrix)
     if kind == "force":
-        flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
-        inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
+        inverse: Array = np.divide(
+            1.0, sigma, out=np.full_like(sigma, np.inf), where=regular(sigma)
+        )
         left, sigma = left[:, ::-1], inverse[::-1]
     return Ellipsoid(
         kind,

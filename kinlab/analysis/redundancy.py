@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import SINGULAR, regular
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -63,7 +63,7 @@ def redundancy(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Redundancy:
     if state.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     left, sigma, right = np.linalg.svd(space.jacobian(state))
-    rank = int(np.sum(sigma > SINGULAR * sigma[0])) if sigma[0] > 0.0 else 0
+    rank = int(np.sum(regular(sigma)))
     inverse = None
     if rank == space.m:
         inverse = frozen(right[: space.m].T / sigma @ left.T)

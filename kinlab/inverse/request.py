@@ -116,7 +116,9 @@ def read_target(robot: Robot, pose: ArrayLike) -> Array:
         if _sound(copy, TOLERANCES.orthonormal):
             return copy
     where = f"robot {robot.name!r}: T"
-    checked = rigid_transform(pose, where)
+    checked = real_array(pose, where)
+    if checked.ndim <= 2:
+        checked = rigid_transform(checked, where)
     if checked.shape != (4, 4):
         raise StateError(f"{where}: shape {checked.shape}; expected (4, 4); for many use ik_batch")
     return np.array(checked, order="C")

@@ -64,9 +64,7 @@ class Robot:
             )
         n = int(self.model.nv)
         if not n:
-            raise StructureError(
-                f"robot {self.name!r}: the model has no joint, so nothing moves; kl.load makes robots"
-            )
+            raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
         set_fields(
             self,
             n=n,

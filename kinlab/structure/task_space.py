@@ -25,6 +25,9 @@ from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name,
 AUTO = "auto"
 """The task that suits the arm: as many coordinates as it can move independently."""
 
+MOST_METRES = 1e30
+"""Characteristic lengths beyond this, or below its inverse, leave numbers that overflow."""
+
 ENDLESS = 1e6
 """Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
 
@@ -164,6 +167,9 @@ def read_length(length: Any) -> float:
         raise OptionError(f"characteristic length: shape {value.shape}; give one number in metres")
     if value <= 0.0:
         raise OptionError(f"characteristic length {float(value):g} m; it must be above 0")
+    if not 1.0 / MOST_METRES <= value <= MOST_METRES:
+        bounds = f"{1.0 / MOST_METRES:g} to {MOST_METRES:g} m"
+        raise OptionError(f"characteristic length {float(value):g} m; give one from {bounds}")
     return float(value)
 
 
