@@ -58,7 +58,7 @@ def list_robots() -> None:
 
 def info(name: NAME, tip: TIP = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
-    from kinlab.model.extract import to_dh
+    from kinlab.model.extract import as_table
     from kinlab.model.library import load
 
     robot = load(name, tip)
@@ -74,7 +74,7 @@ def info(name: NAME, tip: TIP = None) -> None:
     for line in _missing_meshes(robot):
         console.print(f"{line}; a plain shape is drawn instead", style="yellow", highlight=False)
     console.print(_joints(robot))
-    table = robot.table or to_dh(robot)
+    table = as_table(robot)
     console.print(_rows(table, "" if robot.table else ", extracted"))
     if robot.table is None:
         console.print(table.source, style="dim", highlight=False)

@@ -16,10 +16,11 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import each_state, statics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia, scratch
 
 
-def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
+def mass_matrix(robot: ArmLike, q: ArrayLike) -> Array:
     """Joint-space inertia matrix M(q), symmetric positive definite (note 002, 002.M).
 
     Args:
@@ -33,12 +34,14 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
         StateError: q of the wrong shape or type, or not finite.
         InertiaError: a joint moves no inertia.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q = joint_vector(robot, q, "q")
     return _mass_matrix(robot, q) if q.ndim == 1 else each_state(robot, _mass_matrix, q)
 
 
-def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+def coriolis_matrix(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
     """Christoffel's C(q, qdot): C_ij = ½ Σ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qdot_k.
 
     With it Mdot - 2C is skew (note 002, 002.C corrected and 002.skew).
@@ -53,12 +56,14 @@ def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
     return each_state(robot, _coriolis, q, v)
 
 
-def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
+def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
     """Joint torques g(q) that hold the arm against gravity: g = dV/dq (note 002, 002.G).
 
     Args:
@@ -71,12 +76,14 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, gravity, joint_vector(robot, q, "q"))
 
 
 def inverse_dynamics(
-    robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
     """Joint torques of a motion, by recursive Newton-Euler (note 000, 000.ne).
 
@@ -92,6 +99,8 @@ def inverse_dynamics(
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     tau = plain_inverse(robot, q, v, a) if wrench is None else None
     if tau is not None:
@@ -104,7 +113,7 @@ def inverse_dynamics(
 
 
 def forward_dynamics(
-    robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
     """Joint accelerations under joint torques, by the articulated-body algorithm.
 
@@ -119,6 +128,8 @@ def forward_dynamics(
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     a = plain_forward(robot, q, v, tau) if wrench is None else None
     if a is not None:
@@ -147,7 +158,7 @@ def plain_forward(robot: Robot, q: Any, v: Any, tau: Any) -> Array | None:
     return None
 
 
-def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
+def kinetic_energy(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array | float:
     """T = ½ qdot^T M qdot, armatures included (note 002).
 
     Args:
@@ -160,6 +171,8 @@ def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
     # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
@@ -178,7 +191,7 @@ def moving(robot: Robot, inertia: Array, v: Array) -> Array | float:
     return finite_answer(robot, energy, "kinetic_energy")
 
 
-def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
+def potential_energy(robot: ArmLike, q: ArrayLike) -> Array | float:
     """V = -Σ m g^T p_C, zero at the base origin (note 000, 000.lag).
 
     Args:
@@ -191,6 +204,8 @@ def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, _potential, joint_vector(robot, q, "q"))
 

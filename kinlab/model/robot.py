@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array, frozen, set_fields
+from kinlab.arrays import Array, frozen, set_fields, shown
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
-from kinlab.model.urdf_write import to_urdf
+from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
@@ -63,6 +63,8 @@ class Robot:
                 "floating base; continuous joints as revolute)"
             )
         n = int(self.model.nv)
+        if not n:
+            raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
         set_fields(
             self,
             n=n,
@@ -96,7 +98,7 @@ class Robot:
         Returns:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
-        text = to_urdf(table)
+        text = written(table)
         chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
@@ -153,22 +155,6 @@ class Robot:
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
-def require_robot(robot: object) -> None:
-    """Refuses what is no robot.
-
-    Raises:
-        StructureError: saying how to make one of it.
-    """
-    if isinstance(robot, Robot):
-        return
-    if isinstance(robot, str):
-        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
-    if isinstance(robot, DHTable):
-        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
-    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
-    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
-
-
 def scratch(robot: Robot) -> Any:
     """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
     try:
@@ -192,8 +178,6 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
 
@@ -205,8 +189,9 @@ def frame_id(robot: Robot, name: str) -> int:
         NameUnknownError: with the near names.
     """
     names = [str(frame.name) for frame in robot.model.frames]
-    if name not in names:
-        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+    if not isinstance(name, str) or name not in names:
+        told = near(name if isinstance(name, str) else "", names)
+        message = f"robot {robot.name!r}: frame {shown(name)} does not exist; {told}"
         raise NameUnknownError(message)
     return _frame_index(robot.model, name)
 
