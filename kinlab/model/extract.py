@@ -38,9 +38,9 @@ def to_dh(robot: Robot | Any) -> DHTable:
         robot: a :class:`Robot`, or a ``pin.Model`` whose joints form one chain.
 
     Returns:
-        A table with the robot's frames, limits, inertias, armatures and gravity: FK, M and g
-        are those of the robot at the same q. Its ``source`` states the measured difference of
-        the tool poses.
+        A table with the robot's frames, limits, inertias, armatures, friction and gravity: FK, M
+        and g are those of the robot at the same q. Its ``source`` states the measured difference
+        of the tool poses.
 
     Raises:
         StructureError: the joints branch, a joint has several degrees of freedom, or two axes
@@ -171,6 +171,8 @@ def _link(model: Any, data: Any, frames: list[Array], axes: list[Axis], i: int) 
         com=np.array(inertia.lever),
         inertia=0.5 * (inertia.inertia + inertia.inertia.T),
         armature=float(model.armature[k]),
+        viscous_friction=float(model.damping[k]),
+        coulomb_friction=float(model.friction[k]),
         name=str(model.names[i]),
     )
 

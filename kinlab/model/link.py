@@ -79,7 +79,8 @@ def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
 # -------- One row of a DH table: geometry, limits and inertia of a link and its joint
 
 _GEOMETRY = ("a", "alpha", "d", "theta")
-_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature")
+_FRICTION = ("viscous_friction", "coulomb_friction")
+_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature", *_FRICTION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,6 +101,9 @@ class DHLink:
         com: centre of mass in DH frame i, metres, shape (3,).
         inertia: tensor about the centre of mass with the axes of DH frame i, kg m², (3, 3).
         armature: rotor inertia reflected to the joint, kg m² or kg; adds to M_ii.
+        viscous_friction: torque per speed that the joint's bearings take, N m s/rad or N s/m: the
+            ``damping`` of URDF.
+        coulomb_friction: torque that they take at any speed, N m or N: the ``friction`` of URDF.
         name: the joint's name; ``None`` numbers it.
 
     Raises:
@@ -120,6 +124,8 @@ class DHLink:
     com: ArrayLike = (0.0, 0.0, 0.0)
     inertia: ArrayLike = field(default_factory=lambda: np.zeros((3, 3)))
     armature: float = 0.0
+    viscous_friction: float = 0.0
+    coulomb_friction: float = 0.0
     name: str | None = None
 
     def __post_init__(self) -> None:
@@ -148,7 +154,7 @@ class DHLink:
         assert self.lower is not None and self.upper is not None
         if self.lower > self.upper:
             raise TableError(f"{place}: lower {self.lower:g} is above upper {self.upper:g}")
-        for column in ("mass", "armature", "velocity", "effort"):
+        for column in ("mass", "armature", "velocity", "effort", *_FRICTION):
             if getattr(self, column) < 0:
                 raise TableError(f"{place}: {column} is {getattr(self, column):g}; it must be >= 0")
         check_inertia(np.asarray(self.inertia), place, TableError)

@@ -32,12 +32,13 @@ MOST_LINKS = 100
 """Most links of a table: the engine's memory grows with the cube, 70 MB at 100."""
 
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
-_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature")
+_FRICTION = ("viscous_friction", "coulomb_friction")
+_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature", *_FRICTION)
 _ANGLES = ("alpha", "theta")
 _LIMITS = ("lower", "upper")
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _COM = ("com_x", "com_y", "com_z")
-_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature")
+_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature", *_FRICTION)
 _LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, *_DYNAMICS, "name")
 _TABLE_KEYS = ("name", "convention", "source", "gravity", "base", "tool", "tool_name", "links")
 _PLAIN_KEYS = tuple(k for k in _LINK_KEYS if k not in ("com", "inertia"))

@@ -206,6 +206,7 @@ def to_urdf(table: DHTable) -> str:
                 limit=y.Limit(
                     effort=link.effort, velocity=link.velocity, lower=link.lower, upper=link.upper
                 ),
+                dynamics=_friction(link, y),
             )
         )
         parent = name
@@ -223,6 +224,12 @@ def _inertial(link: DHLink, place: LinkPlacement, y: Any) -> Any:
     centre = np.eye(4)
     centre[:3, 3] = link.com
     return y.Inertial(origin=place.tail @ centre, mass=link.mass, inertia=inertia)
+
+
+def _friction(link: DHLink, y: Any) -> Any:
+    if link.viscous_friction == 0.0 and link.coulomb_friction == 0.0:
+        return None
+    return y.Dynamics(damping=link.viscous_friction, friction=link.coulomb_friction)
 
 
 def _fixed(
