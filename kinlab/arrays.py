@@ -237,14 +237,14 @@ def number(value: Any, what: str, *, above: float | None = None) -> float:
     return found
 
 
-def truth(value: Any, what: str) -> bool:
+def truth(value: Any, what: str, error: type[KinlabError] = OptionError) -> bool:
     """Reads true or false.
 
     Raises:
-        OptionError: anything else.
+        KinlabError: (the class given) anything else.
     """
     if not isinstance(value, (bool, np.bool_)):
-        raise OptionError(f"{what} is {shown(value)}; give True or False")
+        raise error(f"{what} is {shown(value)}; give True or False")
     return bool(value)
 
 

@@ -65,6 +65,7 @@ def to_dh(robot: Robot | Any) -> DHTable:
         gravity=np.array(model.gravity.linear),
         source=f"extracted from {robot.source or robot.name}",
         tool_name=_tool_name(robot),
+        unphysical=any(link.inertia_flaw is not None for link in links),
     )
     miss = _pose_difference(robot, table)
     # near-parallel axes put the common normal far away, where rounding is magnified

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, shaped
-from kinlab.errors import InertiaError, OptionError, StructureError
+from kinlab.errors import InertiaError, OptionError, StructureError, already_said
 from kinlab.model import urdf_read
-from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.dh import DHLink, DHTable, with_links
 from kinlab.model.link import check_inertia
 from kinlab.model.robot import Robot, require_robot
 from kinlab.model.urdf_engine import write_inertial
@@ -52,6 +52,11 @@ def with_payload(
     given = np.zeros((3, 3)) if inertia is None else inertia
     tensor = shaped(given, (3, 3), "with_payload: inertia", InertiaError)
     check_inertia(tensor, "with_payload", InertiaError)
+    with already_said():
+        return _loaded(robot, load, centre, tensor)
+
+
+def _loaded(robot: Robot, load: float, centre: Array, tensor: Array) -> Robot:
     if robot.table is not None:
         return Robot.from_dh(_heavier(robot.table, load, centre, tensor))
     source = f"{robot.source}; with a payload of {load:g} kg"
@@ -69,7 +74,7 @@ def _heavier(table: DHTable, mass: float, com: Array, inertia: Array) -> DHTable
     turn = tool[:3, :3]
     merged = _merged(last, mass, turn @ com + tool[:3, 3], turn @ inertia @ turn.T)
     source = f"{table.source}; with a payload of {mass:g} kg"
-    return replace(table, links=[*table.links[:-1], merged], source=source.removeprefix("; "))
+    return replace(with_links(table, [*table.links[:-1], merged]), source=source.removeprefix("; "))
 
 
 def _merged(link: DHLink, mass: float, com: Array, inertia: Array) -> DHLink:

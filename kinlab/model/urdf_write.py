@@ -173,8 +173,8 @@ def to_urdf(table: DHTable) -> str:
         table: the DH table.
 
     Returns:
-        URDF text. Gravity other than standard and armatures stand in a ``<kinlab>`` element,
-        which other tools ignore.
+        URDF text. Gravity other than standard, armatures, and that inertias are meant which no body
+        can have, stand in a ``<kinlab>`` element, which other tools ignore.
     """
     if not isinstance(table, DHTable):
         raise TableError(f"to_urdf: {type(table).__name__} is no DHTable; kl.to_dh makes one")
@@ -266,6 +266,8 @@ def _text(urdf: Any, table: DHTable, names: tuple[str, ...]) -> str:
     extension = etree.SubElement(
         root, EXTENSION, gravity=" ".join(repr(float(g)) for g in np.asarray(table.gravity))
     )
+    if table.unphysical:
+        extension.set("unphysical", "true")
     for name, armature in armatures.items():
         etree.SubElement(extension, "joint", name=name, armature=repr(armature))
     etree.indent(root, "  ")
