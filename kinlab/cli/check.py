@@ -104,11 +104,21 @@ def check(
         _print_json(done, judged)
     else:
         _print_all(done, judged, rows)
+    for line in _remarks(todo if what else []):
+        echo(line, err=json)
     for file in report or ():
         write_report(file, done, judged)
         echo(f"wrote {file}", err=json)
     if not all(row.ok for row in done) or not all(one.agrees for one in judged):
         raise typer.Exit(1)
+
+
+def _remarks(todo: Sequence[Task]) -> list[str]:
+    """What must be said of the robots that were named."""
+    from kinlab.model.robot import Robot, remarks
+
+    robots = {task.name: task.robot for task in todo if isinstance(task.robot, Robot)}
+    return [f"{name}: {line}" for name, robot in robots.items() for line in remarks(robot)]
 
 
 def _formula_files(what: list[str]) -> tuple[list[Document], list[str]]:

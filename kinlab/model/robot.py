@@ -7,6 +7,7 @@ what does not lie on the way from the root to the tool is locked at zero.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -15,9 +16,11 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array, frozen, set_fields, shown
-from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
+from kinlab.model.link import inertia_flaw
+from kinlab.model.urdf_records import read_tree
 from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
@@ -99,7 +102,8 @@ class Robot:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
         text = written(table)
-        chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
+        with already_said():  # by the table
+            chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
     @staticmethod
@@ -180,6 +184,53 @@ def require_inertia(robot: Robot) -> None:
     """
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
+
+
+def remarks(robot: Robot) -> tuple[str, ...]:
+    """What must be said of a robot before its dynamics are used, a sentence each.
+
+    Joint friction, which counts only where it is asked for; masses without inertia; inertias that
+    no body can have but that its table or URDF says are meant, or that rounding made so.
+    """
+    said = []
+    model = robot.model
+    losses = zip(robot.joint_names, model.damping, model.friction, strict=True)
+    rough = [name for name, viscous, coulomb in losses if viscous or coulomb]
+    if rough:
+        said.append(
+            f"joint friction of {_listed(rough)}: it counts with friction=True in inverse_dynamics "
+            "and forward_dynamics, and in nothing else"
+        )
+    bodies = list(_moving_bodies(robot))
+    points = [name for name, mass, inertia in bodies if mass and not inertia.any()]
+    if points:
+        said.append(f"mass without inertia: {_listed(points)}: computed as point masses")
+    for name, _, inertia in bodies:
+        flaw = inertia_flaw(inertia)
+        if flaw is not None:
+            said.append(f"unphysical: {name}: {flaw.told}; computed with as it stands")
+    return tuple(said)
+
+
+def _moving_bodies(robot: Robot) -> Iterator[tuple[str, float, Array]]:
+    """Name, mass and tensor, as they were written, of each body that the arm moves."""
+    if robot.table is not None:
+        for i, link in enumerate(robot.table.links, 1):
+            yield f"link {i}", link.mass, np.asarray(link.inertia)
+    elif robot.urdf:
+        tree = read_tree(urdf_read.parse(robot.urdf, robot.name), robot.name)
+        for name in tree.links_behind(tree.joints[robot.joint_names[0]].child):
+            inertial = tree.links[name].inertial
+            if inertial is not None:
+                yield name, inertial.mass, inertial.inertia
+    else:
+        for name, body in zip(robot.joint_names, list(robot.model.inertias)[1:], strict=True):
+            yield f"the links behind joint {name}", float(body.mass), np.array(body.inertia)
+
+
+def _listed(names: list[str], most: int = 8) -> str:
+    rest = len(names) - most
+    return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
 
 
 def frame_id(robot: Robot, name: str) -> int:
