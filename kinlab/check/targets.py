@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -14,6 +15,9 @@ from kinlab.check.unread import Unread
 from kinlab.errors import FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas.record import Formula
 from kinlab.model.library import shipped
+
+_ID = re.compile(r"[0-9]{3}\.[A-Za-z][A-Za-z0-9]*(\.[A-Za-z0-9]+)?")
+"""What is written like the id of a note's formula."""
 
 
 @dataclass(frozen=True)
@@ -113,6 +117,8 @@ def _tasks_of(text: str) -> list[Task]:
     if on_robot and text not in shipped():
         return on_robot  # a mechanism that only the catalogue knows
     try:
+        if _ID.fullmatch(text):  # what follows the point is no ending of a file
+            raise NameUnknownError(text)
         return on_robot + _table(text)
     except NameUnknownError:
         names = {name for _, name in plan(catalogue())} | {f.id for f in catalogue()}

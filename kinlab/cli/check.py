@@ -96,6 +96,7 @@ def check(
         for file in report or ():
             check_report_path(file)
         found = _Found()
+        todo: Sequence[Task] = ()
         rest = _formula_files(what or [], samples, seed, found)
         if rest or not what:
             todo, unread = read_tasks(rest)
@@ -110,6 +111,8 @@ def check(
         _print_json(found)
     else:
         _print_all(found, rows)
+    for line in _remarks(todo if what else ()):
+        echo(line, err=json)
     for file in report or ():
         write_report(file, found.rows, found.judged, found.unread)
         echo(f"wrote {file}", err=json)
@@ -119,6 +122,14 @@ def check(
         raise typer.Exit(2)
     if not all(row.ok for row in found.rows) or not all(one.agrees for one in found.judged):
         raise typer.Exit(1)
+
+
+def _remarks(todo: Sequence[Task]) -> list[str]:
+    """What must be said of the robots that were named."""
+    from kinlab.model.robot import Robot, remarks
+
+    robots = {task.name: task.robot for task in todo if isinstance(task.robot, Robot)}
+    return [f"{name}: {line}" for name, robot in robots.items() for line in remarks(robot)]
 
 
 @dataclass
