@@ -129,7 +129,7 @@ def sweep(
 
     Args:
         robot: what the measure is of: anything that names an arm or a five-bar, or any object
-            that can be pickled.
+            that can be pickled (text and paths always name a mechanism).
         measure: a name or names (``"pose"``, ``"position"``, ``"jacobian"``,
             ``"singular_values"``, ``"condition"``, ``"yoshikawa"``, ``"inverse_condition"``,
             ``"min_singular"``, ``"isotropy"``, all of the full Jacobian in SI units), or a
