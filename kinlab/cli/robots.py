@@ -140,11 +140,11 @@ def _joints(robot: Robot) -> Table:
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v
-        revolute = "P" not in model.joints[j].shortname().removeprefix("JointModel")
-        unit, factor = ("°", 180 / math.pi) if revolute else (" m", 1.0)
+        kind = robot.joint_kinds[j - 1]
+        unit, factor = ("°", 180 / math.pi) if kind == "revolute" else (" m", 1.0)
         table.add_row(
             name,
-            "revolute" if revolute else "prismatic",
+            kind,
             f"{robot.lower[k] * factor:.5g}{unit}",
             f"{robot.upper[k] * factor:.5g}{unit}",
             f"{model.upperVelocityLimit[k]:.4g}",

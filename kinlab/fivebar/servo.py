@@ -23,9 +23,16 @@ from kinlab.drives.cycles import LIFT, TRAVEL, Path, pick_and_place
 from kinlab.drives.demand import Demand, gear_shares
 from kinlab.drives.fitting import Duty, MotorFit, fit_motors, stretch_to_motor
 from kinlab.drives.motors import Motor, catalogue, find_motor
-from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError
+from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
 from kinlab.fivebar.arguments import HANGING, Mode
-from kinlab.fivebar.dynamics import RodModel, crank_inertia, joint_mass, rod_model, torques
+from kinlab.fivebar.dynamics import (
+    RodModel,
+    bars_without_mass,
+    crank_inertia,
+    joint_mass,
+    rod_model,
+    torques,
+)
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
 from kinlab.tolerances import TOLERANCES
@@ -289,6 +296,7 @@ class ServoSizing:
         cycle: what the cranks do along it.
         fits: the motors that fit first, the one of least peak torque first; then the others,
             the nearest to fitting first.
+        remarks: what the figures leave out, a sentence each: bars without mass.
     """
 
     workspace: Rectangle
@@ -306,6 +314,7 @@ class ServoSizing:
     path: Path
     cycle: Demand
     fits: tuple[MotorFit, ...]
+    remarks: tuple[str, ...] = ()
 
     @property
     def short_list(self) -> tuple[MotorFit, ...]:
@@ -345,6 +354,9 @@ def size_servo(
         UnreachableError, SingularError: the rectangle is not free of singularities; says where.
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
         InertiaError: the linkage has neither masses nor a payload.
+
+    Warns:
+        KinlabWarning: cranks or rods have no mass.
     """
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
@@ -368,6 +380,9 @@ def size_servo(
             "can be sized"
         )
     require_regular(linkage, box, mode)
+    missing = bars_without_mass(linkage)
+    if missing:
+        warn(f"{linkage.name}: {missing}")
     exact, massless = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)
 
@@ -424,6 +439,7 @@ def size_servo(
         path=path,
         cycle=cycle,
         fits=fit_motors(duty, motors, gear_ratio),
+        remarks=(missing,) if missing else (),
     )
 
 

@@ -284,7 +284,7 @@ def _check_link(link: DHLink, place: str, unphysical: bool) -> None:
             turns = abs(angle) / (2.0 * math.pi)
             warn(
                 f"{place}: {column} is {angle:g} rad, {turns:.3g} turns: degrees? "
-                f'(write "{angle:g} deg")'
+                f'({angle:g} deg = {math.radians(angle):.4g} rad; files take "{angle:g} deg")'
             )
 
 

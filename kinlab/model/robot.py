@@ -41,6 +41,9 @@ class Robot:
         source: where the numbers come from.
         n: number of joints.
         lower, upper: limits of q, (n,), rad or m.
+        joint_kinds: ``"revolute"`` or ``"prismatic"``, joint by joint.
+        slack: how far beyond its limits each joint's q is hardly meant, (n,), rad or m.
+        near_square: |q|² up to which no entry of q lies beyond its limits by its slack.
     """
 
     name: str
@@ -56,6 +59,9 @@ class Robot:
     singular_mass: str = field(init=False, repr=False)
     """Why the mass matrix is singular, or an empty string."""
     shape: tuple[int] = field(init=False, repr=False)
+    joint_kinds: tuple[str, ...] = field(init=False, repr=False)
+    slack: Array = field(init=False, repr=False)
+    near_square: float = field(init=False, repr=False)
     _scratch: threading.local = field(init=False, repr=False, default_factory=threading.local)
 
     def __post_init__(self) -> None:
@@ -66,12 +72,23 @@ class Robot:
                 "floating base; continuous joints as revolute)"
             )
         n = int(self.model.nv)
+        lower, upper = (
+            frozen(limits)
+            for limits in (self.model.lowerPositionLimit, self.model.upperPositionLimit)
+        )
+        kinds = tuple(_kind(joint) for joint in list(self.model.joints)[1:])
+        stroke = np.maximum(10.0 * (upper - lower), 1.0)
+        slack = np.where([kind == "revolute" for kind in kinds], 2.0 * np.pi, stroke)
+        nearest = float(np.min(np.minimum(upper + slack, slack - lower)))
         set_fields(
             self,
             n=n,
             shape=(n,),
-            lower=frozen(self.model.lowerPositionLimit),
-            upper=frozen(self.model.upperPositionLimit),
+            lower=lower,
+            upper=upper,
+            joint_kinds=kinds,
+            slack=frozen(slack),
+            near_square=max(nearest, 0.0) ** 2,
             singular_mass=_why_singular(self.model, self.name),
         )
 
@@ -248,6 +265,11 @@ def _moving_bodies(robot: Robot) -> Iterator[tuple[str, float, Array]]:
 def _listed(names: list[str], most: int = 8) -> str:
     rest = len(names) - most
     return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _kind(joint: Any) -> str:
+    prismatic = "P" in joint.shortname().removeprefix("JointModel")
+    return "prismatic" if prismatic else "revolute"
 
 
 def frame_id(robot: Robot, name: str) -> int:
