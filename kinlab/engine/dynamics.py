@@ -18,10 +18,11 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, truth
 from kinlab.engine.kinematics import each_state, statics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia, scratch
 
 
-def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
+def mass_matrix(robot: ArmLike, q: ArrayLike) -> Array:
     """Joint-space inertia matrix M(q), symmetric positive definite (note 002, 002.M).
 
     Args:
@@ -35,12 +36,14 @@ def mass_matrix(robot: Robot, q: ArrayLike) -> Array:
         StateError: q of the wrong shape or type, or not finite.
         InertiaError: a joint moves no inertia.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q = joint_vector(robot, q, "q")
     return _mass_matrix(robot, q) if q.ndim == 1 else each_state(robot, _mass_matrix, q)
 
 
-def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+def coriolis_matrix(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
     """Christoffel's C(q, qdot): C_ij = ½ Σ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qdot_k.
 
     With it Mdot - 2C is skew (note 002, 002.C corrected and 002.skew).
@@ -55,12 +58,14 @@ def coriolis_matrix(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
     return each_state(robot, _coriolis, q, v)
 
 
-def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
+def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
     """Joint torques g(q) that hold the arm against gravity: g = dV/dq (note 002, 002.G).
 
     Args:
@@ -73,11 +78,13 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, gravity, joint_vector(robot, q, "q"))
 
 
-def friction_torques(robot: Robot, v: ArrayLike) -> Array:
+def friction_torques(robot: ArmLike, v: ArrayLike) -> Array:
     """Joint torques that move the joints against their own friction: B qdot + tau_c sign(qdot).
 
     Viscous and Coulomb friction of each joint as its DH row or its URDF's ``<dynamics>`` states
@@ -94,13 +101,14 @@ def friction_torques(robot: Robot, v: ArrayLike) -> Array:
     Raises:
         StateError: v of the wrong shape or type, or not finite.
     """
+    robot = as_robot(robot)
     v = joint_vector(robot, v, "v")
     lost: Array = robot.model.damping * v + robot.model.friction * np.sign(v)
     return lost
 
 
 def inverse_dynamics(
-    robot: Robot,
+    robot: ArmLike,
     q: ArrayLike,
     v: ArrayLike,
     a: ArrayLike,
@@ -135,6 +143,8 @@ def inverse_dynamics(
         StateError, InertiaError: as :func:`mass_matrix`.
         OptionError: friction is neither true nor false.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     tau = plain_inverse(robot, q, v, a) if wrench is None and friction is False else None
     if tau is not None:
@@ -149,7 +159,7 @@ def inverse_dynamics(
 
 
 def forward_dynamics(
-    robot: Robot,
+    robot: ArmLike,
     q: ArrayLike,
     v: ArrayLike,
     tau: ArrayLike,
@@ -173,6 +183,8 @@ def forward_dynamics(
     Raises:
         StateError, InertiaError, OptionError: as :func:`inverse_dynamics`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     a = plain_forward(robot, q, v, tau) if wrench is None and friction is False else None
     if a is not None:
@@ -203,7 +215,7 @@ def plain_forward(robot: Robot, q: Any, v: Any, tau: Any) -> Array | None:
     return None
 
 
-def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
+def kinetic_energy(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array | float:
     """T = ½ qdot^T M qdot, armatures included (note 002).
 
     Args:
@@ -216,6 +228,8 @@ def kinetic_energy(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array | float:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
     # pin.computeKineticEnergy leaves out the armature of a joint whose axis is not x, y or z
@@ -234,7 +248,7 @@ def moving(robot: Robot, inertia: Array, v: Array) -> Array | float:
     return finite_answer(robot, energy, "kinetic_energy")
 
 
-def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
+def potential_energy(robot: ArmLike, q: ArrayLike) -> Array | float:
     """V = -Σ m g^T p_C, zero at the base origin (note 000, 000.lag).
 
     Args:
@@ -247,6 +261,8 @@ def potential_energy(robot: Robot, q: ArrayLike) -> Array | float:
     Raises:
         StateError, InertiaError: as :func:`mass_matrix`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, _potential, joint_vector(robot, q, "q"))
 

@@ -22,6 +22,7 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any
 
+from kinlab.arrays import whole
 from kinlab.errors import OptionError
 
 VARIABLE = "KINLAB_THREADS"
@@ -119,9 +120,7 @@ def wanted_threads(threads: int | None) -> int:
     """
     if threads is None:
         return available()
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise OptionError(f"threads is {threads!r}; give a whole number of at least 1")
-    return threads
+    return whole(threads, "threads")
 
 
 def over_rows(

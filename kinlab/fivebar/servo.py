@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -35,6 +35,7 @@ from kinlab.fivebar.dynamics import (
 )
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
+from kinlab.host.answers import Introduction, Rows, shown_cells, vector
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -275,8 +276,8 @@ def require_regular(linkage: FiveBar, box: Rectangle, mode: Mode) -> None:
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
-@dataclass(frozen=True)
-class ServoSizing:
+@dataclass(frozen=True, repr=False)
+class ServoSizing(Rows):
     """What a workspace, a speed and an acceleration ask of the drives.
 
     Attributes:
@@ -315,6 +316,51 @@ class ServoSizing:
     cycle: Demand
     fits: tuple[MotorFit, ...]
     remarks: tuple[str, ...] = ()
+
+    def columns(self) -> dict[str, Any]:
+        """Motor by motor: what it must give and what it has over that."""
+        return {
+            "motor": [fit.motor.name for fit in self.fits],
+            "gear_ratio": [fit.gear_ratio for fit in self.fits],
+            "peak_torque": [fit.peak for fit in self.fits],
+            "rms_torque": [fit.rms for fit in self.fits],
+            "speed": [fit.speed for fit in self.fits],
+            "inertia_ratio": [fit.inertia_ratio for fit in self.fits],
+            "margin": [fit.margin for fit in self.fits],
+            "fits": [fit.fits for fit in self.fits],
+            "limited_by": [" and ".join(fit.limits) for fit in self.fits],
+        }
+
+    def introduction(self) -> Introduction:
+        """The torque, speed and power asked for, the motor that meets them, what is left out."""
+        torque = f"{self.torque.largest:.4g} N m at the cranks"
+        fitting = self.short_list
+        if fitting:
+            first = f"{fitting[0].motor.name} at a gear of {fitting[0].gear_ratio:.4g} fits"
+            told = f"{torque}; {first}"
+            if len(self.fits) > 1:
+                told += f" ({len(fitting)} of {len(self.fits)} motors fit)"
+        else:
+            told = f"{torque}; NO motor of {len(self.fits)} fits"
+        light = " FOR THE PAYLOAD ALONE" if self.remarks else ""
+        cells, cycle = self.columns(), self.cycle
+        return Introduction(
+            f"servo sizing{light}: {told}",
+            (
+                *self.remarks,
+                f"at v {self.v_max:g} m/s, a {self.a_max:g} m/s² in any direction of workspace "
+                f"{vector(self.workspace)}; gear efficiency {self.efficiency:g}",
+                f"crank rate {self.rate.largest:.4g} rad/s, load inertia "
+                f"{self.load_inertia.largest:.4g} kg m²",
+                f"pick-and-place cycle of {self.path.duration:.4g} s: RMS "
+                f"{float(np.max(cycle.rms_torque)):.4g} N m, peak power "
+                f"{float(np.max(cycle.peak_power)):.4g} W",
+            ),
+            tuple(key.replace("_", " ") for key in cells),
+            shown_cells(cells, 4),
+            len(self.fits),
+            "unsure" if self.remarks else "good" if fitting else "bad",
+        )
 
     @property
     def short_list(self) -> tuple[MotorFit, ...]:

@@ -11,24 +11,26 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array, whole
+from kinlab.arrays import Array, number, real_array, whole
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.arrays import chain
 from kinlab.fast.compiled import kernel
+from kinlab.host.answers import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of
 from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
 from kinlab.inverse.families import IKFamily, families_at
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.inverse.structures import GENERAL, Known, known_form
-from kinlab.model.robot import Robot, require_robot, scratch
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot, scratch
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
 
 
-@dataclass(frozen=True, eq=False)
-class IKBranches:
+@dataclass(frozen=True, eq=False, repr=False)
+class IKBranches(Rows):
     """All solutions found for one pose.
 
     Attributes:
@@ -60,6 +62,33 @@ class IKBranches:
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
+
+    def columns(self) -> dict[str, Any]:
+        """Solution by solution: its name, the joints, limits and errors."""
+        return {
+            "name": list(self.names),
+            **numbered("q", self.q),
+            "within_limits": self.within_limits,
+            "position_error": self.position_error,
+            "rotation_error": self.rotation_error,
+        }
+
+    def introduction(self) -> Introduction:
+        """How many solutions there are, whether these are all, and what that rests on."""
+        sure = "these are all" if self.complete else "there may be MORE"
+        inside = f"{int(np.sum(self.within_limits))} within the limits"
+        lines = [self.evidence] if self.evidence else []
+        if self.families:
+            lines.append(f"{counted(len(self.families), 'infinite set')} of solutions among them")
+        shown = {key: x for key, x in self.columns().items() if not key.endswith("error")}
+        return Introduction(
+            f"{counted(len(self), 'solution')}, {inside}; {sure} ({self.method})",
+            tuple(lines),
+            tuple(key.replace("_", " ") for key in shown) if len(self) else (),
+            shown_cells(shown) if len(self) else (),
+            len(self),
+            "good" if self.complete and len(self) else "unsure",
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +141,7 @@ _ARMS: WeakKeyDictionary[Robot, dict[Any, _Arm]] = WeakKeyDictionary()
 
 
 def ik_branches(
-    robot: Robot,
+    robot: ArmLike,
     T: ArrayLike,
     *,
     given: Mapping[str | int, float] | None = None,
@@ -147,9 +176,14 @@ def ik_branches(
         NameUnknownError: a given joint does not exist.
         OptionError: a value that is no finite number.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
+    if threads is not None:
+        threads = whole(threads, "threads")
     held = () if given is None else _read_given(robot, given)
     T = T if isinstance(T, np.ndarray) else real_array(T, f"robot {robot.name!r}: T")
+    if T.ndim not in (2, 3):
+        shapes = "(4, 4) or (N, 4, 4)"
+        raise StateError(f"robot {robot.name!r}: T has shape {T.shape}; expected {shapes}")
     if T.ndim == 3:
         targets = read_targets(robot, T)
         return _many(robot, held, targets, samples, threads)
@@ -355,7 +389,7 @@ def _spare(robot: Robot) -> int:
 
 
 def _read_given(robot: Robot, given: Mapping[str | int, float]) -> tuple[tuple[int, float], ...]:
-    held = {}
+    held: dict[int, float] = {}
     names = robot.joint_names
     for key, value in given.items():
         if isinstance(key, str):
@@ -370,10 +404,12 @@ def _read_given(robot: Robot, given: Mapping[str | int, float]) -> tuple[tuple[i
                 raise StateError(
                     f"robot {robot.name!r}: given names joint {joint}; it has 0 to {robot.n - 1}"
                 )
-        number = real_array(value, f"given[{key!r}]", OptionError)
-        if number.shape != ():
-            raise OptionError(f"given[{key!r}] is {value!r}; give one number")
-        held[joint] = float(number)
+        if joint in held:
+            raise OptionError(
+                f"robot {robot.name!r}: given names joint {names[joint]!r} twice, by its name and "
+                f"by its index {joint}; give one"
+            )
+        held[joint] = number(value, f"given[{key!r}]")
     return tuple(sorted(held.items()))
 
 

@@ -12,14 +12,15 @@ from kinlab.arrays import Array, number, shaped
 from kinlab.errors import InertiaError, OptionError, StructureError, already_said
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHLink, DHTable, with_links
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.link import check_inertia
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 from kinlab.model.urdf_engine import write_inertial
 from kinlab.model.urdf_records import Inertial
 
 
 def with_payload(
-    robot: Robot,
+    robot: ArmLike,
     mass: float,
     com: ArrayLike = (0.0, 0.0, 0.0),
     inertia: ArrayLike | None = None,
@@ -44,7 +45,7 @@ def with_payload(
         OptionError: a mass that is negative or no number.
         InertiaError: a centre or tensor of the wrong shape, or a tensor that no body can have.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     load = number(mass, "with_payload: mass")
     if load < 0.0:
         raise OptionError(f"with_payload: mass is {load:g}; it must be >= 0")

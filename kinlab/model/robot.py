@@ -15,18 +15,19 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array, frozen, set_fields
+from kinlab.arrays import Array, frozen, set_fields, shown
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
+from kinlab.host.answers import Answer, Introduction, brief, counted, vector
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
 from kinlab.model.link import inertia_flaw
 from kinlab.model.urdf_records import read_tree
-from kinlab.model.urdf_write import to_urdf
+from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True, eq=False)
-class Robot:
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot(Answer):
     """A serial arm: a Pinocchio model and the frame that counts as its tool.
 
     Build one with :meth:`from_dh`, :meth:`from_urdf` or :func:`kinlab.load`.
@@ -72,6 +73,8 @@ class Robot:
                 "floating base; continuous joints as revolute)"
             )
         n = int(self.model.nv)
+        if not n:
+            raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
         lower, upper = (
             frozen(limits)
             for limits in (self.model.lowerPositionLimit, self.model.upperPositionLimit)
@@ -90,6 +93,28 @@ class Robot:
             slack=frozen(slack),
             near_square=max(nearest, 0.0) ** 2,
             singular_mass=_why_singular(self.model, self.name),
+        )
+
+    def __repr__(self) -> str:
+        return f"<Robot {self.name!r}: {counted(self.n, 'joint')}, tool {self.tool_name!r}>"
+
+    def introduction(self) -> Introduction:
+        """The joints, what moves, and what must be said of it."""
+        mass = sum(float(body.mass) for body in list(self.model.inertias)[1:])
+        gravity = vector(self.model.gravity.linear)
+        rows = tuple(
+            (name, kind, _reach(low, kind), _reach(high, kind))
+            for name, kind, low, high in zip(
+                self.joint_names, self.joint_kinds, self.lower, self.upper, strict=True
+            )
+        )
+        said = (self.singular_mass, *remarks(self))
+        lines = (brief(self.source), f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", *said)
+        return Introduction(
+            f"robot {self.name}: {counted(self.n, 'joint')}, tool frame {self.tool_name}",
+            tuple(line for line in lines if line),
+            ("joint", "kind", "from", "to"),
+            rows,
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -116,7 +141,7 @@ class Robot:
         Returns:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
-        text = to_urdf(table)
+        text = written(table)
         with already_said():  # by the table
             chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
@@ -174,22 +199,6 @@ class Robot:
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
-def require_robot(robot: object) -> None:
-    """Refuses what is no robot.
-
-    Raises:
-        StructureError: saying how to make one of it.
-    """
-    if isinstance(robot, Robot):
-        return
-    if isinstance(robot, str):
-        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
-    if isinstance(robot, DHTable):
-        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
-    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
-    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
-
-
 def scratch(robot: Robot) -> Any:
     """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
     try:
@@ -213,8 +222,6 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
 
@@ -225,7 +232,6 @@ def remarks(robot: Robot) -> tuple[str, ...]:
     Joint friction, which counts only where it is asked for; masses without inertia; inertias that
     no body can have but that its table or URDF says are meant, or that rounding made so.
     """
-    require_robot(robot)
     said = []
     model = robot.model
     losses = zip(robot.joint_names, model.damping, model.friction, strict=True)
@@ -267,6 +273,10 @@ def _listed(names: list[str], most: int = 8) -> str:
     return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
 
 
+def _reach(limit: float, kind: str) -> str:
+    return f"{np.degrees(limit):.5g}°" if kind == "revolute" else f"{limit:.5g} m"
+
+
 def _kind(joint: Any) -> str:
     prismatic = "P" in joint.shortname().removeprefix("JointModel")
     return "prismatic" if prismatic else "revolute"
@@ -279,8 +289,9 @@ def frame_id(robot: Robot, name: str) -> int:
         NameUnknownError: with the near names.
     """
     names = [str(frame.name) for frame in robot.model.frames]
-    if name not in names:
-        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+    if not isinstance(name, str) or name not in names:
+        told = near(name if isinstance(name, str) else "", names)
+        message = f"robot {robot.name!r}: frame {shown(name)} does not exist; {told}"
         raise NameUnknownError(message)
     return _frame_index(robot.model, name)
 

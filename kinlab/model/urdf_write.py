@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.errors import TableError
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.rotations import matrices_rpy
@@ -162,7 +161,7 @@ _MATERIALS = {
 }
 
 
-def to_urdf(table: DHTable) -> str:
+def written(table: DHTable) -> str:
     """Writes a DH table as URDF.
 
     Links are named ``base_link``, ``link_1`` ... ``link_n`` and the tool; joints as the table
@@ -176,8 +175,6 @@ def to_urdf(table: DHTable) -> str:
         URDF text. Gravity other than standard, armatures, and that inertias are meant which no body
         can have, stand in a ``<kinlab>`` element, which other tools ignore.
     """
-    if not isinstance(table, DHTable):
-        raise TableError(f"to_urdf: {type(table).__name__} is no DHTable; kl.to_dh makes one")
     from yourdfpy import urdf as y  # half a second to import
 
     places = placements(table)

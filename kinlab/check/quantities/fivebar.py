@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, lru_cache
-from pathlib import Path
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from kinlab.errors import MechanismError, NameUnknownError, UnreachableError, ne
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.closed_chain import CRANKS, PASSIVE, ClosedChain
 from kinlab.fivebar.files import presets
+from kinlab.fivebar.linkage import as_five_bar
 from kinlab.notes.loop import Loop
 
 # -------- Five-bars as a domain: names and groups, the plain numbers, random closed poses
@@ -54,21 +54,6 @@ def numbers(fivebar: FiveBar) -> Loop:
         payload=fivebar.payload,
         g=-float(gravity[1]),
     )
-
-
-def load(fivebar: Any) -> FiveBar:
-    """A five-bar from itself, a preset's name or a path."""
-    if isinstance(fivebar, FiveBar):
-        return fivebar
-    if isinstance(fivebar, (str, Path)):
-        name = str(fivebar)
-        return _preset(name) if name in presets() else FiveBar.load(name)
-    raise NameUnknownError(f"five-bar: {type(fivebar).__name__} is no FiveBar, name or path of one")
-
-
-@cache
-def _preset(name: str) -> FiveBar:
-    return FiveBar.load(name)
 
 
 def members(name: str) -> tuple[str, ...]:
@@ -114,7 +99,7 @@ def _label(fivebar: FiveBar) -> str:
     return fivebar.name
 
 
-FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample, DRAWS)
+FIVEBAR = Domain("fivebar", as_five_bar, _label, numbers, members, sample, DRAWS)
 
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
