@@ -356,7 +356,7 @@ class ServoSizing(Rows):
                 f"{float(np.max(cycle.rms_torque)):.4g} N m, peak power "
                 f"{float(np.max(cycle.peak_power)):.4g} W",
             ),
-            tuple(key.replace("_", " ") for key in cells),
+            ("motor", "gear", "peak N m", "RMS N m", "r/min", *tuple(cells)[5:8], "limited by"),
             shown_cells(cells, 4),
             len(self.fits),
             "unsure" if self.remarks else "good" if fitting else "bad",
