@@ -22,7 +22,7 @@ from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choic
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, seed_of, whole
 from kinlab.fast.stacks import jacobian
-from kinlab.host.answers import Introduction, Rows, counted, numbered, shown_cells, vector
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 

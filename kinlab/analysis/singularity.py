@@ -18,7 +18,7 @@ from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.host.answers import Introduction, Rows, counted, numbered, vector
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import name_singularity, structure

@@ -21,7 +21,7 @@ from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
-from kinlab.host.answers import Introduction, Rows, numbered
+from kinlab.host.introductions import Introduction, Rows, numbered
 from kinlab.tolerances import TOLERANCES
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.host.answers import Answer, Introduction
+from kinlab.host.introductions import Answer, Introduction
 
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""

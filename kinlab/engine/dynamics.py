@@ -16,7 +16,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, truth
-from kinlab.engine.kinematics import each_state, statics
+from kinlab.engine.kinematics import each_call, each_state, statics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia, scratch
@@ -40,7 +40,7 @@ def mass_matrix(robot: ArmLike, q: ArrayLike) -> Array:
         robot = as_robot(robot)
     require_inertia(robot)
     q = joint_vector(robot, q, "q")
-    return _mass_matrix(robot, q) if q.ndim == 1 else each_state(robot, _mass_matrix, q)
+    return _mass_matrix(robot, q) if q.ndim == 1 else each_call(robot, pin.crba, q)
 
 
 def coriolis_matrix(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
@@ -62,7 +62,9 @@ def coriolis_matrix(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
         robot = as_robot(robot)
     require_inertia(robot)
     q, v = joint_vectors(robot, q=q, v=v)
-    return each_state(robot, _coriolis, q, v)
+    return (
+        _coriolis(robot, q, v) if q.ndim == 1 else each_call(robot, pin.computeCoriolisMatrix, q, v)
+    )
 
 
 def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
@@ -101,7 +103,8 @@ def friction_torques(robot: ArmLike, v: ArrayLike) -> Array:
     Raises:
         StateError: v of the wrong shape or type, or not finite.
     """
-    robot = as_robot(robot)
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     v = joint_vector(robot, v, "v")
     lost: Array = robot.model.damping * v + robot.model.friction * np.sign(v)
     return lost
@@ -150,7 +153,7 @@ def inverse_dynamics(
     if tau is not None:
         return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-    tau = each_state(robot, _inverse, q, v, a)
+    tau = _inverse(robot, q, v, a) if q.ndim == 1 else each_call(robot, pin.rnea, q, v, a)
     if wrench is not None:
         tau = tau + statics(robot, q, wrench)
     if truth(friction, "friction"):
@@ -194,7 +197,8 @@ def forward_dynamics(
         tau = tau - statics(robot, q, wrench)
     if truth(friction, "friction"):
         tau = tau - friction_torques(robot, v)
-    return finite_answer(robot, each_state(robot, _forward, q, v, tau), "forward_dynamics")
+    a = _forward(robot, q, v, tau) if q.ndim == 1 else each_call(robot, pin.aba, q, v, tau)
+    return finite_answer(robot, a, "forward_dynamics")
 
 
 def plain_inverse(robot: Robot, q: Any, v: Any, a: Any) -> Array | None:

@@ -35,7 +35,7 @@ from kinlab.fivebar.dynamics import (
 )
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
-from kinlab.host.answers import Introduction, Rows, shown_cells, vector
+from kinlab.host.introductions import Introduction, Rows, shown_cells, vector
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:

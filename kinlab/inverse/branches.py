@@ -15,7 +15,7 @@ from kinlab.arrays import Array, number, real_array, whole
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.arrays import chain
 from kinlab.fast.compiled import kernel
-from kinlab.host.answers import Introduction, Rows, counted, numbered, shown_cells
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of
 from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.host.answers import Answer, Introduction, Rows, counted, numbered, vector
+from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
 
 
 class IKStatus(StrEnum):

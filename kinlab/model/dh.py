@@ -29,8 +29,8 @@ from kinlab.arrays import (
     truth,
 )
 from kinlab.errors import StateError, TableError, already_said, warn
-from kinlab.host.answers import Introduction, Rows, brief, counted, vector
 from kinlab.host.files import write_text
+from kinlab.host.introductions import Introduction, Rows, brief, counted, vector
 from kinlab.model import table_files as table_io
 from kinlab.model.link import (
     Convention,

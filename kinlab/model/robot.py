@@ -17,7 +17,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array, frozen, set_fields, shown
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
-from kinlab.host.answers import Answer, Introduction, brief, counted, vector
+from kinlab.host.introductions import Answer, Introduction, brief, counted, vector
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
 from kinlab.model.link import inertia_flaw

@@ -265,8 +265,9 @@ def _only(element: Any, tag: str, where: str) -> Any:
         return None
     known = _STRICT.get(tag, _LOOSE.get(tag, ()))
     for key in found[0].attrib:
-        like = difflib.get_close_matches(key, known, 1, _LIKENESS)
-        if known and key not in known and (tag in _STRICT or like):
+        if not known or key in known:
+            continue
+        if tag in _STRICT or difflib.get_close_matches(key, known, 1, _LIKENESS):
             choices = near(key, known)
             raise UrdfError(f"{where}: <{tag}> has an unknown attribute {key!r}; {choices}")
     return found[0]
@@ -278,8 +279,10 @@ def _check_spelling(root: Any, place: str) -> None:
     for element in (root, *root.findall("link"), *root.findall("joint"), *root.iter("inertial")):
         known = _ELEMENTS[element.tag]
         for child in element:
+            if child.tag in known:
+                continue
             like = difflib.get_close_matches(child.tag, known, 1, _LIKENESS)
-            if child.tag not in known and like:
+            if like:
                 within = f"<{element.tag}> {element.get('name') or ''}".strip()
                 raise UrdfError(
                     f"{place}: {within}: unknown element <{child.tag}>; did you mean <{like[0]}>?"

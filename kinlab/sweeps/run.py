@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.fast.threads import available
-from kinlab.host.answers import MOST_ROWS, Introduction, Rows, counted, numbered
+from kinlab.host.introductions import MOST_ROWS, Introduction, Rows, counted, numbered
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.sweeps.measures import Measure, describe, read_measure

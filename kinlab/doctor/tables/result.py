@@ -10,7 +10,7 @@ from typing import Any
 from markupsafe import Markup
 
 from kinlab.doctor.tables.words import Cause, degrees, listed, number, where
-from kinlab.host.answers import Introduction, Rows
+from kinlab.host.introductions import Introduction, Rows
 from kinlab.model.dh import DHTable
 
 _ROW = re.compile(r"rows? [^:]*")

@@ -11,7 +11,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.errors import FileError, MissingExtraError
-from kinlab.host.answers import MOST_ROWS, Introduction, Rows, numbered
+from kinlab.host.introductions import MOST_ROWS, Introduction, Rows, numbered
 
 EVIL = "<script>alert(1)</script>&"
 ARM = kl.load("puma560")
