@@ -28,6 +28,8 @@ import os
 import signal
 import sys
 import threading
+import warnings
+from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
@@ -35,7 +37,7 @@ import typer
 
 from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
 from kinlab.cli.screen import complain
-from kinlab.errors import KinlabError
+from kinlab.errors import KinlabError, KinlabWarning
 
 _GROUPS = (
     robots,
@@ -77,6 +79,9 @@ def main() -> None:
     before = signal.signal(signal.SIGTERM, _stop) if in_front else None
     if in_front and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupt)
+    warnings.showwarning = _once(set())
+    if not sys.warnoptions:
+        warnings.simplefilter("always", KinlabWarning)
     try:
         app()
     except KinlabError as problem:
@@ -96,6 +101,17 @@ def main() -> None:
             signal.signal(signal.SIGTERM, before)
         if in_front and signal.getsignal(signal.SIGINT) is _interrupt:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _once(said: set[str]) -> Callable[..., None]:
+    """Shows each warning as one line on stderr, whatever line of code it points to."""
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            complain(f"warning: {message}")
+
+    return show
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -33,7 +33,7 @@ def view(
     tip: TIP = None,
     q: Annotated[
         str | None,
-        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, -0.5". Five-bar: cranks.'),
+        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, 30 deg". Five-bar: cranks.'),
     ] = None,
     save: Annotated[
         Path | None, typer.Option("--save", help="Write one HTML file instead of serving.")
@@ -137,9 +137,9 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 def _numbers(text: str) -> Array:
     import numpy as np
 
-    from kinlab.formulas.numbers import parse_number
+    from kinlab.formulas.numbers import parse_angle
 
-    return np.array([parse_number(word.strip()) for word in text.split(",")])
+    return np.array([parse_angle(word.strip()) for word in text.split(",")])
 
 
 def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, shaped
-from kinlab.engine.states import joint_vector
-from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.engine.states import joint_vector, warn_far
+from kinlab.errors import NameUnknownError, StateError, near, warn
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
@@ -39,9 +39,12 @@ class Scene(Page):
 
     def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
         self.robot = robot
-        start = np.zeros(robot.n) if q is None else one_pose(self._joints(q), robot.name)
         if q is None:
-            start = np.clip(start, robot.lower, robot.upper)
+            start = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
+        else:
+            start = one_pose(self._joints(q), robot.name)
+            if isinstance(q, np.ndarray):  # of a list, it has been asked
+                warn_far(robot, start)
         vis, recorder = new_scene()
         spec = draw_page(vis, robot, start, meshes=meshes)
         super().__init__(vis, recorder, spec, reach(robot), self._joints)
@@ -134,6 +137,9 @@ class FiveBarScene(Page):
             start = linkage.ik(best_start(linkage, assembly))
         else:
             start = shaped(theta, (2,), f"{linkage.name}: theta")
+            if np.max(np.abs(start)) > 4.0 * np.pi:
+                angles = " and ".join(f"{angle:.6g}" for angle in start)
+                warn(f"{linkage.name}: the cranks stand at {angles} rad: degrees?")
         xy = linkage.fk(start, assembly)
         self.mode = linkage.mode_of(start, xy)
         solve_pose(linkage, xy, self.mode, regular="II")
