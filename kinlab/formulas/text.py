@@ -76,7 +76,9 @@ class FormulaFile:
     symbol_texts: dict[str, str]
 
 
-def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
+def formula_file(
+    document: Mapping[str, Any], place: str, writing: typed.Hand | None = None
+) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
     Args:
@@ -87,6 +89,7 @@ def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
             text, MATLAB, Python or LaTeX, with its left side, or be a matrix
             (:mod:`kinlab.formulas.typed`). Entries of ``[latex]`` are LaTeX.
         place: the file, for messages.
+        writing: what more of the same writer's formulas say; None looks at these.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -113,7 +116,7 @@ def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
-    entries, symbols = _plain(entries, symbols, place)
+    entries, symbols = _plain(entries, symbols, place, writing)
     return FormulaFile(
         place,
         robot,
@@ -298,12 +301,12 @@ def _symbol(value: Any, place: str) -> Node:
 
 
 def _plain(
-    entries: dict[str, Any], symbols: dict[str, Any], place: str
+    entries: dict[str, Any], symbols: dict[str, Any], place: str, writing: typed.Hand | None
 ) -> tuple[dict[str, str], dict[str, Any]]:
     """Formulas and symbols as typed, made plain; a matrix as its entries."""
     given = {key: _text(value, f"{place}: {key}") for key, value in entries.items()}
     meant = {name: value for name, value in symbols.items() if isinstance(value, str)}
-    writing = typed.hand([*given.values(), *meant.values()], symbols)
+    writing = writing or typed.hand([*given.values(), *meant.values()], symbols)
     formulas = {}
     for name, value in typed.opened(given, place, writing).items():
         formulas[name] = typed.plain_formula(value, f"{place}: {name}", writing)

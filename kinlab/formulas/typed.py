@@ -437,9 +437,10 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
             raise ExpressionError(f"{at}: {name} is one entry, and a matrix is given")
         for i, row in enumerate(grid, 1):
             for j, cell in enumerate(row, 1):
-                below = f"[{i - 1}" if name in _LONG else f"{i}"
+                long = name in _LONG or "_" in name
+                below = f"[{i - 1}" if long else f"{i}"
                 column = len(row) > 1 or name in _TWO
-                if name in _LONG:
+                if long:
                     below += f",{j - 1}]" if column else "]"
                 elif column:
                     below += f"{j}"
