@@ -70,6 +70,8 @@ _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
 """Text without words: names of one letter, and functions."""
+_BESIDE = re.compile(r"_\w+\s+[A-Za-z]")
+"""A product of names without a sign, as only LaTeX has it."""
 _DOTTED = re.compile(r"([A-Za-zα-ωϑϕℓ])([\u0307\u0308])")
 _SUBSCRIPTS = re.compile("([₀-₉]+)")
 _SUPERSCRIPTS = re.compile("([⁰¹²³⁴-⁹]+)")
@@ -130,7 +132,8 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
     text = bare(text)
-    if not typeset and not text.isascii() and _ALONE.fullmatch(text):  # m₁l₁² cos θ₂
+    alone = not typeset and (not text.isascii() or _BESIDE.search(text))
+    if alone and _ALONE.fullmatch(text):  # m₁l₁² cos θ₂, m_1 l_1
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:

@@ -30,6 +30,7 @@ LARGEST = 256 * 1024
 KINDS = (".toml", ".tex", ".txt", ".md", ".py")
 _ID = 64
 _LINES = 2000
+_MOST = 400
 _WORDS = ("student", "id", "name", "matriculation", "student_id", "student id")
 
 
@@ -212,6 +213,8 @@ _INSIDE = re.compile(r"\\begin\{(\w*matrix|array|aligned|split)\}.*?\\end\{\1\}"
 
 def _of_latex(text: str) -> list[tuple[str, Any]]:
     text = _COMMENT.sub("", text)
+    if text.count(r"\begin") > _MOST or text.count("$") > 4 * _MOST or text.count(r"\[") > _MOST:
+        raise FileError(f"more than {_MOST} formulas in one file")
     body = _BODY.search(text)
     text = body[1] if body else text
     shown = [next(v for k, v in m.groupdict().items() if k != "env" and v is not None)

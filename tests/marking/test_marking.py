@@ -320,6 +320,12 @@ def test_no_right_formula_leaks(level, tmp_path):
     assert leaks(level, 8, 5, tmp_path) == 0
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize("level", ["place", "cause"])
+def test_no_right_formula_leaks_in_a_thousand_runs(level, tmp_path):
+    assert leaks(level, 500, 6, tmp_path) == 0
+
+
 def test_the_leak_is_seen_where_answers_are_told(tmp_path):
     assert leaks("answer", 4, 5, tmp_path) > 0
 
