@@ -12,6 +12,7 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
 ``ik``                 Command ``ik``: one pose from the command line
+``mark``               The command mark: a class's formulas against a sheet of questions
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
@@ -35,13 +36,14 @@ from typing import Any
 
 import typer
 
-from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
+from kinlab.cli import analysis, check, derive, fivebar, ik, mark, robots, view
 from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError, KinlabWarning
 
 _GROUPS = (
     robots,
     check,
+    mark,
     derive,
     ik,
     analysis,
