@@ -56,7 +56,7 @@ class SingularError(StateError):
 
 
 class MotorError(KinlabError, ValueError):
-    """A motor lacks a figure that sizing needs, or has an impossible one."""
+    """A motor or gearbox lacks a figure that sizing needs, or has an impossible one."""
 
 
 class NameUnknownError(KinlabError, KeyError):
