@@ -26,6 +26,7 @@ from .check.compare import Comparison as Comparison
 from .check.compare import compare as compare
 from .doctor.examine import diagnose as diagnose
 from .doctor.tables.diagnosis import diagnose_table as diagnose_table
+from .drives.arm import size_servos as size_servos
 from .engine.dynamics import coriolis_matrix as coriolis_matrix
 from .engine.dynamics import kinetic_energy as kinetic_energy
 from .engine.dynamics import mass_matrix as mass_matrix
