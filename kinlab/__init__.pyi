@@ -73,6 +73,7 @@ from .model.library import load as load
 from .model.link import Convention as Convention
 from .model.robot import Robot as Robot
 from .model.urdf_write import to_urdf as to_urdf
+from .motion.simulation import simulate as simulate
 from .postures.aspects import aspects as aspects
 from .postures.cuspidality import is_cuspidal as is_cuspidal
 from .postures.cuspidality import posture_path as posture_path

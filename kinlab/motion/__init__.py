@@ -15,6 +15,8 @@ module            what it holds
                   where they break
 ``record``        ``Motion``: joint positions, velocities and accelerations over time, exact
                   between the samples
+``simulation``    Motion under torques: an arm or a five-bar in time, with friction, and its balance
+                  of energy
 ``time_optimal``  Time-optimal motions along a path in joint space by toppra (the optional extra
                   ``motion``)
 ``tool_space``    Motions of the tool: straight lines with slerp, arcs, blends; joints by inverse
