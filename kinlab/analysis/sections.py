@@ -23,8 +23,8 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, number, seed_of
-from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import OptionError
+from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot, require_robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap

@@ -213,7 +213,8 @@ def _search(
     count, n = len(asked.targets), robot.n
     iterations = ITERATIONS["lm"] if asked.iterations is None else asked.iterations
     problem = search_of(arm, asked.tolerances, iterations, asked.searches)
-    flat = asked.targets[:, :3].reshape(count, 12)
+    # one layout, so that the kernel is compiled once for one pose and for many
+    flat = np.ascontiguousarray(asked.targets[:, :3].reshape(count, 12))
     guesses = _guesses(arm, asked)
     q, outcome = np.empty((count, n)), np.empty((count, 3), dtype=np.int64)
     errors = np.empty((count, 2))

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.arrays import Array, frozen, seed_of, whole, word
 from kinlab.engine.dynamics import mass_matrix
@@ -54,6 +55,17 @@ class WorkspaceMap:
     seed: int
     complete: bool
     planar: bool
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the map rests on: samples, which show where the tool can be and nothing beyond."""
+        how = f"seed {self.seed}" if self.sampling == "random" else "evenly spaced"
+        count = f"{len(self.values):,} {self.sampling} states within the joint limits, {how}"
+        return Evidence(
+            searched=count if self.complete else f"{count}; the run was stopped before its end",
+            proved="each point is reached by its state, up to rounding",
+            found="the extent and the best and least values: between samples there may be more",
+        )
 
     def save(self, path: str | Path) -> None:
         """Writes a compressed .npz; an old file stays whole if writing fails.

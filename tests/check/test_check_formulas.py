@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 
 import pytest
+from console import kinlab
 from lxml import etree
 from typer.testing import CliRunner
 
@@ -62,14 +61,11 @@ def write(folder, name, text):
     return folder / name
 
 
-def test_exit_codes_of_formula_files_from_a_shell(tmp_path):
+def test_exit_codes_of_formula_files(tmp_path):
     codes = {}
     for name, text in (("right", RIGHT), ("wrong", WRONG), ("bad", RIGHT.replace("c12", "frob"))):
         file = write(tmp_path, f"{name}.toml", text)
-        done = subprocess.run(
-            [sys.executable, "-m", "kinlab", "check", str(file)],
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
+        done = kinlab("check", file)
         codes[name] = done.returncode
         assert "Traceback" not in done.stdout + done.stderr
     assert codes == {"right": 0, "wrong": 1, "bad": 2}
