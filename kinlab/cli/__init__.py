@@ -12,6 +12,8 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
 ``ik``                 Command ``ik``: one pose from the command line
+``motion``             Command motion: from one joint position to the next, checked, timed, and
+                       written as CSV
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
@@ -33,7 +35,7 @@ from typing import Any
 
 import typer
 
-from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
+from kinlab.cli import analysis, check, derive, fivebar, ik, motion, robots, view
 from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError
 
@@ -42,6 +44,7 @@ _GROUPS = (
     check,
     derive,
     ik,
+    motion,
     analysis,
     fivebar,
     view,

@@ -81,7 +81,7 @@ class MotionCheck:
                 f"robot {self.robot!r}: within all limits; no singularity on the way "
                 f"(sigma_min above {self.sigma:.3g} at all times, task {self.task})"
             )
-        lines = [f"robot {self.robot!r}: {len(self.findings)} on the way"]
+        lines = [f"robot {self.robot!r}: {len(self.findings)} finding(s) on the way"]
         return "\n".join([*lines, *(f"  {one.sentence}" for one in self.findings)])
 
     __repr__ = __str__
