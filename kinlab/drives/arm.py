@@ -23,7 +23,8 @@ from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.engine.dynamics import inverse_dynamics, mass_matrix
 from kinlab.errors import MotorError, OptionError, StructureError
-from kinlab.model.robot import Robot, require_inertia, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot, require_inertia
 
 _FIRST, _MOST = 2_000, 400_000
 """Instants of the first grid over a motion, and of the last."""
@@ -104,7 +105,7 @@ class ArmSizing:
 
 
 def size_servos(
-    robot: Robot,
+    robot: ArmLike,
     motion: JointMotion,
     motors: str | Path | Motor | Sequence[str | Motor] | None = None,
     gears: str | Path | Gearbox | Sequence[Gearbox] | None = None,
@@ -136,7 +137,7 @@ def size_servos(
         MotorError: a motor lacks a figure. InertiaError: the arm has no masses.
         OptionError: an option that cannot be used. FileError: as of the catalogues.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     require_inertia(robot)
     if not hasattr(motion, "at") or not hasattr(motion, "knots"):
         raise StructureError(
@@ -201,8 +202,7 @@ def _at_instants(
     part[0], part[-1] = _INSIDE, 1.0 - _INSIDE
     t = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * part).ravel()
     q, v, a = motion.at(t)
-    tau = inverse_dynamics(robot, q, v, a, wrench)
-    tau = tau + robot.model.damping * v + robot.model.friction * np.sign(v)
+    tau = inverse_dynamics(robot, q, v, a, wrench, friction=True)
     return Demand(t, q, v, a, tau, np.array(robot.model.armature))
 
 

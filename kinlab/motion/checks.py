@@ -22,7 +22,8 @@ from kinlab.engine.dynamics import inverse_dynamics
 from kinlab.errors import StructureError
 from kinlab.fast.stacks import fk
 from kinlab.inverse.branches import ik_branches
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.motion.limits import positions_outside, read_limits
 from kinlab.motion.record import Motion, peak_of
 from kinlab.structure.task_space import TaskSpace, read_reachable_task
@@ -88,7 +89,7 @@ class MotionCheck:
 
 
 def check(
-    robot: Robot,
+    robot: ArmLike,
     motion: Motion,
     *,
     velocity: ArrayLike | None = None,
@@ -111,7 +112,7 @@ def check(
         StructureError: the motion has another number of joints.
         OptionError, NameUnknownError: limits or a task that cannot be used.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     if motion.q.shape[1] != robot.n:
         raise StructureError(
             f"robot {robot.name!r} has {robot.n} joints; the motion has {motion.q.shape[1]}"
@@ -160,7 +161,7 @@ def _limit_findings(
     effort = np.array(robot.model.upperEffortLimit)
     known = (effort > 0.0) & (effort < 1e100)
     if known.any() and not robot.singular_mass:
-        tau = np.abs(inverse_dynamics(robot, motion.q, motion.v, motion.a))
+        tau = np.abs(inverse_dynamics(robot, motion.q, motion.v, motion.a, friction=True))
         for joint in map(int, np.flatnonzero(known & (tau.max(axis=0) > effort * (1.0 + 1e-9)))):
             row = int(tau[:, joint].argmax())
             text = (

@@ -13,7 +13,8 @@ from scipy.interpolate import PPoly, make_interp_spline
 from kinlab.arrays import Array, number, word
 from kinlab.engine.states import joint_vector
 from kinlab.errors import LimitError, OptionError, StateError
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.motion import jerk_limited, laws, time_optimal
 from kinlab.motion.limits import Limits, read_limits, require_limits, stretch_to
 from kinlab.motion.record import Motion, motion_of, pieces_of, stretch
@@ -31,7 +32,7 @@ class _Planner(NamedTuple):
 
 
 def joint(
-    robot: Robot,
+    robot: ArmLike,
     points: ArrayLike,
     law: str = "quintic",
     *,
@@ -77,7 +78,7 @@ def joint(
         OptionError: neither acceleration nor duration; a limit that is not positive.
         NameUnknownError: no such law. MissingExtraError: its package is not installed.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     rows = read_points(robot, points)
     planner = _PLANNERS[word(law, _PLANNERS, "law")]
     limits = read_limits(robot, velocity, acceleration, jerk)

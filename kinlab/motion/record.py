@@ -22,7 +22,7 @@ from kinlab.arrays import Array, frozen, number, real_array
 from kinlab.engine.states import joint_vector
 from kinlab.errors import FileError, OptionError, StateError
 from kinlab.host.files import read_text, write_text
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
 
 MOST_SAMPLES = 1_000_000
 
@@ -249,7 +249,11 @@ def _ends(c: Array, lengths: Array) -> Array:
 
 
 def from_samples(
-    robot: Robot, t: ArrayLike, q: ArrayLike, v: ArrayLike | None = None, a: ArrayLike | None = None
+    robot: ArmLike,
+    t: ArrayLike,
+    q: ArrayLike,
+    v: ArrayLike | None = None,
+    a: ArrayLike | None = None,
 ) -> Motion:
     """A motion through samples: of q alone a spline of fifth degree, of q, v and a Hermite's.
 
@@ -263,7 +267,7 @@ def from_samples(
         StateError: shapes that do not agree, or not finite.
         OptionError: times that do not grow, too few samples, or only one of v and a.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     where = f"robot {robot.name!r}: motion"
     times = real_array(t, f"{where}: t", OptionError)
     rows = joint_vector(robot, q, "q")
@@ -291,14 +295,14 @@ def from_samples(
     )
 
 
-def read_motion(robot: Robot, path: str | Path) -> Motion:
+def read_motion(robot: ArmLike, path: str | Path) -> Motion:
     """Reads a CSV file of :meth:`Motion.write`, or one with the columns t and q1 ... qn only.
 
     Raises:
         FileError: no such file, another header, or a cell that is no number (says which).
         StateError, OptionError: as :func:`from_samples`.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     lines = [row for row in csv.reader(io.StringIO(read_text(path))) if row]
     header = [cell.strip() for cell in lines[0]] if lines else []
     wide = ["t", *(f"{name}{i + 1}" for name in "qva" for i in range(robot.n))]

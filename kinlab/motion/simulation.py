@@ -24,7 +24,9 @@ from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar import simulation as fivebar_simulation
-from kinlab.model.robot import Robot, require_inertia, require_robot, scratch
+from kinlab.fivebar.linkage import as_mechanism
+from kinlab.model.library import ArmLike
+from kinlab.model.robot import Robot, require_inertia, scratch
 from kinlab.motion.record import even_times
 
 Torque = Callable[[float, Array, Array], ArrayLike]
@@ -88,7 +90,7 @@ class Simulation:
 
 
 def simulate(
-    robot: Robot | FiveBar,
+    robot: ArmLike | FiveBar,
     q0: ArrayLike,
     v0: ArrayLike | None = None,
     torque: Torque | ArrayLike | None = None,
@@ -124,11 +126,11 @@ def simulate(
         SingularError, UnreachableError: a five-bar that cannot close, or has no unique motion.
     """
     times = even_times(number(duration, "duration", above=0.0), step)
+    robot = as_mechanism(robot)
     if isinstance(robot, FiveBar):
         if wrench is not None:
             raise OptionError(f"{robot.name}: a five-bar takes no wrench; give crank torques")
         return _five_bar(robot, q0, v0, torque, times)
-    require_robot(robot)
     require_inertia(robot)
     q, v = (_one(robot, value, name) for value, name in ((q0, "q0"), (v0, "v0")))
     force = None if wrench is None else read_wrench(robot, wrench)

@@ -16,7 +16,8 @@ from kinlab.engine.kinematics import jacobian_dot
 from kinlab.errors import OptionError, SingularError, UnreachableError
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse.search import ik
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.motion import laws
 from kinlab.motion.joint_space import STEP
 from kinlab.motion.limits import read_limits, require_limits
@@ -49,7 +50,7 @@ class ToolLimits:
 
 
 def cartesian(
-    robot: Robot,
+    robot: ArmLike,
     poses: Sequence[Any] | ArrayLike,
     *,
     q0: ArrayLike | None = None,
@@ -100,7 +101,7 @@ def cartesian(
         LimitError: joint speeds or accelerations above their limits; says the duration that works.
         StateError, OptionError, NameUnknownError: arguments that cannot be used.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     start, legs = read_legs(robot.name, poses)
     caps = _read_caps(
         robot, legs, velocity, acceleration, angular_velocity, angular_acceleration, duration

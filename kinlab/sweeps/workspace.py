@@ -19,6 +19,7 @@ from kinlab.engine.dynamics import mass_matrix
 from kinlab.errors import FileError, NameUnknownError, OptionError
 from kinlab.fast.stacks import fk
 from kinlab.host.files import write_bytes
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.sweeps.run import plan
@@ -129,7 +130,7 @@ class BinnedMap:
 
 
 def sample_workspace(
-    robot: Robot,
+    robot: ArmLike,
     task: Any = "auto",
     metric: str = "inverse_condition",
     *,
@@ -163,6 +164,7 @@ def sample_workspace(
         FileError: the folder cannot be written.
         InertiaError: metric ``"asada"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
     read_kind(metric)
     sampling = word(sampling, ("random", "grid"), "sampling")

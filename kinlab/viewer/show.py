@@ -5,14 +5,13 @@ from __future__ import annotations
 import os
 import sys
 import webbrowser
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
 from kinlab.errors import OptionError
-from kinlab.model.dh import DHTable
-from kinlab.model.library import load
+from kinlab.fivebar.linkage import as_mechanism
+from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
 
 if TYPE_CHECKING:
@@ -23,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def view(
-    robot: Robot | FiveBar | DHTable | str | Path,
+    robot: ArmLike | FiveBar,
     q: ArrayLike | None = None,
     *,
     meshes: bool = True,
@@ -36,7 +35,7 @@ def view(
     is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
 
     Args:
-        robot: the arm, a DH table or its file, or a :class:`kinlab.FiveBar`.
+        robot: anything that names an arm, or a :class:`kinlab.FiveBar`, its name or path.
         q: joint positions at the start, (n,); of a five-bar the crank angles, (2,). Left out,
             zero, and for a five-bar its best-conditioned hanging pose.
         meshes: draw the URDF's meshes; otherwise rods from joint to joint.
@@ -56,10 +55,7 @@ def view(
 
     arm: Any = robot
     scene: Scene | FiveBarScene
-    if isinstance(robot, DHTable):
-        robot = Robot.from_dh(robot)
-    elif isinstance(robot, (str, Path)):
-        robot = load(robot)
+    robot = as_mechanism(robot)
     if motion is not None and (against is not None or not isinstance(robot, Robot)):
         raise OptionError("view: a motion is shown of one arm: a Robot, a table or a name")
     if against is not None:
