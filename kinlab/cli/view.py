@@ -40,7 +40,10 @@ def view(
     ] = None,
     animate: Annotated[
         str | None,
-        typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus, posture."),
+        typer.Option(
+            "--animate",
+            help="Give it a motion: sweep, line, pick, locus, posture, or a .csv (t, q1, ...).",
+        ),
     ] = None,
     branches: Annotated[
         bool, typer.Option("--branches", help="Draw all solutions of the pose at q as ghosts.")
@@ -113,7 +116,11 @@ def _open(
         found = ik_branches(robot, fk(robot, scene.q))
         if len(found):
             scene.ghosts("branches", found.q)
-    if animate is not None:
+    if animate is not None and animate.lower().endswith(".csv"):
+        from kinlab.motion.record import read_motion
+
+        scene.play(read_motion(robot, animate))
+    elif animate is not None:
         from kinlab.viewer import motions
 
         shown = motions.motion(robot, animate, scene.q)

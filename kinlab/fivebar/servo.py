@@ -11,7 +11,7 @@ rods, the rotor and the gear's efficiency.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,8 +20,9 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import LIFT, TRAVEL, Path, pick_and_place
-from kinlab.drives.demand import Demand, gear_shares
+from kinlab.drives.demand import Demand
 from kinlab.drives.fitting import Duty, MotorFit, fit_motors, stretch_to_motor
+from kinlab.drives.gears import Drive
 from kinlab.drives.motors import Motor, catalogue, find_motor
 from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
 from kinlab.fivebar.arguments import HANGING, Mode
@@ -440,28 +441,29 @@ def size_servo(
     path = _cycle_in(box, v_max, a_max)
     cycle = follow(linkage, path, mode)
 
-    def shaft(pose: Pose) -> Callable[[Motor, float], Array]:
-        """Worst torque at the motors' shafts at some poses, (N, 2), by motor and gear ratio."""
+    def shaft(pose: Pose) -> Callable[[Drive], Array]:
+        """Worst torque at the motors' shafts at some poses, (N, 2), by drive."""
         load = torque_forms(bare, pose, exact)
         acceleration = acceleration_forms(linkage, pose)
 
-        def at(motor: Motor, j: float) -> Array:
-            rotor = motor.need("rotor_inertia") * j
-            shares = [c / j for c in dict.fromkeys(gear_shares(efficiency))]
+        def at(drive: Drive) -> Array:
+            rotor = drive.inertia * drive.gear.ratio
+            shares = [c / drive.gear.ratio for c in dict.fromkeys(drive.gear.shares)]
             peaks = [load.plus(acceleration, c, rotor).peak(v_max, a_max) for c in shares]
             return np.asarray(np.max(peaks, axis=0))
 
         return at
 
-    def peak(motor: Motor, j: float) -> float:
-        return search(lambda pose: shaft(pose)(motor, j)).largest
+    def peak(drives: Sequence[Drive]) -> Array:
+        return np.array([search(lambda pose, d=d: shaft(pose)(d)).largest for d in drives])  # type: ignore[misc]
 
     on_grid = shaft(solve_pose(linkage, grid_of(box), mode))
 
-    def estimate(motor: Motor, j: float) -> float:
-        return float(on_grid(motor, j).max())
+    def estimate(drives: Sequence[Drive]) -> Array:
+        return np.array([on_grid(drive).max() for drive in drives])
 
-    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate)
+    load = search(lambda pose: torque_forms(bare, pose, exact).peak(v_max, a_max)).largest
+    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate, load)
     motors = list(catalogue().values()) if motor is None else [find_motor(motor)]
     arm = crank_inertia(bare, massless)
     return ServoSizing(

@@ -12,6 +12,9 @@ from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.model.robot import Robot
+from kinlab.motion.checks import check
+from kinlab.motion.record import Motion
+from kinlab.motion.simulation import Simulation
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
@@ -93,6 +96,28 @@ class Scene(Page):
         path = self._node(name)
         shapes.ball(self._vis[path], 1.0, shapes.paint(shapes.ELLIPSOIDS[kind], 0.4))
         self._vis[path].set_transform(place)
+
+    def play(self, motion: Motion | Simulation) -> None:
+        """Gives the page a motion of :mod:`kinlab.motion`, or a simulated one, to play and scrub.
+
+        The tool's way is drawn as a line; where a planned motion meets a singularity or breaks a
+        limit, a labelled frame stands (:func:`kinlab.motion.check`).
+
+        Raises:
+            StateError: a motion of another number of joints.
+        """
+        rows = self._joints(motion.q)
+        tool = fk(self.robot, rows)[:, :3, 3]
+        if np.ptp(tool, axis=0).max() > 0.0:
+            self.path("the tool's way", tool)
+        if isinstance(motion, Simulation):
+            self.animate(rows, motion.t, "Simulated motion")
+        else:
+            self.animate(rows, motion.t, f"Motion: {motion.law}")
+            found = check(self.robot, motion).findings
+            for one in (x for x in found if x.kind != "branch"):  # it stands at its singularity
+                name = f"{one.kind}, t = {one.t:.3g} s"
+                self.frame(name, fk(self.robot, motion.at(one.t)[0]))
 
     def ghosts(self, name: str, q: ArrayLike, color: int | None = None) -> None:
         """Draws the robot see-through at other poses, such as the branches of an IK solution.
