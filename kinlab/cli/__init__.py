@@ -12,12 +12,7 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
 ``ik``                 Command ``ik``: one pose from the command line
-<<<<<<< HEAD
-``mark``               The command mark: a class's formulas against a sheet of questions
-=======
-``motion``             Command motion: from one joint position to the next, checked, timed, and
-                       written as CSV
->>>>>>> motion
+from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
@@ -41,11 +36,7 @@ from typing import Any
 
 import typer
 
-<<<<<<< HEAD
-from kinlab.cli import analysis, check, derive, fivebar, ik, mark, robots, view
-=======
-from kinlab.cli import analysis, check, derive, fivebar, ik, motion, robots, view
->>>>>>> motion
+from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
 from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError, KinlabWarning
 
