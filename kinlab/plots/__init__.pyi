@@ -5,6 +5,7 @@ from .canvas import save as save
 from .counts import solutions as solutions
 from .curves import singular_loci as singular_loci
 from .curves import singular_values as singular_values
+from .drives import torque_speed as torque_speed
 from .maps import workspace as workspace
 from .maps import workspace_cloud as workspace_cloud
 from .maps import workspace_map as workspace_map

@@ -12,7 +12,7 @@ from kinlab.plots.canvas import new_axes
 
 NAMES = {
     "ellipses", "fivebar", "fivebar_cycle", "fivebar_gains", "ik_history", "save",
-    "singular_loci", "singular_values", "solutions", "workspace", "workspace_cloud", "workspace_map",
+    "singular_loci", "singular_values", "solutions", "torque_speed", "workspace", "workspace_cloud", "workspace_map",
 }  # fmt: skip
 
 
