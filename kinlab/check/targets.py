@@ -10,9 +10,9 @@ from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
 from kinlab.check.guest import FunctionLostError, Guest
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.table_check import checks_of
-from kinlab.errors import FileError, NameUnknownError, near
+from kinlab.errors import FileError, NameUnknownError, OptionError, near
 from kinlab.formulas.record import Formula
-from kinlab.model.library import shipped
+from kinlab.model.library import load, shipped
 
 
 @dataclass(frozen=True)
@@ -44,13 +44,14 @@ class Task:
             return failed_row(self.record, self.robot, samples, seed, str(problem))
 
 
-def tasks(arguments: Iterable[str]) -> list[Task]:
+def tasks(arguments: Iterable[str], tool: str | None = None) -> list[Task]:
     """The rows that the arguments ask for.
 
     Args:
         arguments: each a robot's name, a .toml, .csv or .urdf file, a .py file of marked
             functions (it is run, in a process of its own), a note's number ("001") or a
             formula's id ("002.C"). None: everything.
+        tool: the tool of the robots among them, as for :func:`kinlab.load`.
 
     Returns:
         What is to run, in order.
@@ -59,8 +60,11 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
         NameUnknownError: no such robot, note or id; the near names are listed.
         FileError: a file that cannot be read, or a .py file without a marked function.
         FormulaError: a .py file that raises, ends its process or does not come back.
+        OptionError: a tool, and no robot whose it could be.
     """
     wanted = list(arguments)
+    if tool is not None and not wanted:
+        raise OptionError(f"check: tool {tool!r} is named, but no robot with it")
     if not wanted:
         pairs = plan(catalogue())
         return [_one(record, name) for record, name in pairs] + [
@@ -68,22 +72,27 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
         ]
     found: list[Task] = []
     for text in wanted:
-        found += _tasks_of(text)
+        found += _tasks_of(text, tool)
     return found
 
 
-def _tasks_of(text: str) -> list[Task]:
+def _tasks_of(text: str, tool: str | None) -> list[Task]:
     if text.endswith(".py"):
+        _refuse_tool(text, tool)
         return [Task(record, name, name, text) for record, name in plan(_user_formulas(text))]
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
+        _refuse_tool(text, tool)
         return [_one(record, name) for record, name in plan(by_id)]
     on_robot = [_one(record, name) for record, name in plan(catalogue(), lambda n: n == text)]
     if on_robot and text not in shipped():
+        _refuse_tool(text, tool)
         return on_robot  # a mechanism that only the catalogue knows
     try:
-        return on_robot + _table(text)
-    except NameUnknownError:
+        return on_robot + _table(text, tool)
+    except NameUnknownError as problem:
+        if "is unknown" not in str(problem):
+            raise  # it is of the tool
         names = {name for _, name in plan(catalogue())} | {f.id for f in catalogue()}
         raise NameUnknownError(
             f"{text!r} is no robot, file, note or formula; {near(text, sorted(names))} "
@@ -91,12 +100,22 @@ def _tasks_of(text: str) -> list[Task]:
         ) from None
 
 
+def _refuse_tool(text: str, tool: str | None) -> None:
+    """Only a robot has a tool that can be named.
+
+    Raises:
+        OptionError: something else was given with one.
+    """
+    if tool is not None:
+        raise OptionError(f"check {text}: it is no robot; leave --tool {tool} out")
+
+
 def _one(record: Formula, name: str) -> Task:
     return Task(record, name, name)
 
 
-def _table(name: str) -> list[Task]:
-    robot = SERIAL.load(name)
+def _table(name: str, tool: str | None = None) -> list[Task]:
+    robot = SERIAL.load(name) if tool is None else load(name, tool)
     return [Task(record, robot, name) for record in checks_of(robot)]
 
 

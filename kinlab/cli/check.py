@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from kinlab.cli.robots import TIP
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import Screen, echo, screen, styled, visible
-from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -66,7 +65,7 @@ def check(
     samples: SAMPLES = 200,
     seed: SEED = 0,
     against: AGAINST = None,
-    tip: TIP = None,
+    tool: TOOL = None,
 ) -> None:
     """Put hand formulas beside the engine, or a DH table beside another description of the arm.
 
@@ -78,10 +77,8 @@ def check(
     if against is not None:
         from kinlab.cli.against import check_against
 
-        check_against(what or [], against, tip, report or [], json, seed)
+        check_against(what or [], against, tool, report or [], json, seed)
         return
-    if tip is not None:
-        raise OptionError(f"check: --tip {tip!r} names the tool of a URDF given by --against")
     from kinlab.check.catalogue import Row
     from kinlab.check.report.write import check_report_path, write_report
     from kinlab.check.targets import tasks
@@ -92,7 +89,7 @@ def check(
     for file in report or ():
         check_report_path(file)
     texts, rest = _formula_files(what or [])
-    todo = tasks(rest) if rest or not texts else []
+    todo = tasks(rest, tool) if rest or not texts else []
     judged = _examine(texts, samples, seed)
     done = []
     for one in _run(todo, samples, seed):
