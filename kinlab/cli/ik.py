@@ -86,8 +86,9 @@ def ik(
         shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
         echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
     echo(
-        f"{answer.status}, task {answer.task}: position error "
-        f"{1e3 * answer.position_error:.3g} mm, rotation error {np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
+        f"{answer.status}, task {answer.task}: "
+        f"position error {1e3 * answer.position_error:.3g} mm, rotation error "
+        f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
         f"{answer.restarts} restarts"
     )
     for remark in answer.remarks:
