@@ -239,6 +239,17 @@ def number(value: Any, what: str, *, above: float | None = None) -> float:
     return found
 
 
+def truth(value: Any, what: str, error: type[KinlabError] = OptionError) -> bool:
+    """Reads true or false.
+
+    Raises:
+        KinlabError: (the class given) anything else.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise error(f"{what} is {shown(value)}; give True or False")
+    return bool(value)
+
+
 def word(value: Any, valid: Iterable[str], what: str) -> str:
     """Reads a name out of several.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -10,9 +11,13 @@ from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
 from kinlab.check.guest import FunctionLostError, Guest
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.table_check import checks_of
-from kinlab.errors import FileError, NameUnknownError, OptionError, near
+from kinlab.check.unread import Unread
+from kinlab.errors import FileError, KinlabError, NameUnknownError, OptionError, near
 from kinlab.formulas.record import Formula
 from kinlab.model.library import load, shipped
+
+_ID = re.compile(r"[0-9]{3}\.[A-Za-z][A-Za-z0-9]*(\.[A-Za-z0-9]+)?")
+"""What is written like the id of a note's formula."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,11 @@ class Task:
     robot: Any
     name: str
     file: str = ""
+
+    @property
+    def ships(self) -> bool:
+        """Whether formula and mechanism come with kinlab, so that names say all."""
+        return not self.file and (isinstance(self.robot, str) or self.name in shipped())
 
     @property
     def label(self) -> str:
@@ -62,6 +72,23 @@ def tasks(arguments: Iterable[str], tool: str | None = None) -> list[Task]:
         FormulaError: a .py file that raises, ends its process or does not come back.
         OptionError: a tool, and no robot whose it could be.
     """
+    found, unread = read_tasks(arguments, tool)
+    if unread:
+        raise unread[0].problem
+    return found
+
+
+def read_tasks(
+    arguments: Iterable[str], tool: str | None = None
+) -> tuple[list[Task], list[Unread]]:
+    """As :func:`tasks`, for those who go on without what cannot be read.
+
+    Returns:
+        What is to run, in order; and the arguments, or the functions of a file, that cannot.
+
+    Raises:
+        OptionError: a tool, and no robot at all.
+    """
     wanted = list(arguments)
     if tool is not None and not wanted:
         raise OptionError(f"check: tool {tool!r} is named, but no robot with it")
@@ -69,17 +96,30 @@ def tasks(arguments: Iterable[str], tool: str | None = None) -> list[Task]:
         pairs = plan(catalogue())
         return [_one(record, name) for record, name in pairs] + [
             task for name in shipped() for task in _table(name)
-        ]
+        ], []
     found: list[Task] = []
+    unread: list[Unread] = []
     for text in wanted:
-        found += _tasks_of(text, tool)
-    return found
+        try:
+            if text.endswith(".py"):
+                _refuse_tool(text, tool)
+                _read_functions(text, found, unread)
+            else:
+                found += _tasks_of(text, tool)
+        except KinlabError as problem:
+            unread.append(Unread(text, problem))
+    return found, unread
+
+
+def _read_functions(path: str, found: list[Task], unread: list[Unread]) -> None:
+    for record in _user_formulas(path):
+        try:
+            found += [Task(record, name, name, path) for _, name in plan([record])]
+        except KinlabError as problem:
+            unread.append(Unread(f"{path}: {record.key}", problem))
 
 
 def _tasks_of(text: str, tool: str | None) -> list[Task]:
-    if text.endswith(".py"):
-        _refuse_tool(text, tool)
-        return [Task(record, name, name, text) for record, name in plan(_user_formulas(text))]
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
         _refuse_tool(text, tool)
@@ -89,6 +129,8 @@ def _tasks_of(text: str, tool: str | None) -> list[Task]:
         _refuse_tool(text, tool)
         return on_robot  # a mechanism that only the catalogue knows
     try:
+        if _ID.fullmatch(text):  # what follows the point is no ending of a file
+            raise NameUnknownError(f"{text} is unknown")
         return on_robot + _table(text, tool)
     except NameUnknownError as problem:
         if "is unknown" not in str(problem):

@@ -29,9 +29,8 @@ def visible(text: str) -> str:
     Line ends and tabs stay; codes that turn the direction of writing and halves of surrogate
     pairs go too.
     """
-    if text.isprintable():
-        return text
-    return "".join(_shown(letter) for letter in text)
+    lines = text.split("\n")
+    return "\n".join(line if line.isprintable() else "".join(map(_shown, line)) for line in lines)
 
 
 def _shown(letter: str) -> str:
@@ -137,8 +136,8 @@ def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
     typer.echo(visible(text), err=err, nl=nl)
 
 
-def complain(problem: BaseException) -> None:
-    """An error as one line on stderr."""
+def complain(problem: BaseException | str) -> None:
+    """An error or a warning as one line on stderr."""
     text = visible(" ".join(str(problem).split()))
     if len(text) > LONGEST:
         text = f"{text[:LONGEST]} ..."

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.engine.states import joint_vector, joint_vectors
 from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.host.answers import once
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, frame_id, scratch
 
@@ -180,22 +181,42 @@ def place(robot: Robot, at: str | None) -> int:
 
 def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Array:
     """Applies ``single`` to one state, or to each row of a stack."""
-    first = arguments[0]
-    if first.ndim == 1:
+    if arguments[0].ndim == 1:
         answer: Array = single(robot, *arguments)
         return answer
+    rows: Array = once(_each_row, robot, single, *arguments)
+    return rows
+
+
+def _each_row(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Array:
+    first = arguments[0]
     stacks = [a for a in arguments if isinstance(a, np.ndarray)]
     rest = arguments[len(stacks) :]
     if not len(first):
         sample = single(robot, *(np.zeros(stack.shape[1:]) for stack in stacks), *rest)
         return np.empty((0, *np.shape(sample)))
     rows = zip(*stacks, strict=True)
-    answer = np.asarray(single(robot, *next(rows), *rest))
+    answer: Array = np.asarray(single(robot, *next(rows), *rest))
     out = np.empty((len(first), *answer.shape))
     out[0] = answer
     for i, row in enumerate(rows, 1):
         out[i] = single(robot, *row, *rest)
     return out
+
+
+def each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    """Pinocchio's ``call(model, data, *state)`` for each row of stacks: half of the time of
+    :func:`each_state` for what it answers by value."""
+    rows: Array = once(_each_call, robot, call, *stacks)
+    return rows
+
+
+def _each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    model, data = robot.model, scratch(robot)
+    if not len(stacks[0]):
+        sample = call(model, data, *(np.zeros(robot.n) for _ in stacks))
+        return np.empty((0, *np.shape(sample)))
+    return np.array([call(model, data, *state) for state in zip(*stacks, strict=True)])
 
 
 def frame_pose(robot: Robot, q: Array, index: int) -> Array:

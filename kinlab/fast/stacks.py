@@ -19,7 +19,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, truth
 from kinlab.engine import dynamics, kinematics
 from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
 from kinlab.engine.kinematics import (
@@ -110,12 +110,17 @@ def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
 
 @_documented(dynamics.inverse_dynamics)
 def inverse_dynamics(
-    robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike,
+    q: ArrayLike,
+    v: ArrayLike,
+    a: ArrayLike,
+    wrench: ArrayLike | None = None,
+    friction: bool = False,
 ) -> Array:
     if type(robot) is not Robot:
         robot = as_robot(robot)
     require_inertia(robot)
-    one = plain_inverse(robot, q, v, a) if wrench is None else None
+    one = plain_inverse(robot, q, v, a) if wrench is None and friction is False else None
     if one is not None:
         return one
     if _long(q, v, a):
@@ -124,18 +129,25 @@ def inverse_dynamics(
             tau = _in_parallel(pin.rneaInParallel, robot, q, v, a)
             if wrench is not None:
                 tau = tau + statics(robot, q, wrench)
+            if truth(friction, "friction"):
+                tau = tau + dynamics.friction_torques(robot, v)
             return finite_answer(robot, tau, "inverse_dynamics")
-    return dynamics.inverse_dynamics(robot, q, v, a, wrench)
+    return dynamics.inverse_dynamics(robot, q, v, a, wrench, friction)
 
 
 @_documented(dynamics.forward_dynamics)
 def forward_dynamics(
-    robot: ArmLike, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike,
+    q: ArrayLike,
+    v: ArrayLike,
+    tau: ArrayLike,
+    wrench: ArrayLike | None = None,
+    friction: bool = False,
 ) -> Array:
     if type(robot) is not Robot:
         robot = as_robot(robot)
     require_inertia(robot)
-    one = plain_forward(robot, q, v, tau) if wrench is None else None
+    one = plain_forward(robot, q, v, tau) if wrench is None and friction is False else None
     if one is not None:
         return one
     if _long(q, v, tau):
@@ -143,9 +155,11 @@ def forward_dynamics(
         if q.ndim == 2:
             if wrench is not None:
                 tau = tau - statics(robot, q, wrench)
+            if truth(friction, "friction"):
+                tau = tau - dynamics.friction_torques(robot, v)
             a = _in_parallel(pin.abaInParallel, robot, q, v, tau)
             return finite_answer(robot, a, "forward_dynamics")
-    return dynamics.forward_dynamics(robot, q, v, tau, wrench)
+    return dynamics.forward_dynamics(robot, q, v, tau, wrench, friction)
 
 
 def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
@@ -172,7 +186,7 @@ def _long(*values: Any) -> bool:
         try:
             if len(value) >= PARALLEL_FROM:
                 return True
-        except TypeError:  # a number, which the engine's function refuses by name
+        except Exception:  # noqa: BLE001  no sequence: the engine's function refuses it by name
             continue
     return False
 

@@ -24,6 +24,7 @@ from typing import Any
 
 from kinlab.arrays import whole
 from kinlab.errors import OptionError
+from kinlab.host.processes import cores
 
 VARIABLE = "KINLAB_THREADS"
 """Environment variable that limits the threads of a batch."""
@@ -103,13 +104,6 @@ def available() -> int:
     if _PROCESS.forked:
         return 1
     return cores() if text is None else int(text)
-
-
-def cores() -> int:
-    """Cores this process may run on."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def wanted_threads(threads: int | None) -> int:

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, number, shown
+from kinlab.arrays import Array, number, truth
 from kinlab.errors import OptionError
 from kinlab.fast.compiled import kernel as compiled
 from kinlab.fast.stacks import jacobian
@@ -121,8 +121,7 @@ def ik(
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
-    if not isinstance(history, (bool, np.bool_)):
-        raise OptionError(f"history is {shown(history)}; give True or False")
+    history = truth(history, "history")
     if branch is not None:
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")

@@ -40,9 +40,9 @@ def to_dh(robot: ArmLike) -> DHTable:
         robot: the arm (what :func:`kinlab.model.library.as_robot` takes).
 
     Returns:
-        A table with the robot's frames, limits, inertias, armatures and gravity: FK, M and g
-        are those of the robot at the same q. Its ``source`` states the measured difference of
-        the tool poses.
+        A table with the robot's frames, limits, inertias, armatures, friction and gravity: FK, M
+        and g are those of the robot at the same q. Its ``source`` states the measured difference
+        of the tool poses.
 
     Raises:
         StructureError: the joints branch, a joint has several degrees of freedom, or two axes
@@ -65,6 +65,7 @@ def to_dh(robot: ArmLike) -> DHTable:
         gravity=np.array(model.gravity.linear),
         source=f"extracted from {robot.source or robot.name}",
         tool_name=_tool_name(robot),
+        unphysical=any(link.inertia_flaw is not None for link in links),
     )
     miss = _pose_difference(robot, table)
     # near-parallel axes put the common normal far away, where rounding is magnified
@@ -201,6 +202,8 @@ def _link(model: Any, data: Any, frames: list[Array], axes: list[Axis], i: int) 
         com=np.array(inertia.lever),
         inertia=0.5 * (inertia.inertia + inertia.inertia.T),
         armature=float(model.armature[k]),
+        viscous_friction=float(model.damping[k]),
+        coulomb_friction=float(model.friction[k]),
         name=str(model.names[i]),
     )
 

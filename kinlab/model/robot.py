@@ -7,6 +7,7 @@ what does not lie on the way from the root to the tool is locked at zero.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -15,15 +16,18 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array, frozen, set_fields, shown
-from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
+from kinlab.host.introductions import Answer, Introduction, brief, counted, vector
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
+from kinlab.model.link import inertia_flaw
+from kinlab.model.urdf_records import read_tree
 from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True, eq=False)
-class Robot:
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot(Answer):
     """A serial arm: a Pinocchio model and the frame that counts as its tool.
 
     Build one with :meth:`from_dh`, :meth:`from_urdf` or :func:`kinlab.load`.
@@ -38,6 +42,9 @@ class Robot:
         source: where the numbers come from.
         n: number of joints.
         lower, upper: limits of q, (n,), rad or m.
+        joint_kinds: ``"revolute"`` or ``"prismatic"``, joint by joint.
+        slack: how far beyond its limits each joint's q is hardly meant, (n,), rad or m.
+        near_square: |q|² up to which no entry of q lies beyond its limits by its slack.
     """
 
     name: str
@@ -53,6 +60,9 @@ class Robot:
     singular_mass: str = field(init=False, repr=False)
     """Why the mass matrix is singular, or an empty string."""
     shape: tuple[int] = field(init=False, repr=False)
+    joint_kinds: tuple[str, ...] = field(init=False, repr=False)
+    slack: Array = field(init=False, repr=False)
+    near_square: float = field(init=False, repr=False)
     _scratch: threading.local = field(init=False, repr=False, default_factory=threading.local)
 
     def __post_init__(self) -> None:
@@ -65,13 +75,46 @@ class Robot:
         n = int(self.model.nv)
         if not n:
             raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
+        lower, upper = (
+            frozen(limits)
+            for limits in (self.model.lowerPositionLimit, self.model.upperPositionLimit)
+        )
+        kinds = tuple(_kind(joint) for joint in list(self.model.joints)[1:])
+        stroke = np.maximum(10.0 * (upper - lower), 1.0)
+        slack = np.where([kind == "revolute" for kind in kinds], 2.0 * np.pi, stroke)
+        nearest = float(np.min(np.minimum(upper + slack, slack - lower)))
         set_fields(
             self,
             n=n,
             shape=(n,),
-            lower=frozen(self.model.lowerPositionLimit),
-            upper=frozen(self.model.upperPositionLimit),
+            lower=lower,
+            upper=upper,
+            joint_kinds=kinds,
+            slack=frozen(slack),
+            near_square=max(nearest, 0.0) ** 2,
             singular_mass=_why_singular(self.model, self.name),
+        )
+
+    def __repr__(self) -> str:
+        return f"<Robot {self.name!r}: {counted(self.n, 'joint')}, tool {self.tool_name!r}>"
+
+    def introduction(self) -> Introduction:
+        """The joints, what moves, and what must be said of it."""
+        mass = sum(float(body.mass) for body in list(self.model.inertias)[1:])
+        gravity = vector(self.model.gravity.linear)
+        rows = tuple(
+            (name, kind, _reach(low, kind), _reach(high, kind))
+            for name, kind, low, high in zip(
+                self.joint_names, self.joint_kinds, self.lower, self.upper, strict=True
+            )
+        )
+        said = (self.singular_mass, *remarks(self))
+        lines = (brief(self.source), f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", *said)
+        return Introduction(
+            f"robot {self.name}: {counted(self.n, 'joint')}, tool frame {self.tool_name}",
+            tuple(line for line in lines if line),
+            ("joint", "kind", "from", "to"),
+            rows,
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -99,7 +142,8 @@ class Robot:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
         text = written(table)
-        chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
+        with already_said():  # by the table
+            chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
     @staticmethod
@@ -180,6 +224,62 @@ def require_inertia(robot: Robot) -> None:
     """
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
+
+
+def remarks(robot: Robot) -> tuple[str, ...]:
+    """What must be said of a robot before its dynamics are used, a sentence each.
+
+    Joint friction, which counts only where it is asked for; masses without inertia; inertias that
+    no body can have but that its table or URDF says are meant, or that rounding made so.
+    """
+    said = []
+    model = robot.model
+    losses = zip(robot.joint_names, model.damping, model.friction, strict=True)
+    rough = [name for name, viscous, coulomb in losses if viscous or coulomb]
+    if rough:
+        said.append(
+            f"joint friction of {_listed(rough)}: it counts with friction=True in inverse_dynamics "
+            "and forward_dynamics, and in nothing else"
+        )
+    bodies = list(_moving_bodies(robot))
+    points = [name for name, mass, inertia in bodies if mass and not inertia.any()]
+    if points:
+        said.append(f"mass without inertia: {_listed(points)}: computed as point masses")
+    for name, _, inertia in bodies:
+        flaw = inertia_flaw(inertia)
+        if flaw is not None:
+            said.append(f"unphysical: {name}: {flaw.told}; computed with as it stands")
+    return tuple(said)
+
+
+def _moving_bodies(robot: Robot) -> Iterator[tuple[str, float, Array]]:
+    """Name, mass and tensor, as they were written, of each body that the arm moves."""
+    if robot.table is not None:
+        for i, link in enumerate(robot.table.links, 1):
+            yield f"link {i}", link.mass, np.asarray(link.inertia)
+    elif robot.urdf:
+        tree = read_tree(urdf_read.parse(robot.urdf, robot.name), robot.name)
+        for name in tree.links_behind(tree.joints[robot.joint_names[0]].child):
+            inertial = tree.links[name].inertial
+            if inertial is not None:
+                yield name, inertial.mass, inertial.inertia
+    else:
+        for name, body in zip(robot.joint_names, list(robot.model.inertias)[1:], strict=True):
+            yield f"the links behind joint {name}", float(body.mass), np.array(body.inertia)
+
+
+def _listed(names: list[str], most: int = 8) -> str:
+    rest = len(names) - most
+    return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _reach(limit: float, kind: str) -> str:
+    return f"{np.degrees(limit):.5g}°" if kind == "revolute" else f"{limit:.5g} m"
+
+
+def _kind(joint: Any) -> str:
+    prismatic = "P" in joint.shortname().removeprefix("JointModel")
+    return "prismatic" if prismatic else "revolute"
 
 
 def frame_id(robot: Robot, name: str) -> int:

@@ -172,8 +172,8 @@ def written(table: DHTable) -> str:
         table: the DH table.
 
     Returns:
-        URDF text. Gravity other than standard and armatures stand in a ``<kinlab>`` element,
-        which other tools ignore.
+        URDF text. Gravity other than standard, armatures, and that inertias are meant which no body
+        can have, stand in a ``<kinlab>`` element, which other tools ignore.
     """
     from yourdfpy import urdf as y  # half a second to import
 
@@ -203,6 +203,7 @@ def written(table: DHTable) -> str:
                 limit=y.Limit(
                     effort=link.effort, velocity=link.velocity, lower=link.lower, upper=link.upper
                 ),
+                dynamics=_friction(link, y),
             )
         )
         parent = name
@@ -220,6 +221,12 @@ def _inertial(link: DHLink, place: LinkPlacement, y: Any) -> Any:
     centre = np.eye(4)
     centre[:3, 3] = link.com
     return y.Inertial(origin=place.tail @ centre, mass=link.mass, inertia=inertia)
+
+
+def _friction(link: DHLink, y: Any) -> Any:
+    if link.viscous_friction == 0.0 and link.coulomb_friction == 0.0:
+        return None
+    return y.Dynamics(damping=link.viscous_friction, friction=link.coulomb_friction)
 
 
 def _fixed(
@@ -256,6 +263,8 @@ def _text(urdf: Any, table: DHTable, names: tuple[str, ...]) -> str:
     extension = etree.SubElement(
         root, EXTENSION, gravity=" ".join(repr(float(g)) for g in np.asarray(table.gravity))
     )
+    if table.unphysical:
+        extension.set("unphysical", "true")
     for name, armature in armatures.items():
         etree.SubElement(extension, "joint", name=name, armature=repr(armature))
     etree.indent(root, "  ")

@@ -13,6 +13,7 @@ import inspect
 import random
 import warnings
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -63,8 +64,13 @@ CALLS: Calls = {
     "mass_matrix stack": ("mass_matrix", _arm(q=("array", STACK))),
     "inverse_dynamics stack": ("inverse_dynamics", _arm(
         q=("array", STACK), v=("array", STACK), a=("array", STACK))),
-    "inverse_dynamics": ("inverse_dynamics", _arm(q=_q, v=_v, a=_a, wrench=_w)),
-    "forward_dynamics": ("forward_dynamics", _arm(q=_q, v=_v, tau=_a, wrench=_w)),
+    "inverse_dynamics": ("inverse_dynamics", _arm(
+        q=_q, v=_v, a=_a, wrench=_w, friction=("bool", True))),
+    "forward_dynamics": ("forward_dynamics", _arm(
+        q=_q, v=_v, tau=_a, wrench=_w, friction=("bool", True))),
+    "friction_torques": ("friction_torques", _arm(v=_v)),
+    "with_payload": ("with_payload", _arm(
+        mass=("positive", 0.5), com=("array", [0.0, 0.0, 0.1]), inertia=("array", np.eye(3)))),
     "joint_wrenches": ("joint_wrenches", _arm(q=_q, v=_v, a=_a, wrench=_w)),
     "static_wrenches": ("static_wrenches", _arm(q=_q, wrench=_w)),
     "statics": ("statics", _arm(q=_q, wrench=_w, frame=("word", "tool"))),
@@ -80,7 +86,7 @@ CALLS: Calls = {
         "robot": ("robot", "puma560"), "q": ("array", [0.1, 0.3, -0.8, 0.4, 0.7, 0.1]),
         "task": ("task", "pose"), "length": ("positive", 0.5)}),
     "nearest_singularity": ("nearest_singularity", _arm(
-        q=_q, task=_task, boxes=("count", 50), seed=_seed)),
+        q=_q, task=_task, boxes=("count", 50), points=("count", 4), seed=_seed)),
     "workspace_section": ("workspace_section", {
         "robot": ("robot", "stanford"), "step": ("positive", 0.5), "seed": _seed}),
     "find_singularities": ("find_singularities", _arm(
@@ -375,9 +381,9 @@ def variants(tag: str, clean: Any) -> Iterator[tuple[str, str, Any]]:
             yield name, "far" if tag == "bool" else "never", value
     elif tag in ("robot", "table"):
         for name, value in (
-            ("None", None), ("name", "planar2r"), ("5", 5), ("object", object()), ("class", kl.Robot),
+            ("None", None), ("name", "planar2x"), ("5", 5), ("object", object()), ("class", kl.Robot),
             ("array", np.zeros(2)), ("dict", {}), ("five-bar", kl.FiveBar.load("isotropic")),
-            ("arm" if tag == "table" else "table", _resolve(tag == "table", "planar2r")), ("bytes", b"planar2r"),
+            ("bytes", b"planar2r"), ("folder", Path(__file__).parent),
         ):  # fmt: skip
             yield name, "never", value
     elif tag == "function":

@@ -24,6 +24,9 @@ from kinlab.notes.loop import Loop
 _CLEAR = 0.15
 """Least sine between two bars in a drawn pose: what is compared is the formula, not rounding."""
 
+_PLAIN = 1e-6
+"""Share of the mechanism by which rods must miss each other to be given up without a try."""
+
 _TRIES = 200
 """Poses tried for each one drawn."""
 
@@ -80,8 +83,11 @@ def sample(
     drawn: dict[str, list[Array]] = {name: [] for name in DRAWS}
     for _ in range(_TRIES * count):
         theta = rng.uniform(-np.pi, np.pi, 2)
+        assembly = int(rng.choice([-1, 1]))
+        if _elbows_apart(chain, theta):
+            continue
         try:
-            q = chain.assemble(theta, int(rng.choice([-1, 1])))
+            q = chain.assemble(theta, assembly)
         except UnreachableError:
             continue
         sines = np.sin([q[1], q[3], q[2] + q[3] - q[0] - q[1]])
@@ -168,6 +174,14 @@ def _pins(chain: ClosedChain, theta: Array) -> tuple[Array, Array]:
     return places[[1, 3]], places[[2, 4]]
 
 
+def _elbows_apart(chain: ClosedChain, theta: Array) -> bool:
+    """Whether the rods cannot meet, plainly: Newton finds out too, after a long search."""
+    elbows = _pins(chain, theta)[1]
+    span, rods = np.linalg.norm(elbows[1] - elbows[0]), np.asarray(chain.linkage.l2)
+    slack = _PLAIN * chain.size
+    return bool(span > rods.sum() + slack or span < abs(rods[0] - rods[1]) - slack)
+
+
 def _rod_length(chain: ClosedChain, theta: Array, xy: Array) -> Any:
     return np.linalg.norm(xy - _pins(chain, theta)[1], axis=1)
 
@@ -191,10 +205,17 @@ def _power(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
 
 
 def _per_acceleration(chain: ClosedChain, q: Array) -> Any:
+    """G; three quantities are made of it, so that each pose's is found once."""
+    return _gains(chain.linkage, *q.tolist())
+
+
+@lru_cache(maxsize=1 << 12)
+def _gains(fivebar: FiveBar, *joints: float) -> Array:
+    chain, q = _chain(fivebar), np.array(joints)
     still = np.zeros(2)
     held = _torque(chain, q, still, still)
     columns = [_torque(chain, q, still, unit) - held for unit in np.eye(2)]
-    return np.stack(columns, axis=1)
+    return frozen(np.stack(columns, axis=1))
 
 
 def _load(chain: ClosedChain, q: Array) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -53,6 +53,7 @@ def arm_of(table: DHTable) -> Arm:
     )
 
 
+@lru_cache(maxsize=64)
 def numbers(robot: Robot) -> Arm:
     """The plain numbers of a robot's DH table, extracted where it comes from a URDF."""
     return arm_of(as_table(robot))
