@@ -154,7 +154,9 @@ class Rows(Answer):
         try:
             import pandas as pd
         except ImportError:
-            raise MissingExtraError("to_dataframe needs pandas: pip install pandas") from None
+            raise MissingExtraError(
+                "to_dataframe needs pandas: pip install 'kinlab[dataframes]'"
+            ) from None
         return pd.DataFrame(self.columns())
 
 

@@ -172,7 +172,7 @@ def test_long_tables_are_counted():
 
 def test_without_pandas_the_message_says_how(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(MissingExtraError, match="pip install pandas"):
+    with pytest.raises(MissingExtraError, match=r"kinlab\[dataframes\]"):
         ANSWERS["IKBranches"][0].to_dataframe()
     with pytest.raises(FileError, match="cannot be written"):
         ANSWERS["IKBranches"][0].to_csv(tmp_path / "no" / "rows.csv")
