@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinlab.cli.screen import Screen, screen, styled
-from kinlab.errors import OptionError
+from kinlab.errors import OptionError, already_said
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -168,7 +168,8 @@ def size(
     box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
     if workspace is None:
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
-    sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
+    with already_said():  # it is printed with the figures
+        sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
@@ -185,6 +186,8 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
         f"v {sizing.v_max:g} m/s, a {sizing.a_max:g} m/s²"
     )
+    for remark in sizing.remarks:
+        console.print(remark, style="bold yellow", soft_wrap=True)
     table = _table("worst over the workspace", "crank 1", "crank 2", left=(0,))
     rows = {
         "crank rate, rad/s": sizing.rate,
