@@ -58,7 +58,7 @@ class _Line:
         text = f"{self._what}, {spent:.0f} s"
         if self._total:
             left = ""
-            if 0 < self._told < self._total:
+            if 0.05 * self._total < self._told < self._total:  # before that nobody knows
                 left = f", {spent * (self._total - self._told) / self._told:.0f} s left"
             text = f"{self._what}: {self._told}/{self._total}{self._unit}{left}"
         self._write(f"{text}  {self._note}".rstrip()[:_WIDTH])
