@@ -175,7 +175,7 @@ def in_text(
     extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
     repairs: list[Repair] = []
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    for at in (_anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
+    for at in (anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
         case = search.study(written, target, at, names, extra)
         repairs = search.single(case) or [*search.double(case), *search.double_in_term(case)]
@@ -188,24 +188,6 @@ def in_text(
         kinds = tuple(e.kind for e in repair.edits)
         slips.append(Slip(label, kinds, told, str(repair.result), repair.cost, values, True))
     return slips
-
-
-def hidden_gap(written: Node, derived: Derivation, poly: Poly, arguments: tuple[str, ...]) -> float:
-    """How far a text is off with other numbers for the parameters, relative.
-
-    Zero where the text has numbers in place of parameters: it is meant for one robot only.
-    """
-    if not searchable(poly):
-        return 0.0
-    names = names_for(derived, arguments)
-    right = derived.tree(poly)
-    plain = all(n.value.denominator <= 12 for _, n in tree.nodes(written) if n.op == "num")
-    if not plain or not tree.names(written) >= tree.names(right) & set(names.parameters):
-        return 0.0
-    at = _anywhere(names)
-    target = tree.evaluate(right, at)
-    scale = float(np.max(np.abs(target))) or 1.0
-    return float(np.max(np.abs(tree.evaluate(written, at) - target))) / scale
 
 
 def in_function(
@@ -343,9 +325,9 @@ def _split(entry: Node) -> list[Node]:
     return list(entry.args) if entry.op == "add" else [entry]
 
 
-def _anywhere(names: Names) -> dict[str, Array]:
+def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:
     """Random values for every name: positive parameters, any states."""
-    rng = np.random.default_rng(11)
+    rng = np.random.default_rng(seed)
     at = {name: rng.uniform(0.4, 2.0, _POINTS) for name in names.parameters}
     for letter in ("q", "qd", "qdd"):
         for i in range(names.n):

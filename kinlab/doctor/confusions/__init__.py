@@ -1,0 +1,11 @@
+"""What people take differently: a known confusion, and what the engine would say if one does.
+
+=============  ===================================================================================
+module         what it holds
+=============  ===================================================================================
+``known``      The table of known confusions: every reading that makes sense for a quantity
+``otherwise``  What the engine says if asked otherwise: another frame, another split of C, terms
+               left out
+``robots``     Readings of the robot itself: convention, offsets, base and tool, gravity, inertias
+=============  ===================================================================================
+"""
