@@ -13,6 +13,7 @@ module              what it holds
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
+``pen``             Slips of the pen in a text, found and mended in the line itself
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
 ``report``          Diagnoses for a report: with the formulas typeset and the differences marked

@@ -19,6 +19,12 @@ from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import terms, verdicts
 from kinlab.doctor.changes import Case, Confusion, table_of
+from kinlab.doctor.confusions.derivations import (
+    Found,
+    christoffel_terms,
+    taken_otherwise,
+    two_taken_otherwise,
+)
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.terms import AnswerEntry, Slip, entries, split_name
@@ -36,6 +42,10 @@ _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
+_WHOLE_ONLY = 3
+"""Joints above which pairs of readings of single links are not tried: there are too many."""
+_PLAIN = 1.1
+"""Cost up to which one reading is likelier than two slips in a text."""
 _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _LIST = 3
@@ -100,15 +110,23 @@ def examine(
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
     tried = readings(case)
-    if _bare_signs(values):
+    signs = _bare_signs(values)
+    if signs:
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
-    causes = [*_singly(case, tried)]
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
-    if off and (not causes or len(off) <= _RIVALS):
-        found, partial = _slips(case, off, written)
-        causes += found
+    causes: list[Cause] = []
+    if written and off:
+        causes, partial = _slips(case, off, written)
+    visible = bool(causes) and len(causes[0].kinds) <= 1
+    if not visible:
+        causes = _outranked(causes, [*_singly(case, tried), *_by_derivation(case, signs)])
+        if not written and off and (not causes or len(off) <= _RIVALS):
+            found, partial = _slips(case, off, written)
+            causes += found
+    if not causes and not signs:
+        causes = [_as_steps(found) for found in two_taken_otherwise(case)]
     if not causes:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
@@ -131,6 +149,36 @@ def examine(
         values[(k, *furthest)],
         engine[(k, *furthest)],
     )
+
+
+def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
+    """Causes that are one step of a textbook's derivation, taken otherwise."""
+    if signs:
+        return
+    terms_ = christoffel_terms(case)
+    if terms_ is not None:
+        said, error, count = terms_
+        yield Cause(f"the formula, {said}", ("Christoffel",) * count, ("",) * count, error, 1.05)
+    for found in taken_otherwise(case):
+        yield _as_steps(found)
+
+
+def _as_steps(found: Found) -> Cause:
+    return Cause(
+        "the formula " + " and ".join(step.sentence for step in found.steps),
+        tuple(step.kind for step in found.steps),
+        tuple("" if step.joint is None else f"joint {step.joint + 1}" for step in found.steps),
+        found.error,
+        found.cost,
+    )
+
+
+def _outranked(slips: list[Cause], whole_: list[Cause]) -> list[Cause]:
+    """Slips in the writer's line before a far-fetched reading; a plain one before many slips."""
+    if not slips:
+        return whole_
+    plain = [cause for cause in whole_ if cause.cost <= _PLAIN and len(slips[0].kinds) > 1]
+    return plain or slips
 
 
 def _hidden(
@@ -259,6 +307,8 @@ def _singly(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
 
 def _in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
+    if case.arguments and getattr(case.robot, "n", 0) > _WHOLE_ONLY:
+        tried = [reading for reading in tried if not reading.place]
     answers = [r for r in tried if r.stage == "answer"]
     before = [r for r in tried if r.stage != "answer"]
     yield from _found(
@@ -320,7 +370,10 @@ def _slips(
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     per_entry: list[list[Slip]] = []
     for entry in off:
-        per_entry.append(_varied(_of_entry(case, entry, written.get(entry.label))))
+        text = written.get(entry.label)
+        found = _of_entry(case, entry, text)
+        # all repairs of a text give one formula: the likeliest is told
+        per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
         if sum(not found for found in per_entry) >= _PATIENCE:
             break
     if not all(per_entry):
@@ -359,7 +412,7 @@ def _of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
     arguments = case.quantity.arguments
     if text is not None:
-        found = terms.in_text(entry.label, text.node, derived, poly, arguments, case.arguments)
+        found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
         found = terms.in_function(

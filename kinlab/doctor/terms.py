@@ -12,11 +12,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import regression, search
+from kinlab.doctor import pen, regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.edits import Edit, Names
+from kinlab.doctor.pen import Mended
 from kinlab.doctor.search import Repair
+from kinlab.doctor.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.symbolic.trig import Poly
@@ -152,7 +154,7 @@ def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
 
 def in_text(
     label: str,
-    written: Node,
+    written: Written,
     derived: Derivation,
     poly: Poly,
     arguments: tuple[str, ...],
@@ -162,7 +164,7 @@ def in_text(
 
     Args:
         label: the entry's name.
-        written: the user's text, with the names of the derivation.
+        written: the user's text.
         derived, poly: the derivation and the entry's polynomial.
         arguments: the quantity's arguments.
         states: the comparison's states.
@@ -173,21 +175,39 @@ def in_text(
     here = environment(derived, states)
     right = derived.tree(poly)
     extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
-    repairs: list[Repair] = []
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    for at in (anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
+    found: list[Mended] = []
+    own = {name: values[:_POINTS] for name, values in here.items()}
+    for at in (as_rods(anywhere(names), written, derived), own):
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        case = search.study(written, target, at, names, extra)
-        repairs = search.single(case) or [*search.double(case), *search.double_in_term(case)]
-        if repairs:
+        line = pen.Line(written, names, at, np.array(target), extra, numeric=at is own)
+        found = pen.mended(line)
+        if found:
             break
-    slips = []
-    for repair in sorted(repairs, key=lambda r: r.cost):
-        told = "; ".join(_told_text(label, written, e) for e in repair.edits)
-        values = tree.evaluate(repair.result, here)
-        kinds = tuple(e.kind for e in repair.edits)
-        slips.append(Slip(label, kinds, told, str(repair.result), repair.cost, values, True))
-    return slips
+    return [_mended(written, one, here) for one in found]
+
+
+def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:
+    """The numbers with I = m l²/12 where the robot's links are rods and the text has no I."""
+    values, out = derived.arm.values, dict(at)
+    for name in values:
+        found = re.fullmatch(r"I(\d+)", name)
+        if found is None or name in tree.names(written.node):
+            continue
+        m, length = f"m{found.group(1)}", f"l{found.group(1)}"
+        if m not in values or length not in values:
+            continue
+        rod = float(values[m]) * float(values[length]) ** 2 / 12
+        if abs(float(values[name]) - rod) <= TOLERANCES.same_length * rod:
+            out[name] = out[m] * out[length] ** 2 / 12
+    return out
+
+
+def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
+    told = "; ".join(f"{written.entry}: {c.told} ({c.kind})" for c in found.changes)
+    kinds = tuple(c.kind for c in found.changes)
+    values = replace(written, text=found.text).values(here)
+    return Slip(written.entry, kinds, told, found.text, found.cost, values, True)
 
 
 def in_function(
@@ -278,18 +298,6 @@ def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[st
         if tree.names(front) and abs(value - size) <= 1e-8 * size:
             return f"{front} = {size:.10g}".replace("-", "", 1)
     return f"{size:.10g}"
-
-
-def _told_text(label: str, written: Node, edit: Edit) -> str:
-    if edit.kind == "missing term":
-        return f"{label}: the term {edit.new} is missing"
-    old = tree.at_path(written, edit.path)
-    where = _context(written, edit.path, old)
-    if edit.kind == "extra term":
-        return f"{label}: the term {old} does not belong there"
-    if edit.kind == "extra factor":
-        return f"{label}: the factor {old} does not belong{where}"
-    return f"{label}: {old} should be {edit.new}{where} ({edit.kind})"
 
 
 def _told_function(label: str, form: Node, edit: Edit) -> str:

@@ -23,7 +23,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.robots import with_gravity
 from kinlab.doctor.derived import LETTERS, Derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.terms import AnswerEntry, anywhere, names_for
+from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, names_for
 from kinlab.doctor.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -522,7 +522,7 @@ def elsewhere(
     names = names_for(derived, arguments)
     right = derived.tree(poly)
     states = (_one_robot(anywhere(names, seed), names.parameters) for seed in (11, 12, 13))
-    at = anywhere(names, 10)
+    at = as_rods(anywhere(names, 10), text, derived)
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
     scale = float(np.max(np.abs(target))) or 1.0
     gap = float(np.max(np.abs(text.values(at) - target))) / scale

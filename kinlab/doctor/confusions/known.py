@@ -128,6 +128,15 @@ def _engines(case: Case) -> Iterator[Confusion]:
             otherwise.pseudo_inverse,
             1.3,
         )
+        yield _other(
+            "transposed", "uses J for J^T (not transposed)", otherwise.jacobian_itself, 1.1
+        )
+    if name in ("newton_step", "gradient_step"):
+        yield _other("sign", "has the step with the opposite sign", otherwise.step_back)
+    if name == "mass_matrix" and case.robot.n > 1:
+        said = "is M for absolute angles (each counted from the base), not for the joint angles"
+        for q_too in (False, True):
+            yield _other("absolute angles", said, otherwise.in_absolute_angles(q_too), 1.1)
     if name == "coriolis_matrix":
         yield _other(
             "symmetric Coriolis",
