@@ -369,8 +369,13 @@ def _slips(
 ) -> tuple[list[Cause], tuple[str, ...]]:
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     per_entry: list[list[Slip]] = []
+    seen: list[Written] = []
     for entry in off:
         text = written.get(entry.label)
+        if text is not None:
+            if any(text is other for other in seen):
+                continue  # the mirror image of an entry that is given once
+            seen.append(text)
         found = _of_entry(case, entry, text)
         # all repairs of a text give one formula: the likeliest is told
         per_entry.append(_varied(found)[: 1 if text is not None else _TIED])

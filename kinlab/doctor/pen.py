@@ -506,6 +506,8 @@ class Line:
 
 def mended(line: Line) -> list[Mended]:
     """The fewest changes that make the text right, the likeliest first; empty where none do."""
+    if not line.source.isascii():
+        return []  # places are counted in bytes
     line.study()
     wanted = line.target - line.root.value
     if not line.rows:

@@ -104,7 +104,8 @@ class Written:
         for place in self._used:
             source = self.symbols.get(place, self.text) if place else self.text
             for constant, exact in _constants(self._trees[place]):
-                shown = source[constant.col_offset : constant.end_col_offset]
+                piece = source.encode()[constant.col_offset : constant.end_col_offset]
+                shown = piece.decode()
                 one = literal(shown)
                 found.append(Literal(shown, one.value, 0.0, True) if exact else one)
         return tuple(found)

@@ -3,6 +3,7 @@
 =============  ===================================================================================
 module         what it holds
 =============  ===================================================================================
+``answers``    Answers kept for a while: one question about the same numbers is answered once
 ``files``      Files are read with a clear error and written whole or not at all
 ``processes``  Processes of ours end with the process that started them, however that one ends
 ``version``    The version of the package

@@ -14,11 +14,15 @@ from kinlab.fivebar.geometry import solve_pose
 from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
-from kinlab.viewer.arm_page import draw_page
+from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
 from kinlab.viewer.fivebar_page import best_start, size_of
 from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
 from kinlab.viewer.page import COLORS, Page, one_pose
+from kinlab.viewer.shapes import look_at
 from kinlab.viewer.static_page import new_scene
+
+_SEEN = 60
+"""Poses of a motion that the camera is placed by."""
 
 
 class Scene(Page):
@@ -41,6 +45,19 @@ class Scene(Page):
         vis, recorder = new_scene()
         spec = draw_page(vis, robot, start, meshes=meshes)
         super().__init__(vis, recorder, spec, reach(robot), self._joints)
+        self._seen: list[Array] = []
+
+    def animate(self, q: ArrayLike, duration: float | ArrayLike, name: str = "Motion") -> None:
+        """As :meth:`Page.animate`; the camera sees the whole motion."""
+        super().animate(q, duration, name)
+        self._see(self._read(q))
+
+    def _see(self, poses: Array) -> None:
+        """Moves the camera so that it sees the arm at the start and at poses (N, n)."""
+        some = np.unique(np.linspace(0, len(poses) - 1, _SEEN).astype(int))
+        self._seen += [origins(self.robot, poses[k]) for k in some if k < len(poses)]
+        points = np.concatenate([origins(self.robot, self.q), *self._seen])
+        self._spec["camera"] = look_at(points, DIRECTION, MARGIN * self._size).as_json()
 
     def _joints(self, q: ArrayLike) -> Array:
         return joint_vector(self.robot, q, "q")
@@ -90,6 +107,7 @@ class Scene(Page):
         for i, pose in enumerate(poses):
             paint = COLORS[i % len(COLORS)] if color is None else color
             draw_ghost(self._vis, self.robot, pose, f"{root}/{i + 1}", paint)
+        self._see(poses)
 
 
 class FiveBarScene(Page):
