@@ -13,7 +13,15 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.confusions.recursion import Geometry, Step, Weights, geometry, mixed
+from kinlab.doctor.confusions.recursion import (
+    Geometry,
+    Step,
+    Weights,
+    centre_of,
+    geometry,
+    mixed,
+    steiner,
+)
 from kinlab.engine.kinematics import fk
 from kinlab.model.robot import Robot
 
@@ -60,6 +68,8 @@ _LINK: tuple[tuple[str, str, dict[str, float], float], ...] = (
      "rotated)", {"c own": 0.0, "c plain": 1.0}, 1.1),
     ("centre transposed", "rotates the centre of mass with R transposed", {"c own": 0.0,
      "c back": 1.0}, 1.15),
+    ("centre", "measures the centre of mass to the other side of the link's frame", {"c own": 0.0,
+     "c mirrored": 1.0}, 1.15),
     ("tensor not rotated", "takes the inertia tensor in link axes as if in base axes (tensor not "
      "rotated: I for R I R^T)", {"I own": 0.0, "I plain": 1.0}, 1.05),
     ("tensor transposed", "rotates the inertia tensor the wrong way (R^T I R for R I R^T)",
@@ -159,10 +169,7 @@ def masses(robot: Robot, q: Array, ways: list[tuple[Step, ...]]) -> tuple[Array,
     for k in range(n):
         at = weights.here(k)
         turn = g.turn[:, k]
-        plain = np.broadcast_to(g.lever[k], g.c[:, k].shape)
-        frame = (g.frames[:, k] - g.o[:, k]) if g.frames is not None else 0.0 * g.c[:, k]
-        c = mixed(at, ("c own", "c plain", "c back", "c frame"), (
-            g.c[:, k], plain, np.einsum("nkj,k->nj", turn, g.lever[k]), frame))  # fmt: skip
+        c = centre_of(at, g, k)
         point = g.o[:, k] + c
         linear = np.zeros((len(ways), count, 3, k + 1))
         angular = np.zeros_like(linear)
@@ -197,14 +204,14 @@ def _tensors(g: Geometry, k: int, turn: Array) -> dict[str, Array]:
         out: Array = np.einsum("nij,jk,nlk->nil", turn, tensor, turn)
         return out
 
-    lever, n = g.lever[k], g.n
+    n = g.n
     return {
         "I own": rotated(g.body[k]),
         "I plain": np.broadcast_to(g.body[k], turn.shape),
         "I back": np.einsum("nji,jk,nkl->nil", turn, g.body[k], turn),
         "I next": rotated(g.body[min(k + 1, n - 1)]),
         "I before": rotated(g.body[max(k - 1, 0)]),
-        "I steiner": rotated(g.mass[k] * (lever @ lever * np.eye(3) - np.outer(lever, lever))),
+        "I steiner": rotated(steiner(g.mass[k], g.lever[k])),
     }
 
 

@@ -52,9 +52,12 @@ class Geometry:
     Attributes:
         z: joint axes, (N, n, 3). o: joint origins, (N, n, 3), and of the last link's end (N, 3).
         turn: link frames, (N, n, 3, 3). c: centres from the joint, in base axes, (N, n, 3).
-        body: tensors about the centres in link axes, (n, 3, 3). lever: centres in link axes.
+        body: tensors about the centres in link axes, (n, 3, 3). lever: centres from the link's
+            frame, in link axes.
         mass, rotor: (n,). slide: (n,) bool. gravity: (3,).
-        last_axis: z of the last frame, (N, 3). frames: origins of the DH frames, (N, n, 3).
+        last_axis: z of the last frame, (N, 3).
+        offset: from each joint's origin to its link's frame, (N, n, 3): not zero in the standard
+            convention, where centres are measured from there.
     """
 
     z: Array
@@ -69,7 +72,7 @@ class Geometry:
     slide: Any
     gravity: Array
     last_axis: Array
-    frames: Array | None
+    offset: Array
 
     @property
     def n(self) -> int:
@@ -96,7 +99,7 @@ def geometry(robot: Robot, q: Array) -> Geometry:
     c = np.einsum("nijk,ik->nij", joints, lever)
     z = np.einsum("nijk,ik->nij", joints, axes)
     end, last_axis = places[:, -1], turns[:, -1, :, 2]
-    behind_ = None
+    offset = np.zeros_like(places)
     if robot.table is not None:
         frames = robot.table.frames(q)
         behind = frames.shape[1] - n - (frames.shape[1] > n + 1)
@@ -106,14 +109,14 @@ def geometry(robot: Robot, q: Array) -> Geometry:
                 0
             ]  # constant: joint axes in link axes
             body = np.einsum("ijk,ikl,iml->ijm", between, body, between)
-            lever = np.einsum("ijk,ik->ij", between, lever)
             turns = dh
-            behind_ = frames[:, behind : behind + n, :3, 3]
+            offset = frames[:, behind : behind + n, :3, 3] - places
+            lever = np.einsum("nji,nj->ni", turns[0], c[0] - offset[0])
             last_axis, end = frames[:, behind + n - 1, :3, 2], frames[:, behind + n - 1, :3, 3]
     slide = np.array(["P" in model.joints[i + 1].shortname()[9:] for i in range(n)])
     mass = np.array([model.inertias[i + 1].mass for i in range(n)])
     return Geometry(z, places, end, turns, c, body, lever, mass, np.array(model.armature), slide,
-                    np.array(model.gravity.linear), last_axis, behind_)  # fmt: skip
+                    np.array(model.gravity.linear), last_axis, offset)  # fmt: skip
 
 
 def _axis(joint: Any) -> Array:
@@ -327,10 +330,7 @@ def torques(
             accel = accel + z * qdd[:, i, None]
             accel = accel + at("2w x d") * 2.0 * np.cross(turned, z) * qd[:, i, None]
         speed = turned
-        turn = g.turn[:, i]
-        c = mixed(at, ("c own", "c plain", "c back"), (
-            g.c[:, i], np.broadcast_to(g.lever[i], g.c[:, i].shape),
-            np.einsum("nkj,k->nj", turn, g.lever[i])))  # fmt: skip
+        c = centre_of(at, g, i)
         centre = accel + at("wd x c") * np.cross(rate, c)
         centre = centre + at("w x w x c") * np.cross(speed, np.cross(speed, c))
         centre = centre + at("w- x w- x c") * np.cross(old, np.cross(old, c))
@@ -367,6 +367,23 @@ def torques(
         tau = np.sum(felt * axis, axis=-1) + _flat(at("rotor")) * g.rotor[i] * qdd[:, i]
         out[i] = np.broadcast_to(tau, (len(ways), len(qd)))
     return np.stack(out, axis=-1)
+
+
+def centre_of(at: Any, g: Geometry, i: int) -> Any:
+    """The centre of mass from the joint's origin, turned into base axes, or not, or wrongly."""
+    turn, lever = g.turn[:, i], g.lever[i]
+    terms = ("c own", "c plain", "c back", "c frame", "c mirrored")
+    offset = g.offset[:, i]
+    turned = g.c[:, i] - offset
+    return mixed(at, terms, (
+        g.c[:, i], offset + lever, offset + np.einsum("nkj,k->nj", turn, lever), offset,
+        offset - turned))  # fmt: skip
+
+
+def steiner(mass: float, lever: Array) -> Array:
+    """m (c² 1 - c c^T)."""
+    moved: Array = mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
+    return moved
 
 
 def _flat(weight: Any) -> Any:
@@ -414,9 +431,8 @@ def _moment(at: Any, g: Geometry, i: int, c: Any, w: Any, wd: Any) -> Any:
         "I back": back,
         "I next": rotated(g.body[min(i + 1, n - 1)]),
         "I before": rotated(g.body[max(i - 1, 0)]),
-        "I steiner": rotated(g.mass[i] * (g.lever[i] @ g.lever[i] * np.eye(3)
-                                          - np.outer(g.lever[i], g.lever[i]))),
-    }  # fmt: skip
+        "I steiner": rotated(steiner(g.mass[i], g.lever[i])),
+    }
     for term, tensor in choices.items():
         weight = at(term)
         if isinstance(weight, np.ndarray) or weight:
