@@ -105,6 +105,10 @@ def _label(name: str, index: tuple[int, ...]) -> str:
 
 _POINTS = 24
 _CLOSE = 1e-9
+_WRITTEN_OUT = 60
+"""Terms of an entry up to which a function may have been written out by hand."""
+_SHORT = 30
+"""Terms of an entry up to which two slips of a function are looked for."""
 
 _TURNED = {
     "extra term": "missing term",
@@ -230,8 +234,8 @@ def in_function(
         states: the comparison's states.
         others: derived entries whose joint functions may be met.
     """
-    if not searchable(poly):
-        return []
+    if len(poly) > _WRITTEN_OUT:
+        return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
     everywhere = environment(derived, states)
     at = {name: values[:_POINTS] for name, values in everywhere.items()}
@@ -245,8 +249,9 @@ def in_function(
     circles = regression.dictionaries([right, *others], names)
     sums = (regression.explain(hand - engine, words, everywhere) for words in circles)
     alone = [found for found in sums if len(found) == 1][:1]
-    repairs = [(c.root, r) for c in cases for r in search.double(c)]
-    repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
+    if len(poly) <= _SHORT:
+        repairs = [(c.root, r) for c in cases for r in search.double(c)]
+        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
     slips += [_as_terms(label, right, found, names, everywhere) for found in alone]
     if not slips:

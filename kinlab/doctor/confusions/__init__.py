@@ -7,6 +7,8 @@ module           what it holds
                  do otherwise
 ``derivations``  The textbooks' derivations walked with one step, then two, taken otherwise
 ``known``        The table of known confusions: every reading that makes sense for a quantity
+``links``        The product of link transforms, with what people write otherwise in the link's
+                 matrix
 ``otherwise``    What the engine says if asked otherwise: another frame, another split of C, terms
                  left out
 ``recursion``    Newton-Euler as the textbooks have it, with what people do otherwise at each step

@@ -55,9 +55,9 @@ _TIP: tuple[tuple[str, str, dict[str, float], float], ...] = (
     ("point", "refers to the last joint's origin, not the tool", {"p own": 0.0,
      "p joint": 1.0}, 1.15),
     ("angular rows", "takes the axis z of the next joint in the angular rows",
-     {"za own": 0.0, "za next": 1.0}, 1.15),
+     {"za next": 1.0}, 1.15),
     ("angular rows", "takes the axis z of the joint before in the angular rows",
-     {"za own": 0.0, "za back": 1.0}, 1.15),
+     {"za back": 1.0}, 1.15),
 )  # fmt: skip
 
 _LINK: tuple[tuple[str, str, dict[str, float], float], ...] = (
@@ -94,7 +94,7 @@ _LINK: tuple[tuple[str, str, dict[str, float], float], ...] = (
 )  # fmt: skip
 
 _PLAIN = {
-    "z own", "o own", "linear", "angular", "slide", "p own", "za own", "c own", "I own", "m own",
+    "z own", "o own", "linear", "angular", "slide", "p own", "c own", "I own", "m own",
     "turning", "moving", "own joint", "rotor", "gravity",
 }  # fmt: skip
 
@@ -113,13 +113,21 @@ def column_steps(n: int, slides: bool, of_links: bool) -> list[Step]:
     return found
 
 
-def _axes(at: Any, g: Geometry, i: int, prefix: str = "z") -> Any:
-    end = g.last_axis
-    after = g.z[:, i + 1] if i + 1 < g.n else end
-    base = np.broadcast_to(np.array([0.0, 0.0, 1.0]), end.shape)
-    before = g.z[:, i - 1] if i else base
-    names = tuple(f"{prefix} {x}" for x in ("own", "next", "back", "base"))
-    return mixed(at, names, (g.z[:, i], after, before, base))
+def _near(g: Geometry, i: int) -> tuple[Array, Array, Array]:
+    """The axes of the next joint and of the one before, and the base's z."""
+    base = np.broadcast_to(np.array([0.0, 0.0, 1.0]), g.last_axis.shape)
+    after = g.z[:, i + 1] if i + 1 < g.n else g.last_axis
+    return after, g.z[:, i - 1] if i else base, base
+
+
+def _axes(at: Any, g: Geometry, i: int) -> Any:
+    return mixed(at, ("z own", "z next", "z back", "z base"), (g.z[:, i], *_near(g, i)))
+
+
+def _other_axes(at: Any, g: Geometry, i: int) -> Any:
+    """What other axes in the angular rows alone add to them."""
+    after, before, _ = _near(g, i)
+    return at("za next") * (after - g.z[:, i]) + at("za back") * (before - g.z[:, i])
 
 
 def _origin(at: Any, g: Geometry, i: int) -> Any:
@@ -148,7 +156,7 @@ def jacobians(robot: Robot, q: Array, ways: list[tuple[Step, ...]], frame: str) 
         p = mixed(at, ("p own", "p last", "p joint"), (pose[:, :3, 3], g.end, g.o[:, -1]))
         linear, angular = _column(at, g, i, p)
         if not g.slide[i]:
-            angular = at("angular") * _axes(at, g, i, "za") if weights.has("za") else angular
+            angular = angular + at("angular") * _other_axes(at, g, i)
         out[..., :3, i], out[..., 3:, i] = linear, angular
     if frame == "tool":
         turn = pose[:, :3, :3]

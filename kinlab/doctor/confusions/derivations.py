@@ -14,6 +14,7 @@ from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.columns import column_steps, jacobians, lagrange
+from kinlab.doctor.confusions.links import matrix_steps, products
 from kinlab.doctor.confusions.otherwise import mass_slope
 from kinlab.doctor.confusions.recursion import Step, geometry, steps, torques
 from kinlab.tolerances import TOLERANCES
@@ -22,7 +23,7 @@ Ways = list[tuple[Step, ...]]
 Road = Callable[[Ways, dict[str, Array]], Array]
 
 _SCREEN = 3
-_PAIRED = 70
+_PAIRED = 110
 """Steps that are tried two at a time, the likeliest first."""
 _SMALL = 3
 """Joints up to which pairs of steps of Lagrange's way are tried."""
@@ -106,6 +107,9 @@ def _roads(case: Case, pairs: bool = False) -> Iterator[tuple[Road, list[Step]]]
         else False
     )
     n = robot.n
+    if name == "fk" and robot.table is not None:
+        table = robot.table
+        yield lambda ways, x: products(table, x["q"], ways), matrix_steps(table)
     if name in _RECURSIVE:
         yield _newton_euler(case), steps(n, slides, name)
     if name in _LAGRANGE and not (pairs and n > _SMALL):

@@ -17,12 +17,14 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
+from kinlab.model.dh import DHTable
+from kinlab.model.link import Convention
 from kinlab.model.robot import Robot, scratch
 
 _STANDARD = {
     "z x qd": 1.0, "wd x P": 1.0, "w x w x P": 1.0, "2w x d": 1.0, "qdd z": 1.0, "a0": 1.0,
     "wd x c": 1.0, "w x w x c": 1.0, "I wd": 1.0, "w x Iw": 1.0, "f next": 1.0, "n next": 1.0,
-    "c x F": 1.0, "P x f": 1.0, "rotor": 1.0, "tau": 1.0,
+    "c x F": 1.0, "P x f": 1.0, "rotor": 1.0, "slide qdd": 1.0,
 }  # fmt: skip
 """The terms of the recursion and their weights; all others are alternatives of weight zero."""
 
@@ -58,6 +60,7 @@ class Geometry:
         last_axis: z of the last frame, (N, 3).
         offset: from each joint's origin to its link's frame, (N, n, 3): not zero in the standard
             convention, where centres are measured from there.
+        standard: whether it is the standard convention, whose recursion goes from end to end.
     """
 
     z: Array
@@ -73,6 +76,7 @@ class Geometry:
     gravity: Array
     last_axis: Array
     offset: Array
+    standard: bool
 
     @property
     def n(self) -> int:
@@ -98,25 +102,35 @@ def geometry(robot: Robot, q: Array) -> Geometry:
     axes = np.array([_axis(model.joints[i + 1]) for i in range(n)])
     c = np.einsum("nijk,ik->nij", joints, lever)
     z = np.einsum("nijk,ik->nij", joints, axes)
+    slide = np.array(["P" in model.joints[i + 1].shortname()[9:] for i in range(n)])
     end, last_axis = places[:, -1], turns[:, -1, :, 2]
     offset = np.zeros_like(places)
     if robot.table is not None:
         frames = robot.table.frames(q)
-        behind = frames.shape[1] - n - (frames.shape[1] > n + 1)
-        dh = frames[:, behind : behind + n, :3, :3]
+        dh = frames[..., :3, :3]
         if dh.shape == turns.shape:
             between = np.einsum("nikj,nikl->nijl", dh, joints)[
                 0
             ]  # constant: joint axes in link axes
             body = np.einsum("ijk,ikl,iml->ijm", between, body, between)
             turns = dh
-            offset = frames[:, behind : behind + n, :3, 3] - places
+            places, moved = _textbook_origins(robot.table, frames, places), places
+            c = c + moved - places
+            offset = frames[..., :3, 3] - places
             lever = np.einsum("nji,nj->ni", turns[0], c[0] - offset[0])
-            last_axis, end = frames[:, behind + n - 1, :3, 2], frames[:, behind + n - 1, :3, 3]
-    slide = np.array(["P" in model.joints[i + 1].shortname()[9:] for i in range(n)])
+            last_axis, end = frames[:, -1, :3, 2], frames[:, -1, :3, 3]
     mass = np.array([model.inertias[i + 1].mass for i in range(n)])
+    standard = robot.table is not None and robot.table.convention is Convention.STANDARD
     return Geometry(z, places, end, turns, c, body, lever, mass, np.array(model.armature), slide,
-                    np.array(model.gravity.linear), last_axis, offset)  # fmt: skip
+                    np.array(model.gravity.linear), last_axis, offset, standard)  # fmt: skip
+
+
+def _textbook_origins(table: DHTable, frames: Array, places: Array) -> Array:
+    """The joints' origins as the table has them: o_(i-1) in the standard convention, o_i else."""
+    if table.convention is not Convention.STANDARD:
+        return np.array(frames[..., :3, 3])
+    first = np.broadcast_to(np.asarray(table.base)[:3, 3], places[:, :1].shape)
+    return np.concatenate([first, frames[:, :-1, :3, 3]], axis=1)
 
 
 def _axis(joint: Any) -> Array:
@@ -223,6 +237,24 @@ _INSTEAD: tuple[tuple[str, str, dict[str, float], float], ...] = (
      {"n turned": 0.0, "n plain": 1.0}, 1.15),
     ("moment transposed", "rotates the moment n of the next link with R transposed",
      {"n turned": 0.0, "n back": 1.0}, 1.15),
+    ("force not rotated", "does not rotate the next link's force f in P x f (R left out)",
+     {"P x f": 0.0, "P x f plain": 1.0}, 1.1),
+    ("lever arm", "takes the centre of mass from the link's frame, not from the joint, for the "
+     "lever arm of F (P x F is left out)", {"c x F": 0.0, "com x F": 1.0}, 1.15),
+    ("acceleration of a slide", "leaves the acceleration qdd z (d_ddot) of a slide out",
+     {"slide qdd": 0.0}, 1.1),
+    ("acceleration of a hinge", "leaves z qdd out of the angular acceleration", {"qdd z": 0.0},
+     1.15),
+    ("moment of the link", "leaves the link's own moment N (I omega_dot + w x I w) out",
+     {"I wd": 0.0, "w x Iw": 0.0}, 1.05),
+    ("tensor transposed", "rotates the inertia tensor the wrong way in I omega_dot (R^T I R for I)",
+     {"I wd": 0.0, "RtIR wd": 1.0}, 1.1),
+    ("tensor transposed", "rotates the inertia tensor the wrong way (R^T I R for I)",
+     {"I wd": 0.0, "RtIR wd": 1.0, "w x Iw": 0.0, "w x RtIRw": 1.0}, 1.1),
+    ("tensor rotated", "rotates the inertia tensor, which is in link axes already (R I R^T for I)",
+     {"I wd": 0.0, "RIRt wd": 1.0, "w x Iw": 0.0, "w x RIRtw": 1.0}, 1.1),
+    ("tensor rotated", "rotates the inertia tensor in I omega_dot, which is in link axes already "
+     "(R I R^T for I)", {"I wd": 0.0, "RIRt wd": 1.0}, 1.1),
     ("w not rotated", "does not rotate w of the link before (R left out)", {"w turned": 0.0,
      "w plain": 1.0}, 1.15),
     ("w transposed", "rotates w of the link before with R transposed", {"w turned": 0.0,
@@ -273,10 +305,6 @@ class Weights:
         """The weights at one joint."""
         return lambda term: self.at(term, joint)
 
-    def has(self, head: str) -> bool:
-        """Whether any alternative changes a term of that head."""
-        return any(term.startswith(head) for term, _ in self.changed)
-
 
 def torques(
     g: Geometry, ways: list[tuple[Step, ...]], qd: Array, qdd: Array, gravity: float = 1.0
@@ -317,23 +345,33 @@ def torques(
         rate = _turned(at, "w", old_rate, before, g.turn[:, i])
         carried = old if not i else speed
         if not g.slide[i]:
-            rate = rate + z * qdd[:, i, None] + at("z x qd") * np.cross(carried, z) * qd[:, i, None]
+            rate = rate + at("qdd z") * z * qdd[:, i, None]
+            rate = rate + at("z x qd") * np.cross(carried, z) * qd[:, i, None]
             turned = speed + z * qd[:, i, None]
         else:
             turned = speed
-        accel = accel + at("wd x P") * np.cross(old_rate, arm)
-        accel = accel + at("w x w x P") * np.cross(old, np.cross(old, arm))
-        accel = accel + at("wd+ x P") * np.cross(rate, arm)
-        accel = accel + at("w+ x w+ x P") * np.cross(turned, np.cross(turned, arm))
+        if not g.standard:
+            accel = accel + at("wd x P") * np.cross(old_rate, arm)
+            accel = accel + at("w x w x P") * np.cross(old, np.cross(old, arm))
+            accel = accel + at("wd+ x P") * np.cross(rate, arm)
+            accel = accel + at("w+ x w+ x P") * np.cross(turned, np.cross(turned, arm))
         accel = _turned(at, "a", accel, before, g.turn[:, i])
         if g.slide[i]:
-            accel = accel + z * qdd[:, i, None]
+            accel = accel + at("slide qdd") * z * qdd[:, i, None]
             accel = accel + at("2w x d") * 2.0 * np.cross(turned, z) * qd[:, i, None]
         speed = turned
         c = centre_of(at, g, i)
-        centre = accel + at("wd x c") * np.cross(rate, c)
-        centre = centre + at("w x w x c") * np.cross(speed, np.cross(speed, c))
-        centre = centre + at("w- x w- x c") * np.cross(old, np.cross(old, c))
+        lever = c
+        if g.standard:
+            out_there = g.offset[:, i]
+            accel = accel + at("wd x P") * np.cross(rate, out_there)
+            accel = accel + at("w x w x P") * np.cross(speed, np.cross(speed, out_there))
+            accel = accel + at("wd+ x P") * np.cross(old_rate, out_there)
+            accel = accel + at("w+ x w+ x P") * np.cross(old, np.cross(old, out_there))
+            lever = c - out_there
+        centre = accel + at("wd x c") * np.cross(rate, lever)
+        centre = centre + at("w x w x c") * np.cross(speed, np.cross(speed, lever))
+        centre = centre + at("w- x w- x c") * np.cross(old, np.cross(old, lever))
         mass = (at("m own") * g.mass[i] + at("m next") * g.mass[min(i + 1, n - 1)]
                 + at("m back") * g.mass[max(i - 1, 0)])  # fmt: skip
         forces.append(mass * centre)
@@ -349,12 +387,15 @@ def torques(
         arm = (origin[:, i + 1] if i + 1 < n else g.end) - origin[:, i]
         own = origin[:, i] - (origin[:, i - 1] if i else origin[:, i])
         behind = g.turn[:, min(i + 1, n - 1)]
+        f_old = f
         f_next = _turned(at, "f", f, behind, g.turn[:, i])
         n_next = _turned(at, "n", moment, behind, g.turn[:, i])
         f = forces[i] + at("f next") * f_next
         moment = moments[i] + at("n next") * n_next
         moment = moment + at("c x F") * np.cross(centres[i], forces[i])
         moment = moment + at("c x f") * np.cross(centres[i], f)
+        moment = moment + at("com x F") * np.cross(centres[i] - g.offset[:, i], forces[i])
+        moment = moment + at("P x f plain") * np.cross(arm, _as_if(f_old, behind, g.turn[:, i]))
         moment = moment + at("P x f") * np.cross(arm, f_next)
         moment = moment + at("P x F") * np.cross(arm, forces[i])
         moment = moment + at("P x f own") * np.cross(arm, f)
@@ -404,12 +445,17 @@ def _turned(at: Any, name: str, x: Any, there: Array, here: Array) -> Any:
     plain, back = at(f"{name} plain"), at(f"{name} back")
     out = at(f"{name} turned") * x
     if isinstance(plain, np.ndarray):
-        out = out + plain * np.einsum("nij,nkj,bnk->bni", here, np.swapaxes(there, 1, 2), x)
+        out = out + plain * _as_if(x, there, here)
     if isinstance(back, np.ndarray):
         inside = np.einsum("nji,bnj->bni", there, x)
         between = np.einsum("nji,njk->nik", here, there)  # link there as seen from link here
         out = out + back * np.einsum("nij,nkj,bnk->bni", here, between, inside)
     return out
+
+
+def _as_if(x: Any, there: Array, here: Array) -> Any:
+    """A vector's components in another link's axes, taken for those in this link's."""
+    return np.einsum("nij,nkj,bnk->bni", here, there, x)
 
 
 def _moment(at: Any, g: Geometry, i: int, c: Any, w: Any, wd: Any) -> Any:
@@ -439,4 +485,14 @@ def _moment(at: Any, g: Geometry, i: int, c: Any, w: Any, wd: Any) -> Any:
             part = at("I wd") * times(tensor, wd)
             part = part + at("w x Iw") * np.cross(w, times(tensor, w))
             total = total + weight * part
+    before = g.turn[:, i - 1] if i else np.broadcast_to(np.eye(3), turn.shape)
+    step = np.einsum("nji,njk->nik", before, turn)
+    for name, between in (("RtIR", np.swapaxes(step, 1, 2)), ("RIRt", step)):
+        about = np.einsum("nij,njk->nik", turn, between)
+        tensor = np.einsum("nij,jk,nlk->nil", about, g.body[i], about)
+        euler, gyro = at(f"{name} wd"), at(f"w x {name}w")
+        if isinstance(euler, np.ndarray):
+            total = total + euler * times(tensor, wd)
+        if isinstance(gyro, np.ndarray):
+            total = total + gyro * np.cross(w, times(tensor, w))
     return total + 0.0 * np.asarray(c)  # of the right shape where there is no tensor
