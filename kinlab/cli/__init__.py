@@ -12,7 +12,8 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
 ``ik``                 Command ``ik``: one pose from the command line
-from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
+``mark``               Command ``mark``: a class's submissions, judged
+``motion``             Command ``motion``: a motion of an arm, checked, drawn, saved
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file

@@ -95,9 +95,9 @@ def ik(
         echo(f"note: {remark}")
     if history is not None and answer.history is not None:
         from kinlab.plots.canvas import save
-        from kinlab.plots.searches import plot_searches
+        from kinlab.plots.searches import ik_history
 
-        save(plot_searches({method: answer.history}, f"{robot.name}: {answer.status}"), history)
+        save(ik_history({method: answer.history}, f"{robot.name}: {answer.status}"), history)
         echo(f"wrote {history}")
     broken = [
         f"{joint} ({low:g} to {high:g})"
