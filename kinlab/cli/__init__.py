@@ -53,6 +53,9 @@ _GROUPS = (
     view,
 )
 
+_OLDER = {"tip": "tool"}
+"""What options were called before, which is still understood."""
+
 _IMPORTING = "<frozen importlib._bootstrap>"
 """The file of the frames in which Python imports a module."""
 
@@ -61,7 +64,10 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        "token_normalize_func": lambda word: _OLDER.get(word, word),
+    },
 )
 
 

@@ -83,8 +83,8 @@ def analyse(
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.arguments import MODES
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import workspace_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
@@ -120,7 +120,7 @@ def analyse(
     if at is not None:
         _print_place(fivebar, at, signs)
     if picture is not None:
-        save(workspace_picture(fivebar, signs, assembly), picture)
+        save(mechanisms.fivebar(fivebar, signs, assembly), picture)
         console.print(f"wrote {picture}")
 
 
@@ -160,8 +160,8 @@ def size(
 ) -> None:
     """Size the servos for a workspace, a speed and an acceleration in any direction."""
     from kinlab.fivebar import FiveBar
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
@@ -173,8 +173,8 @@ def size(
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
-        save(cycle_picture(fivebar, sizing), picture)
-        save(gain_picture(fivebar, sizing), gains)
+        save(mechanisms.fivebar_cycle(fivebar, sizing), picture)
+        save(mechanisms.fivebar_gains(fivebar, sizing), gains)
         console.print(f"wrote {picture} and {gains}")
 
 
