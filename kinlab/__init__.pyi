@@ -6,6 +6,7 @@ from . import check as check
 from . import errors as errors
 from . import fivebar as fivebar
 from . import motion as motion
+from . import plots as plots
 from . import tolerances as tolerances
 from . import viewer as viewer
 from .analysis.boundary import planar_boundary as planar_boundary
@@ -67,6 +68,7 @@ from .formulas.record import hand_formula as hand_formula
 from .inverse.branches import ik_branches as ik_branches
 from .inverse.search import ik as ik
 from .inverse.search import ik_batch as ik_batch
+from .marking.run import mark as mark
 from .model.dh import DHLink as DHLink
 from .model.dh import DHTable as DHTable
 from .model.extract import to_dh as to_dh
