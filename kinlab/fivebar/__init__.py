@@ -5,6 +5,7 @@ module            what it holds
 ================  ================================================================================
 ``arguments``     What the functions of a five-bar are given: points of the plane, modes, how to
                   refuse
+``bounds/``       The worst case over a rectangle, with a proved bound
 ``closed_chain``  The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint
 ``dynamics``      Dynamics of a five-bar in closed form: rods of mass, torque, mass matrix, energy
                   and power
