@@ -11,6 +11,8 @@ module                 what it holds
 ``check``              The command check: hand formulas beside the engine
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
+``fivebar_design``     The command fivebar design: the lengths of a five-bar for a rectangle, and
+                       Pareto fronts
 ``ik``                 Command ``ik``: one pose from the command line
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from kinlab.cli.fivebar_design import design
 from kinlab.cli.screen import Screen, screen, styled
 from kinlab.errors import OptionError
 from kinlab.tolerances import TOLERANCES
@@ -43,6 +44,7 @@ def register(app: typer.Typer) -> None:
     group.command("list")(list_fivebars)
     group.command("analyse")(analyse)
     group.command("size")(size)
+    group.command("design")(design)
     group.command("export")(export)
     app.add_typer(group, name="fivebar")
 
@@ -54,7 +56,7 @@ def list_fivebars() -> None:
     from kinlab.fivebar.files import presets
 
     console = screen(highlight=False)
-    table = _table("five-bar", "l1, m", "l2, m", "e, m", "payload, kg", left=(0,))
+    table = fine_table("five-bar", "l1, m", "l2, m", "e, m", "payload, kg", left=(0,))
     for name in presets():
         one = FiveBar.load(name)
         table.add_row(name, _pair(one.l1), _pair(one.l2), f"{one.e:.4g}", f"{one.payload:g}")
@@ -66,7 +68,7 @@ def list_fivebars() -> None:
         "max r/min": "max_speed",
         "rotor kg m²": "rotor_inertia",
     }
-    table = _table("motor", "maker", *columns, left=(0, 1))
+    table = fine_table("motor", "maker", *columns, left=(0, 1))
     for motor in catalogue().values():
         figures = (getattr(motor, column) for column in columns.values())
         table.add_row(motor.name, motor.maker, *("-" if f is None else f"{f:g}" for f in figures))
@@ -94,7 +96,9 @@ def analyse(
         f"l1 {_pair(fivebar.l1)} m, l2 {_pair(fivebar.l2)} m, e {fivebar.e:.6g} m; "
         f"reachable area {fivebar.reachable_area():.6g} m²"
     )
-    table = _table("mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic", left=(0,))
+    table = fine_table(
+        "mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic", left=(0,)
+    )
     poses = {each: fivebar.isotropic_poses(each) for each in MODES}
     for each in MODES:
         areas = (f"{area:.4g}" for area in fivebar.workspace_map(each).area)
@@ -185,7 +189,7 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
         f"v {sizing.v_max:g} m/s, a {sizing.a_max:g} m/s²"
     )
-    table = _table("worst over the workspace", "crank 1", "crank 2", left=(0,))
+    table = fine_table("worst over the workspace", "crank 1", "crank 2", left=(0,))
     rows = {
         "crank rate, rad/s": sizing.rate,
         "load inertia, note's form, kg m²": sizing.load_inertia_note,
@@ -213,7 +217,7 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
 
 def _fits(sizing: ServoSizing) -> Table:
     columns = ["motor", "gear", "peak N m", "RMS N m", "r/min", "inertia", "margin", "limited by"]
-    table = _table(*columns, left=(0, 7))
+    table = fine_table(*columns, left=(0, 7))
     for fit in sizing.fits:
         figures = (fit.gear_ratio, fit.peak, fit.rms)
         margin = f"{fit.margin:.3g}"
@@ -273,7 +277,8 @@ def _fixed(metres: float) -> str:
     return f"{round(metres, 6) + 0.0:.6f}"
 
 
-def _table(*columns: str, left: tuple[int, ...]) -> Table:
+def fine_table(*columns: str, left: tuple[int, ...]) -> Table:
+    """A table of numbers; the columns of ``left`` are text."""
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 

@@ -60,11 +60,11 @@ def workspace_picture(
         *ring.T, color="black", lw=1.6, label=f"largest free circle, r = {circle.radius:.3g} m"
     )
     box = linkage.largest_rectangle(mode, assembly)
-    _box(axes, box, f"largest free rectangle, {box.area:.3g} m²")
+    box_of(axes, box, f"largest free rectangle, {box.area:.3g} m²")
     for k, pose in enumerate(linkage.isotropic_poses(mode)):
         label = "isotropic pose" if k == 0 else None
         axes.plot(*pose.xy, marker="*", ms=12, color="gold", mec="black", ls="none", label=label)
-    _bars(axes, linkage, np.array(circle.centre), mode)
+    bars(axes, linkage, np.array(circle.centre), mode)
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
     signs = ", ".join("+" if s > 0 else "−" for s in mode)
     axes.set_title(f"{figure_text(linkage.name)}: working mode ({signs})")
@@ -92,7 +92,8 @@ def _loci(axes: Any, linkage: FiveBar, mode: Mode) -> None:
         axes.plot(*line.T, color="black", lw=0.9, ls=(0, (1, 4)), label=label)
 
 
-def _bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
+def bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
+    """Draws the linkage with its tool at a place (2,)."""
     pose = solve_pose(linkage, xy, mode)
     for leg in range(2):
         base = np.array([linkage.base_x[leg], 0.0])
@@ -115,8 +116,8 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     where, rate, torque, power = figure.subplots(2, 2).ravel()
     path, cycle, box = sizing.path, sizing.cycle, sizing.workspace
     where.plot(*path.points.T, color="black", lw=1.5)
-    _box(where, box, None, colour="tab:green")
-    _bars(where, linkage, path.points[len(path.t) // 4], sizing.mode)
+    box_of(where, box, None, colour="tab:green")
+    bars(where, linkage, path.points[len(path.t) // 4], sizing.mode)
     where.set(aspect="equal", xlabel="x, m", ylabel="y, m", title="path in the workspace")
     curves = (
         (rate, cycle.v, "crank rate, rad/s"),
@@ -178,7 +179,8 @@ def _circle(centre: tuple[float, float], radius: float) -> Array:
     return np.array(centre) + radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
 
 
-def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
+def box_of(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
+    """Draws the outline of a rectangle."""
     x, y = box[:2], box[2:]
     corners = np.array([[x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]]])
     axes.plot(*corners, color=colour, lw=1.8, ls="-.", label=label)

@@ -2,7 +2,7 @@
 
 Cells in which a quantity is certainly below the best value found are dropped, the others are split
 in four. The bound of a cell is that of its Taylor model (:mod:`kinlab.fivebar.bounds.enclosure`);
-values are taken at the corners that the slopes point to. So no place between the points of a grid is
+values are taken at the corners that the slopes point to. So no place between grid points is
 missed, and the gap between value and bound is known.
 
 Source: Neumaier, "Complete search in continuous global optimization and constraint satisfaction",
