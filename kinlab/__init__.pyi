@@ -26,6 +26,7 @@ from .check.compare import compare as compare
 from .doctor.examine import diagnose as diagnose
 from .doctor.tables.diagnosis import diagnose_table as diagnose_table
 from .engine.dynamics import coriolis_matrix as coriolis_matrix
+from .engine.dynamics import friction_torques as friction_torques
 from .engine.dynamics import kinetic_energy as kinetic_energy
 from .engine.dynamics import mass_matrix as mass_matrix
 from .engine.dynamics import potential_energy as potential_energy
@@ -69,10 +70,11 @@ from .inverse.search import ik_batch as ik_batch
 from .model.dh import DHLink as DHLink
 from .model.dh import DHTable as DHTable
 from .model.extract import to_dh as to_dh
+from .model.extract import to_urdf as to_urdf
 from .model.library import load as load
 from .model.link import Convention as Convention
+from .model.payload import with_payload as with_payload
 from .model.robot import Robot as Robot
-from .model.urdf_write import to_urdf as to_urdf
 from .postures.aspects import aspects as aspects
 from .postures.cuspidality import is_cuspidal as is_cuspidal
 from .postures.cuspidality import posture_path as posture_path

@@ -226,6 +226,8 @@ def number(value: Any, what: str, *, above: float | None = None) -> float:
     Raises:
         OptionError: not one real number, not finite, or not above.
     """
+    if type(value) is float and math.isfinite(value) and (above is None or value > above):
+        return value
     if isinstance(value, float) and not math.isfinite(value):
         raise OptionError(f"{what} is {value}; give a finite number")
     array = real_array(value, what, OptionError)
@@ -233,8 +235,19 @@ def number(value: Any, what: str, *, above: float | None = None) -> float:
         raise OptionError(f"{what} has shape {array.shape}; give one number")
     found = float(array)
     if above is not None and not found > above:
-        raise OptionError(f"{what} is {found:g}; it must be above {above:g}")
+        raise OptionError(f"{what} is {found}; it must be above {above:g}")
     return found
+
+
+def truth(value: Any, what: str, error: type[KinlabError] = OptionError) -> bool:
+    """Reads true or false.
+
+    Raises:
+        KinlabError: (the class given) anything else.
+    """
+    if not isinstance(value, (bool, np.bool_)):
+        raise error(f"{what} is {shown(value)}; give True or False")
+    return bool(value)
 
 
 def word(value: Any, valid: Iterable[str], what: str) -> str:

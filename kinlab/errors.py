@@ -1,14 +1,20 @@
-"""Every error kinlab raises on purpose.
+"""Every error kinlab raises on purpose, and its one warning.
 
 A message names the place (table, link, joint, file, row), says what is wrong, and says what
 would be right. Catch ``KinlabError`` to catch them all; the command line turns each into one
 line and exit code 2.
+
+:class:`KinlabWarning` says at the door that a value is sound but hardly meant; the answer follows.
 """
 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+import sys
+import warnings
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 
 
 class KinlabError(Exception):
@@ -76,6 +82,37 @@ class SweepError(KinlabError, RuntimeError):
 
 class MissingExtraError(KinlabError, ImportError):
     """A feature needs an optional package that is not installed."""
+
+
+class KinlabWarning(UserWarning):
+    """Something the caller gave can be used, but is hardly what was meant.
+
+    Python shows each once for the line of the caller that it points to; ``warnings.simplefilter(
+    "error", kl.errors.KinlabWarning)`` makes errors of them.
+    """
+
+
+_SAID: ContextVar[bool] = ContextVar("kinlab_said", default=False)
+
+
+def warn(message: str) -> None:
+    """Gives a :class:`KinlabWarning` that points to the first line outside this package."""
+    if _SAID.get():
+        return
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("kinlab."):
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, KinlabWarning, stacklevel=level)
+
+
+@contextmanager
+def already_said() -> Iterator[None]:
+    """Within it :func:`warn` is silent: for what is made out of tables that passed a door."""
+    token = _SAID.set(True)
+    try:
+        yield
+    finally:
+        _SAID.reset(token)
 
 
 def near(name: str, valid: Iterable[str], *, limit: int = 5) -> str:

@@ -24,6 +24,10 @@ class Tolerances:
     """Relative violation of I1 + I2 >= I3 that CAD exports with six digits show on thin plates
     (equality is exact for a lamina, so rounding falls on either side)."""
 
+    inertia_rounding: float = 0.05
+    """Share of the largest moment up to which a tensor that no body can have may be called rounded,
+    however few digits it is printed with: half a unit of a number with two is up to 5 %."""
+
     inertia_floor: float = 1e-9
     """kg m². Moments below this are judged as if they were this large: exported files hold
     rounding residue such as -2e-35 in links that stand for a frame only."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from kinlab.host.files import write_text
 from kinlab.model.dh import DHTable
 from kinlab.model.library import robots_dir, shipped
-from kinlab.model.urdf_write import to_urdf
+from kinlab.model.urdf_write import written
 
 
 def main() -> None:
@@ -18,7 +18,7 @@ def main() -> None:
     folder.mkdir(exist_ok=True)
     for entry in shipped().values():
         file = folder / f"{entry.name}.urdf"
-        write_text(file, to_urdf(DHTable.load(entry.path)))
+        write_text(file, written(DHTable.load(entry.path)))
         print(f"wrote {file.name}")
 
 

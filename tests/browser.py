@@ -42,7 +42,7 @@ def chromium():
 @pytest.fixture
 def tab(chromium):
     """A page that must not report an error, nor fetch anything but itself."""
-    page = chromium.new_page(viewport={"width": 900, "height": 600})
+    page = chromium.new_page(viewport={"width": 600, "height": 400})
     page.errors, page.asked = [], []
     page.on("console", lambda m: page.errors.append(m.text) if m.type == "error" else None)
     page.on("pageerror", lambda problem: page.errors.append(str(problem)))

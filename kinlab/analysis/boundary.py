@@ -18,7 +18,8 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array, frozen
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import search_box
 
@@ -100,7 +101,7 @@ class _Chain:
         return place
 
 
-def planar_boundary(robot: Robot) -> PlanarBoundary:
+def planar_boundary(robot: ArmLike) -> PlanarBoundary:
     """The boundary of the set of tool positions of a planar revolute arm.
 
     Args:
@@ -113,6 +114,7 @@ def planar_boundary(robot: Robot) -> PlanarBoundary:
     Raises:
         OptionError: another kind of arm.
     """
+    robot = as_robot(robot)
     chain = _planar_chain(robot)
     candidates = _distinct(_candidates(chain))
     pieces = _cut(candidates, _SIDE * chain.reach)
@@ -137,7 +139,6 @@ def _evidence(candidates: int) -> Evidence:
 
 
 def _planar_chain(robot: Robot) -> _Chain:
-    require_robot(robot)
     axes = Axes.at(robot, np.zeros(robot.n))
     upright = np.abs(np.abs(axes.direction[:, 2]) - 1.0) < 1e-9
     if not (axes.turns.all() and upright.all()) or robot.n > _MOST_JOINTS:

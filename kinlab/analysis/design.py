@@ -23,8 +23,9 @@ from kinlab.analysis.isotropy import (
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, seed_of, whole
-from kinlab.errors import OptionError
 from kinlab.model.dh import DHTable
+from kinlab.model.extract import as_table
+from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 
@@ -100,7 +101,7 @@ class DesignSearch:
 
 
 def design_isotropic(
-    table: DHTable,
+    table: ArmLike,
     free: Sequence[str],
     task: Any = "auto",
     length: float | str = OPTIMAL,
@@ -115,7 +116,7 @@ def design_isotropic(
     Where all lengths of the arm are open its size is arbitrary: their sum is kept.
 
     Args:
-        table: the table; its other numbers stay.
+        table: the DH table, or an arm whose table is meant; its other numbers stay.
         free: numbers to open: a column and its row (from 1), as ``"a2"``, ``"d1"``, ``"alpha3"``,
             or ``"tool.x"``, ``"tool.y"``, ``"tool.z"``.
         task: a name, a mask of six booleans, or ``"auto"``.
@@ -131,8 +132,7 @@ def design_isotropic(
         NameUnknownError: unknown task.
     """
     seeds, keep, seed = whole(seeds, "seeds"), whole(keep, "keep"), seed_of(seed)
-    if not isinstance(table, DHTable):
-        raise OptionError(f"table: {type(table).__name__} is no DHTable; kl.to_dh makes one")
+    table = as_table(table)
     chain = open_chain(table, free)
     space = read_reachable_task(Robot.from_dh(table), task)
     given = read_length_choice(length)

@@ -16,7 +16,7 @@ import numpy as np
 
 from kinlab.arrays import Array, shown
 from kinlab.errors import OptionError
-from kinlab.model.dh import DHTable
+from kinlab.model.dh import DHTable, with_links
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _LENGTHS = ("a", "d")
@@ -117,7 +117,7 @@ class OpenChain:
             else:
                 changed: dict[str, Any] = {entry.column: float(value)}
                 links[entry.row] = replace(links[entry.row], **changed)
-        return replace(self.table, links=tuple(links), tool=tool)
+        return with_links(replace(self.table, tool=tool), links)
 
 
 def open_chain(table: DHTable, free: Sequence[str]) -> OpenChain:

@@ -17,7 +17,8 @@ from kinlab.analysis.solver import System, solve
 from kinlab.arrays import Array, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.model.extract import to_dh
+from kinlab.model.extract import as_table
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
 
@@ -89,7 +90,9 @@ class FactoredDeterminant:
         return symbolic.to_latex(self.expression)
 
 
-def factored_determinant(robot: Robot, task: Any = "auto", *, seed: int = 0) -> FactoredDeterminant:
+def factored_determinant(
+    robot: ArmLike, task: Any = "auto", *, seed: int = 0
+) -> FactoredDeterminant:
     """Derives det J and says of each factor what its zeros are.
 
     Args:
@@ -102,13 +105,14 @@ def factored_determinant(robot: Robot, task: Any = "auto", *, seed: int = 0) -> 
             more than six joints.
         NameUnknownError: unknown task.
     """
+    robot = as_robot(robot)
     space = read_task(robot, task)
     if space.m != robot.n:
         raise OptionError(
             f"robot {robot.name!r}: det J needs a square J; task {space.name} has {space.m} rows "
             f"and the arm {robot.n} joints; find_singularities serves any shape"
         )
-    table = robot.table if robot.table is not None else to_dh(robot)
+    table = as_table(robot)
     arm = symbolic.arm(table)
     derived = symbolic.det_jacobian(arm, space.rows)
     singular = set(derived.singular_factors)

@@ -21,7 +21,7 @@ from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choic
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, seed_of, whole
 from kinlab.fast.stacks import jacobian
-from kinlab.model.robot import Robot
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 
 ISOTROPIC = 1e-8
@@ -105,7 +105,7 @@ class IsotropySearch:
 
 
 def find_isotropic(
-    robot: Robot,
+    robot: ArmLike,
     task: Any = "auto",
     length: float | str = OPTIMAL,
     *,
@@ -129,6 +129,7 @@ def find_isotropic(
         NameUnknownError, OptionError: unknown task, one with coordinates that the arm cannot
             move independently (then no configuration is isotropic), length <= 0.
     """
+    robot = as_robot(robot)
     seeds, seed = whole(seeds, "seeds"), seed_of(seed)
     space = read_reachable_task(robot, task)
     given = read_length_choice(length)

@@ -22,6 +22,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
 
@@ -83,7 +84,7 @@ class Loci:
 
 
 def singular_loci(
-    robot: Robot,
+    robot: ArmLike,
     joints: Sequence[int | str],
     q: ArrayLike | None = None,
     task: Any = "auto",
@@ -112,6 +113,7 @@ def singular_loci(
         NameUnknownError, OptionError, StateError: unknown joint or task, a joint named twice, a
             number of joints in whose slice the singular set is no curve (says how many it needs).
     """
+    robot = as_robot(robot)
     space = read_reachable_task(robot, task)
     chosen = _read_joints(robot, joints)
     lower, upper = search_box(robot)

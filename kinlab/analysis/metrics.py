@@ -47,7 +47,8 @@ from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.model.robot import Robot, require_inertia
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import require_inertia
 from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 
@@ -112,14 +113,15 @@ def singular_values(jacobians: ArrayLike) -> Array:
 def condition_number(sigma: Array) -> Array:
     """Greatest over least singular value; infinity at a singularity, on purpose."""
     ratio = inverse_condition(sigma)
-    return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=ratio > 0.0)
+    large = ratio >= np.finfo(np.float64).tiny  # of anything less there is no inverse
+    return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=large)
 
 
 def manipulability(
-    robot: Robot,
+    robot: ArmLike,
     q: ArrayLike,
     kind: str = "yoshikawa",
-    task: Any = "pose",
+    task: Any = "auto",
     length: float = 1.0,
 ) -> Any:
     """A measure of dexterity at q; the definitions stand at the top of this module.
@@ -131,12 +133,12 @@ def manipulability(
             ``"isotropy"``.
         task: ``"pose"``, ``"position"``, ``"orientation"``, ``"xy"``, ``"xytheta"``, a mask of
             six booleans, or ``"auto"`` for the largest that suits the arm. An arm with fewer
-            joints than task rows has a flat ellipsoid: every measure is 0 at every q.
+            joints than the task has rows is flat: every measure is 0 at every q.
         length: characteristic length in metres by which entries in metres are divided; 1 m
             leaves the SI numbers, and then a mixed task weighs 1 m like 1 rad.
 
     Returns:
-        A float, or (N,). Finite and 0 at singularities.
+        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities.
 
     Raises:
         StateError: q of the wrong shape or type, or not finite.
@@ -144,6 +146,7 @@ def manipulability(
         OptionError: a mask that is none, length <= 0.
         InertiaError: ``"asada"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     measure = read_kind(kind)
     space, size = read_task(robot, task), read_length(length)
     states = joint_vector(robot, q, "q")
@@ -151,7 +154,35 @@ def manipulability(
     if kind == "asada":
         matrix = weighted(matrix, mass_matrix(robot, states))
     value = measure(singular_values(matrix))
-    return float(value) if states.ndim == 1 else value
+    return Value(value, space.name) if states.ndim == 1 else Values(value, space.name)
+
+
+class Value(float):
+    """A measure at one q: a number that knows its task."""
+
+    task: str
+
+    def __new__(cls, value: Any, task: str) -> Value:
+        made = super().__new__(cls, value)
+        made.task = task
+        return made
+
+    def __getnewargs__(self) -> Any:
+        return float(self), self.task
+
+
+class Values(np.ndarray[Any, np.dtype[np.float64]]):
+    """A measure at many q, (N,): an array that knows its task, as do slices of it."""
+
+    task: str
+
+    def __new__(cls, values: Array, task: str) -> Values:
+        made = np.asarray(values, dtype=np.float64).view(cls)
+        made.task = task
+        return made
+
+    def __array_finalize__(self, made_from: Any) -> None:
+        self.task = getattr(made_from, "task", "")
 
 
 def read_kind(kind: Any) -> Callable[[Array], Array]:
@@ -197,7 +228,7 @@ class Dexterity:
     rank: int
 
 
-def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
+def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
     """Every measure at one q.
 
     Args:
@@ -208,13 +239,14 @@ def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`manipulability`.
     """
+    robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     sigma = singular_values(space.jacobian(state, size))
     numbers = {name: float(KINDS[name](sigma)) for name in KINDS if name != "asada"}
-    rank = int(np.sum(sigma > SINGULAR * sigma[0])) if sigma[0] > 0.0 else 0
+    rank = int(np.sum(regular(sigma)))
     return Dexterity(
         space.name,
         space.suggested,
@@ -228,6 +260,11 @@ def dexterity(robot: Robot, q: ArrayLike, task: Any = "auto", length: float = 1.
 
 SINGULAR = 1e-10
 """sigma_min / sigma_max at and below which a configuration counts as singular."""
+
+
+def regular(sigma: Array) -> Any:
+    """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
+    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
 
 
 OPTIMAL = "optimal"
@@ -255,7 +292,7 @@ class CharacteristicLength:
 
 
 def characteristic_length(
-    robot: Robot, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
+    robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
 ) -> CharacteristicLength:
     """The length that minimises the condition number at q, or the effect of a given one.
 
@@ -269,6 +306,7 @@ def characteristic_length(
         StateError, NameUnknownError, OptionError: bad q, unknown task, length <= 0, or a
             singular q, at which every length is as bad as any other.
     """
+    robot = as_robot(robot)
     space = read_task(robot, task)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
@@ -346,7 +384,7 @@ class Ellipsoid:
 
 
 def ellipsoid(
-    robot: Robot, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
+    robot: ArmLike, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
 ) -> Ellipsoid:
     """An ellipsoid at one q; the three kinds are defined at the top of this module.
 
@@ -360,6 +398,7 @@ def ellipsoid(
         StateError, NameUnknownError, OptionError: bad q, unknown kind or task, length <= 0.
         InertiaError: ``"dynamic"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     kind = word(kind, ELLIPSOIDS, "ellipsoid")
     space, size = read_task(robot, task), read_length(length)
     state = joint_vector(robot, q, "q")
@@ -372,8 +411,9 @@ def ellipsoid(
     left: Array = np.linalg.svd(matrix)[0]
     sigma: Array = singular_values(matrix)
     if kind == "force":
-        flat = sigma <= SINGULAR * max(float(sigma[0]), np.finfo(float).tiny)
-        inverse: Array = np.divide(1.0, sigma, out=np.full_like(sigma, np.inf), where=~flat)
+        inverse: Array = np.divide(
+            1.0, sigma, out=np.full_like(sigma, np.inf), where=regular(sigma)
+        )
         left, sigma = left[:, ::-1], inverse[::-1]
     return Ellipsoid(
         kind,

@@ -25,6 +25,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
 
@@ -63,7 +64,7 @@ class NearestSingularity:
 
 
 def nearest_singularity(
-    robot: Robot, q: ArrayLike, task: Any = "auto", *, boxes: int = 12_000, seed: int = 0
+    robot: ArmLike, q: ArrayLike, task: Any = "auto", *, boxes: int = 12_000, seed: int = 0
 ) -> NearestSingularity:
     """The singular configuration nearest to q in joint space, within the limits.
 
@@ -78,6 +79,7 @@ def nearest_singularity(
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
+    robot = as_robot(robot)
     boxes, seed = whole(boxes, "boxes"), seed_of(seed)
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import SINGULAR, regular
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.model.robot import Robot
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import read_task
 
 
@@ -46,7 +46,7 @@ class Redundancy:
     evidence: Evidence
 
 
-def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
+def redundancy(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Redundancy:
     """Null space and right pseudo-inverse of the task's J at one q.
 
     Args:
@@ -57,12 +57,13 @@ def redundancy(robot: Robot, q: ArrayLike, task: Any = "auto") -> Redundancy:
     Raises:
         StateError, NameUnknownError, OptionError: bad q, unknown task.
     """
+    robot = as_robot(robot)
     space = read_task(robot, task)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     left, sigma, right = np.linalg.svd(space.jacobian(state))
-    rank = int(np.sum(sigma > SINGULAR * sigma[0])) if sigma[0] > 0.0 else 0
+    rank = int(np.sum(regular(sigma)))
     inverse = None
     if rank == space.m:
         inverse = frozen(right[: space.m].T / sigma @ left.T)

@@ -23,9 +23,10 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, number, seed_of
-from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import OptionError
-from kinlab.model.robot import Robot, require_robot
+from kinlab.fast.stacks import fk, jacobian
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.structure.axes import Axes
 from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
@@ -86,7 +87,7 @@ class WorkspaceSection:
         return _project(self.origin, self.axis, positions)
 
 
-def workspace_section(robot: Robot, *, step: float = 0.05, seed: int = 0) -> WorkspaceSection:
+def workspace_section(robot: ArmLike, *, step: float = 0.05, seed: int = 0) -> WorkspaceSection:
     """Edges and internal boundaries of the tool's positions, in the half plane through axis 1.
 
     The limits of joint 1 are left out: the section holds wherever joint 1 can turn the arm there.
@@ -102,7 +103,7 @@ def workspace_section(robot: Robot, *, step: float = 0.05, seed: int = 0) -> Wor
             seed of another kind.
         StructureError: no robot.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     step, seed = number(step, "step"), seed_of(seed)
     if not step >= _SHORTEST:
         raise OptionError(f"step is {step:g}; it must be at least {_SHORTEST:g}")

@@ -18,6 +18,7 @@ from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import name_singularity, structure
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
@@ -161,7 +162,7 @@ class SingularitySearch(Sequence[Singularity]):
 
 
 def find_singularities(
-    robot: Robot, task: Any = "auto", *, points: int = 8, seed: int = 0, keep: int = 12
+    robot: ArmLike, task: Any = "auto", *, points: int = 8, seed: int = 0, keep: int = 12
 ) -> SingularitySearch:
     """Configurations on the singular set within the joint limits, sheet by sheet.
 
@@ -187,6 +188,7 @@ def find_singularities(
         NameUnknownError, OptionError: an unknown task, or one whose coordinates the arm can
             never move independently (every configuration is singular).
     """
+    robot = as_robot(robot)
     points, keep, seed = whole(points, "points"), whole(keep, "keep"), seed_of(seed)
     space = read_reachable_task(robot, task)
     system = sets.whole(space)
@@ -284,13 +286,14 @@ def _evidence(space: TaskSpace, effort: Effort, exact: int) -> Evidence:
     )
 
 
-def describe_singularity(robot: Robot, q: ArrayLike, task: Any = "auto") -> Singularity:
+def describe_singularity(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Singularity:
     """The lost direction, joints, rank and class of a configuration that is singular.
 
     Raises:
         OptionError: q is not singular (says how far from it), or is a stack.
         StateError, NameUnknownError: bad q, unknown task.
     """
+    robot = as_robot(robot)
     space = read_reachable_task(robot, task)
     state = joint_vector(robot, q, "q")
     if state.ndim != 1:

@@ -11,6 +11,9 @@ module           what it holds
 ``table_check``  Checks of one arm: its DH table by hand beside Pinocchio and yourdfpy
 ``targets``      What the arguments of ``kinlab check`` mean: robots, files, notes, ids, a user's
                  formulas
+``together``     Rows of many tasks together: each mechanism's states solved once, on all cores
+``unread``       What a check was asked to judge and could not: it is listed with its reason, the
+                 rest goes on
 ``quantities/``  The engine's quantities by name: what a hand formula can be compared with
 ``report/``      A check written down: summary, one self-contained HTML page, or Markdown
 ===============  =================================================================================

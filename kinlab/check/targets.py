@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -10,9 +11,13 @@ from kinlab.check.catalogue import Row, catalogue, failed_row, plan, run_one
 from kinlab.check.guest import FunctionLostError, Guest
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.table_check import checks_of
-from kinlab.errors import FileError, NameUnknownError, near
+from kinlab.check.unread import Unread
+from kinlab.errors import FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas.record import Formula
 from kinlab.model.library import shipped
+
+_ID = re.compile(r"[0-9]{3}\.[A-Za-z][A-Za-z0-9]*(\.[A-Za-z0-9]+)?")
+"""What is written like the id of a note's formula."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,11 @@ class Task:
     robot: Any
     name: str
     file: str = ""
+
+    @property
+    def ships(self) -> bool:
+        """Whether formula and mechanism come with kinlab, so that names say all."""
+        return not self.file and (isinstance(self.robot, str) or self.name in shipped())
 
     @property
     def label(self) -> str:
@@ -60,21 +70,46 @@ def tasks(arguments: Iterable[str]) -> list[Task]:
         FileError: a file that cannot be read, or a .py file without a marked function.
         FormulaError: a .py file that raises, ends its process or does not come back.
     """
+    found, unread = read_tasks(arguments)
+    if unread:
+        raise unread[0].problem
+    return found
+
+
+def read_tasks(arguments: Iterable[str]) -> tuple[list[Task], list[Unread]]:
+    """As :func:`tasks`, for those who go on without what cannot be read.
+
+    Returns:
+        What is to run, in order; and the arguments, or the functions of a file, that cannot.
+    """
     wanted = list(arguments)
     if not wanted:
         pairs = plan(catalogue())
         return [_one(record, name) for record, name in pairs] + [
             task for name in shipped() for task in _table(name)
-        ]
+        ], []
     found: list[Task] = []
+    unread: list[Unread] = []
     for text in wanted:
-        found += _tasks_of(text)
-    return found
+        try:
+            if text.endswith(".py"):
+                _read_functions(text, found, unread)
+            else:
+                found += _tasks_of(text)
+        except KinlabError as problem:
+            unread.append(Unread(text, problem))
+    return found, unread
+
+
+def _read_functions(path: str, found: list[Task], unread: list[Unread]) -> None:
+    for record in _user_formulas(path):
+        try:
+            found += [Task(record, name, name, path) for _, name in plan([record])]
+        except KinlabError as problem:
+            unread.append(Unread(f"{path}: {record.key}", problem))
 
 
 def _tasks_of(text: str) -> list[Task]:
-    if text.endswith(".py"):
-        return [Task(record, name, name, text) for record, name in plan(_user_formulas(text))]
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
         return [_one(record, name) for record, name in plan(by_id)]
@@ -82,6 +117,8 @@ def _tasks_of(text: str) -> list[Task]:
     if on_robot and text not in shipped():
         return on_robot  # a mechanism that only the catalogue knows
     try:
+        if _ID.fullmatch(text):  # what follows the point is no ending of a file
+            raise NameUnknownError(text)
         return on_robot + _table(text)
     except NameUnknownError:
         names = {name for _, name in plan(catalogue())} | {f.id for f in catalogue()}

@@ -166,6 +166,7 @@ def workspace(
     if not len(chart.values):
         return
     console.print(tables.workspace_table(chart))
+    console.print(str(chart.evidence), style="dim", highlight=False)
     if save is not None:
         chart.save(save)
         console.print(f"wrote {save}", highlight=False)

@@ -73,12 +73,10 @@ def print_designs(
     from rich.table import Table
 
     from kinlab.analysis.design import design_isotropic
-    from kinlab.model.extract import to_dh
     from kinlab.model.robot import Robot
 
     names = [part.strip() for part in free.split(",")]
-    source = robot.table if robot.table is not None else to_dh(robot)
-    found = design_isotropic(source, names, task, length, seeds=seeds, seed=seed)
+    found = design_isotropic(robot, names, task, length, seeds=seeds, seed=seed)
     if not len(found):
         console.print(
             f"no isotropic design: best condition number {found.best_condition:.6g} "

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TIP
 from kinlab.cli.screen import Screen, echo, screen, styled, visible
-from kinlab.errors import OptionError
+from kinlab.errors import KinlabError, OptionError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -17,6 +20,7 @@ if TYPE_CHECKING:
     from kinlab.check.catalogue import Row
     from kinlab.check.diagnosis import Diagnosis
     from kinlab.check.targets import Task
+    from kinlab.check.unread import Unread
 
 WHAT = Annotated[
     list[str] | None,
@@ -48,9 +52,6 @@ AGAINST = Annotated[
     ),
 ]
 
-Document = tuple[str, dict[str, Any]]
-"""A path and the TOML document that was read from it."""
-
 
 def register(app: typer.Typer) -> None:
     """Adds the command of this file."""
@@ -73,7 +74,8 @@ def check(
     A .py file is run, like any program, in a process of its own: only check files you trust.
     A formula of yours that differs is taken apart: what is wrong, and how far off it is before
     and after the repair. With --against the same is done to a table, cell by cell. Exit code 0 if
-    every correct form agrees (and every misprint shows), 1 if not, 2 for bad input.
+    every correct form agrees (and every misprint shows), 1 if not, 2 for bad input; what cannot
+    be read is listed with its reason, and the rest is judged.
     """
     if against is not None:
         from kinlab.cli.against import check_against
@@ -82,74 +84,136 @@ def check(
         return
     if tip is not None:
         raise OptionError(f"check: --tip {tip!r} names the tool of a URDF given by --against")
-    from kinlab.check.catalogue import Row
-    from kinlab.check.report.write import check_report_path, write_report
-    from kinlab.check.targets import tasks
-
     if quantities:
         _list_quantities()
         return
-    for file in report or ():
-        check_report_path(file)
-    texts, rest = _formula_files(what or [])
-    todo = tasks(rest) if rest or not texts else []
-    judged = _examine(texts, samples, seed)
-    done = []
-    for one in _run(todo, samples, seed):
-        if isinstance(one, Row):
-            done.append(one)
-        else:
-            judged.append(one)
+    with ExitStack() as stack:
+        # first, so that they import while we do
+        helpers = stack.enter_context(Helpers()) if not what else None
+        from kinlab.check.report.write import check_report_path, write_report
+        from kinlab.check.targets import read_tasks
+
+        for file in report or ():
+            check_report_path(file)
+        found = _Found()
+        todo: Sequence[Task] = ()
+        rest = _formula_files(what or [], samples, seed, found)
+        if rest or not what:
+            todo, unread = read_tasks(rest)
+            found.unread += unread
+            if helpers is None and sum(task.ships for task in todo) >= ENOUGH:
+                helpers = stack.enter_context(Helpers())
+            _run(todo, samples, seed, helpers, found)
+    found.unread.sort(key=lambda one: _place(one.what, what or []))
+    if found.nothing and len(found.unread) == 1 and not report:
+        raise found.unread[0].problem
     if json:
-        _print_json(done, judged)
+        _print_json(found)
     else:
-        _print_all(done, judged, rows)
+        _print_all(found, rows)
+    for line in _remarks(todo if what else ()):
+        echo(line, err=json)
     for file in report or ():
-        write_report(file, done, judged)
+        write_report(file, found.rows, found.judged, found.unread)
         echo(f"wrote {file}", err=json)
-    if not all(row.ok for row in done) or not all(one.agrees for one in judged):
+    if found.unread:
+        raise typer.Exit(2)
+    if not all(row.ok for row in found.rows) or not all(one.agrees for one in found.judged):
         raise typer.Exit(1)
 
 
-def _formula_files(what: list[str]) -> tuple[list[Document], list[str]]:
-    """Files of formulas as text with what they hold, and the other arguments."""
+def _remarks(todo: Sequence[Task]) -> list[str]:
+    """What must be said of the robots that were named."""
+    from kinlab.model.robot import Robot, remarks
+
+    robots = {task.name: task.robot for task in todo if isinstance(task.robot, Robot)}
+    return [f"{name}: {line}" for name, robot in robots.items() for line in remarks(robot)]
+
+
+@dataclass
+class _Found:
+    """What a check has found so far.
+
+    Attributes:
+        rows: formulas beside the engine.
+        judged: formulas that were taken apart.
+        unread: what could not be judged.
+    """
+
+    rows: list[Row] = field(default_factory=list)
+    judged: list[Diagnosis] = field(default_factory=list)
+    unread: list[Unread] = field(default_factory=list)
+
+    @property
+    def nothing(self) -> bool:
+        """Whether nothing at all was judged."""
+        return not self.rows and not self.judged
+
+
+def _formula_files(what: list[str], samples: int, seed: int, found: _Found) -> list[str]:
+    """Judges the files of formulas as text; the other arguments are left."""
     if not any(w.lower().endswith(".toml") for w in what):
-        return [], what
+        return what
+    from kinlab.check.unread import Unread
     from kinlab.doctor.file import formula_document
 
-    texts: list[Document] = []
     rest = []
     for path in what:
-        document = formula_document(path)
+        try:
+            document = formula_document(path)
+        except KinlabError as problem:
+            found.unread.append(Unread(path, problem))
+            continue
         if document is None:
             rest.append(path)
-        else:
-            texts.append((path, document))
-    return texts, rest
+            continue
+        from kinlab.doctor.report import of_document
+
+        judged, unread = of_document(document, path, samples, seed)
+        found.judged += judged
+        found.unread += unread
+    return rest
 
 
-def _examine(texts: list[Document], samples: int, seed: int) -> list[Diagnosis]:
-    if not texts:
-        return []
-    from kinlab.doctor.report import of_file
-    from kinlab.formulas.text import formula_file
-
-    files = [formula_file(document, path) for path, document in texts]
-    return [found for file in files for found in of_file(file, samples, seed)]
+def _place(unread: str, what: list[str]) -> int:
+    """Which argument something belongs to; behind all, where it belongs to none."""
+    mine = (k for k, one in enumerate(what) if unread == one or unread.startswith(f"{one}: "))
+    return next(mine, len(what))
 
 
-def _run(todo: Sequence[Task], samples: int, seed: int) -> list[Row | Diagnosis]:
+def _run(
+    todo: Sequence[Task], samples: int, seed: int, helpers: Helpers | None, found: _Found
+) -> None:
+    """Runs the tasks; what they say stands in the order of the tasks."""
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
+    from kinlab.check.catalogue import Row
+    from kinlab.check.together import run_together
+    from kinlab.check.unread import Unread
+
+    def one(task: Task) -> Row | Diagnosis | Unread:
+        progress.update(bar, description=visible(task.label))
+        try:
+            return _one(task, samples, seed)
+        except KinlabError as problem:
+            place = f"{task.file}: {task.record.key}" if task.file else task.name
+            return Unread(place, problem)
+
     columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
-    done: list[Row | Diagnosis] = []
+    done: dict[int, Row | Diagnosis | Unread] = {}
     with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
         bar = progress.add_task("", total=len(todo))
-        for task in todo:
-            progress.update(bar, description=visible(task.label))
-            done.append(_one(task, samples, seed))
+        for place, answer in run_together(todo, one, samples, seed, helpers):
+            done[place] = answer
             progress.advance(bar)
-    return done
+    for place in range(len(todo)):
+        answer = done[place]
+        if isinstance(answer, Row):
+            found.rows.append(answer)
+        elif isinstance(answer, Unread):
+            found.unread.append(answer)
+        else:
+            found.judged.append(answer)
 
 
 def _one(task: Task, samples: int, seed: int) -> Row | Diagnosis:
@@ -160,20 +224,24 @@ def _one(task: Task, samples: int, seed: int) -> Row | Diagnosis:
     return of_task(task, samples, seed)
 
 
-def _print_json(done: Sequence[Row], judged: Sequence[Diagnosis]) -> None:
+def _print_json(found: _Found) -> None:
     import json
 
     from kinlab.check.report.summary import as_data
 
-    data = as_data(done, judged)
+    data = as_data(found.rows, found.judged, found.unread)
     echo(json.dumps(data, indent=1, ensure_ascii=False, allow_nan=False))
 
 
-def _print_all(done: Sequence[Row], judged: Sequence[Diagnosis], each: bool) -> None:
-    if done:
-        _print_table(done, each)
-    for k, found in enumerate(judged):
-        echo(("\n" if k or done else "") + str(found))
+def _print_all(found: _Found, each: bool) -> None:
+    if found.rows:
+        _print_table(found.rows, each)
+    for k, one in enumerate(found.judged):
+        echo(("\n" if k or found.rows else "") + str(one))
+    for k, missed in enumerate(found.unread):
+        if not k:
+            echo(("" if found.nothing else "\n") + "NOT JUDGED:")
+        echo(f"  {missed.what}: {missed.reason}")
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:

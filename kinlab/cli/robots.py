@@ -58,8 +58,9 @@ def list_robots() -> None:
 
 def info(name: NAME, tip: TIP = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
-    from kinlab.model.extract import to_dh
+    from kinlab.model.extract import as_table
     from kinlab.model.library import load
+    from kinlab.model.robot import remarks
 
     robot = load(name, tip)
     console = screen()
@@ -71,10 +72,14 @@ def info(name: NAME, tip: TIP = None) -> None:
     console.print(f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", highlight=False)
     if robot.singular_mass:
         console.print(robot.singular_mass, style="yellow")
+    for line in remarks(robot):
+        console.print(line, style="yellow", highlight=False, soft_wrap=True)
     for line in _missing_meshes(robot):
         console.print(f"{line}; a plain shape is drawn instead", style="yellow", highlight=False)
     console.print(_joints(robot))
-    table = robot.table or to_dh(robot)
+    if robot.model.damping.any() or robot.model.friction.any():
+        console.print(_friction(robot))
+    table = as_table(robot)
     console.print(_rows(table, "" if robot.table else ", extracted"))
     if robot.table is None:
         console.print(table.source, style="dim", highlight=False)
@@ -147,6 +152,20 @@ def _joints(robot: Robot) -> Table:
             f"{model.inertias[j].mass:.4g}",
             f"{model.armature[k]:.4g}",
         )
+    return table
+
+
+def _friction(robot: Robot) -> Table:
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(title="joint friction", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column("joint")
+    for column in ("viscous [N m s or N s/m]", "Coulomb [N m or N]"):
+        table.add_column(column, justify="right")
+    model = robot.model
+    for name, *losses in zip(robot.joint_names, model.damping, model.friction, strict=True):
+        table.add_row(name, *(f"{loss:.4g}" for loss in losses))
     return table
 
 

@@ -24,9 +24,8 @@ def visible(text: str) -> str:
     Line ends and tabs stay; codes that turn the direction of writing and halves of surrogate
     pairs go too.
     """
-    if text.isprintable():
-        return text
-    return "".join(_shown(letter) for letter in text)
+    lines = text.split("\n")
+    return "\n".join(line if line.isprintable() else "".join(map(_shown, line)) for line in lines)
 
 
 def _shown(letter: str) -> str:

@@ -82,12 +82,12 @@ def _open(
     branches: bool = False,
 ) -> Page:
     from kinlab.errors import NameUnknownError, OptionError
-    from kinlab.fivebar.files import presets
+    from kinlab.fivebar.files import holds_five_bar, presets
     from kinlab.model.library import load
     from kinlab.viewer.scene import Scene
 
     start = None if q is None else _numbers(q)
-    if branches and (against is not None or name in presets() or _holds_five_bar(name)):
+    if branches and (against is not None or holds_five_bar(name)):
         raise OptionError("view --branches is for one arm; leave --against out")
     if against is not None:
         from kinlab.viewer.against import against_scene
@@ -95,7 +95,7 @@ def _open(
         if animate is not None:
             raise OptionError("view --against: leave --animate out; the sliders move both arms")
         return against_scene(name, against, start, tool=tip)
-    if name in presets() or _holds_five_bar(name):
+    if holds_five_bar(name):
         if tip is not None:
             raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
         return _open_five_bar(name, start, animate)
@@ -132,20 +132,6 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
         shown = fivebar_motions.motion(page.linkage, animate, page.mode, page.assembly)
         page.animate(shown.q, shown.duration, shown.name)
     return page
-
-
-def _holds_five_bar(name: str) -> bool:
-    """Whether a TOML file is a five-bar: those have crank lengths, arms have links."""
-    from kinlab.errors import FileError
-    from kinlab.host.files import read_text, read_toml
-
-    if not name.lower().endswith(".toml"):
-        return False
-    text = read_text(name)
-    try:
-        return "l1" in read_toml(text, name, FileError)
-    except FileError:
-        return False  # the arm's reader says what is wrong with it
 
 
 def _numbers(text: str) -> Array:

@@ -91,6 +91,9 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
 
 # -------- A file of formulas as text, examined entry by entry
 
+_FEWEST = 10
+"""States that :func:`prepare` asks for at least."""
+
 _FILE_LIMIT = 1 << 20
 _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
@@ -144,6 +147,26 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
+    wanted, titles = _claims(file, robot)
+    done: list[Diagnosis] = []
+    for plain, formulas in wanted.items():
+        done += _of_quantity(plain, formulas, titles, robot, file, samples, seed)
+    return done
+
+
+def require_sound(file: FormulaFile, robot: Robot) -> None:
+    """Refuses what :func:`examine_formulas` would refuse, without judging anything.
+
+    Raises:
+        ExpressionError: a name that means nothing, an entry that does not exist.
+    """
+    wanted, titles = _claims(file, robot)
+    for plain, formulas in wanted.items():
+        _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
+
+
+def _claims(file: FormulaFile, robot: Robot) -> tuple[dict[str, dict[str, Node]], dict[str, str]]:
+    """The formulas by quantity and by the place they claim, and the entries' names by place."""
     wanted: dict[str, dict[str, Node]] = {}
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
@@ -157,13 +180,10 @@ def examine_formulas(
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
         wanted.setdefault(plain, {})[label] = in_robot_names(text, file, robot, entry)
         titles[label] = entry
-    done: list[Diagnosis] = []
-    for plain, formulas in wanted.items():
-        done += _of_quantity(plain, formulas, titles, robot, file, samples, seed)
-    return done
+    return wanted, titles
 
 
-def _of_quantity(
+def _answers(
     plain: str,
     formulas: dict[str, Node],
     titles: dict[str, str],
@@ -171,7 +191,8 @@ def _of_quantity(
     file: FormulaFile,
     samples: int,
     seed: int,
-) -> Iterable[Diagnosis]:
+) -> tuple[Case, Array, list[str], dict[str, Node], dict[str, Array]]:
+    """The case, the engine's answers, every place there is, and the formulas with their values."""
     case, engine = prepare(robot, plain, (), samples, seed)
     shape = engine.shape[1:]
     labels = [f"{plain}[{','.join(map(str, k))}]" for k in np.ndindex(shape)] if shape else [plain]
@@ -192,6 +213,21 @@ def _of_quantity(
         label: _values(node, case, file, _entry_of(label, titles))
         for label, node in formulas.items()
     }
+    return case, engine, labels, formulas, values
+
+
+def _of_quantity(
+    plain: str,
+    formulas: dict[str, Node],
+    titles: dict[str, str],
+    robot: Robot,
+    file: FormulaFile,
+    samples: int,
+    seed: int,
+) -> Iterable[Diagnosis]:
+    case, engine, labels, formulas, values = _answers(
+        plain, formulas, titles, robot, file, samples, seed
+    )
     if len(formulas) == len(labels):
         hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
         shown = ", ".join(titles[label] for label in labels if label in titles)

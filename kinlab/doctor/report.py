@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,13 +13,21 @@ from kinlab.check.diagnosis import Diagnosis, Typeset
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import Task
+from kinlab.check.unread import Unread
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of, robot_of
+from kinlab.doctor.file import (
+    examine_formulas,
+    in_robot_names,
+    quantity_of,
+    require_sound,
+    robot_of,
+)
 from kinlab.doctor.terms import split_name
+from kinlab.errors import KinlabError
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError
-from kinlab.formulas.text import FormulaFile, parse
+from kinlab.formulas.text import FormulaFile, entries_of, formula_file, parse, with_entries
 from kinlab.formulas.tree import Node, Path, names, sym
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.model.robot import Robot
@@ -57,6 +66,44 @@ def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagno
     robot = robot_of(file)
     judged = examine_formulas(file, robot, max(samples, FEWEST), seed)
     return [_of_text(diagnosis, file, robot) for diagnosis in judged]
+
+
+def of_document(
+    document: Mapping[str, Any], path: str, samples: int = 200, seed: int = 0
+) -> tuple[list[Diagnosis], list[Unread]]:
+    """Judges a TOML document of formulas, and goes on without the entries that cannot be read.
+
+    Args:
+        document: as :func:`kinlab.formulas.text.formula_file` has it.
+        path: the file.
+        samples, seed: as for :func:`of_file`.
+
+    Returns:
+        The diagnoses; and the entries, or the file, that could not be judged.
+    """
+    try:
+        return of_file(formula_file(document, path), samples, seed), []
+    except KinlabError as problem:
+        whole = Unread(path, problem)
+    bad = []
+    left = document
+    for entry in entries_of(document):
+        try:
+            alone = formula_file(with_entries(document, {entry}), path)
+            try:
+                robot = robot_of(alone)
+            except KinlabError as missing:
+                return [], [Unread(path, missing)]
+            require_sound(alone, robot)
+        except KinlabError as problem:
+            bad.append(Unread(f"{path}: {entry}", problem))
+            left = with_entries(left, set(entries_of(left)) - {entry})
+    if not bad or not entries_of(left):
+        return [], bad if len(bad) > 1 else [whole]
+    try:
+        return of_file(formula_file(left, path), samples, seed), bad
+    except KinlabError as problem:
+        return [], [*bad, Unread(path, problem)]
 
 
 def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Diagnosis:

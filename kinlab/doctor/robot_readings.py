@@ -12,6 +12,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Confusion
+from kinlab.errors import already_said
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -243,7 +244,8 @@ def _table(
 ) -> Confusion:
     def apply(robot: Robot) -> Robot:
         assert robot.table is not None
-        return _built(change(robot.table))
+        with already_said():
+            return _built(change(robot.table))
 
     return Confusion(kind, sentence, "robot", apply, cost, place)
 

@@ -18,7 +18,9 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.engine.states import joint_vector, joint_vectors
 from kinlab.errors import NameUnknownError, StateError, near
-from kinlab.model.robot import Robot, scratch
+from kinlab.formulas.record import once
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot, frame_id, scratch
 
 FRAMES = {
     "base": pin.ReferenceFrame.LOCAL_WORLD_ALIGNED,
@@ -30,42 +32,53 @@ of the tool, reference point the tool origin. ``spatial``: axes of the base, ref
 base origin (Lynch & Park's space Jacobian)."""
 
 
-def fk(robot: Robot, q: ArrayLike) -> Array:
-    """Pose of the tool in the base.
+def fk(robot: ArmLike, q: ArrayLike, at: str | None = None) -> Array:
+    """Pose of the tool, or of another frame, in the base.
 
     Args:
         robot: the robot.
         q: joint positions, (n,) or (N, n), rad or m.
+        at: any frame of the robot by name, such as ``"camera_link"``; left out, the tool.
 
     Returns:
         Homogeneous transform, (4, 4) or (N, 4, 4).
 
     Raises:
         StateError: q of the wrong shape or type, or not finite.
+        NameUnknownError: no frame of that name.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
-    return each_state(robot, tool_pose, q)
+    return each_state(robot, frame_pose, q, place(robot, at))
 
 
-def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
+def jacobian(robot: ArmLike, q: ArrayLike, frame: str = "base", at: str | None = None) -> Array:
     """Geometric Jacobian: twist of the tool (v, w) = J qdot (note 000, section 4).
 
     Args:
         robot: the robot.
         q: joint positions, (n,) or (N, n).
         frame: ``"base"``, ``"tool"`` or ``"spatial"``; see :data:`FRAMES`.
+        at: any frame of the robot by name, which then stands for the tool, also in what
+            ``frame`` says; left out, the tool.
 
     Returns:
         (6, n) or (N, 6, n); rows 0 to 2 linear (m/s per unit), 3 to 5 angular.
 
     Raises:
         StateError: as :func:`fk`.
-        NameUnknownError: another frame.
+        NameUnknownError: another frame, or none of the name in ``at``.
     """
-    return each_state(robot, tool_jacobian, joint_vector(robot, q, "q"), reference(frame))
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
+    states = joint_vector(robot, q, "q")
+    return each_state(robot, frame_jacobian, states, reference(frame), place(robot, at))
 
 
-def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") -> Array:
+def jacobian_dot(
+    robot: ArmLike, q: ArrayLike, v: ArrayLike, frame: str = "base", at: str | None = None
+) -> Array:
     """Time derivative of the Jacobian along the motion v = qdot.
 
     Args:
@@ -73,6 +86,7 @@ def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") 
         q, v: joint positions and velocities, (n,) or (N, n).
         frame: as in :func:`jacobian`. In ``"tool"`` it is the derivative of the tool-frame
             Jacobian's entries; in ``"base"`` and ``"spatial"`` those of theirs.
+        at: as in :func:`jacobian`.
 
     Returns:
         (6, n) or (N, 6, n).
@@ -80,11 +94,13 @@ def jacobian_dot(robot: Robot, q: ArrayLike, v: ArrayLike, frame: str = "base") 
     Raises:
         StateError, NameUnknownError: as :func:`jacobian`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q, v = joint_vectors(robot, q=q, v=v)
-    return each_state(robot, _jacobian_dot, q, v, reference(frame))
+    return each_state(robot, _jacobian_dot, q, v, reference(frame), place(robot, at))
 
 
-def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
+def statics(robot: ArmLike, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
     """Joint torques that hold a wrench which the tool exerts: tau = J^T F (note 000, 000.JTF).
 
     Args:
@@ -100,6 +116,8 @@ def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") 
     Raises:
         StateError, NameUnknownError: as :func:`jacobian`.
     """
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
     force = wrench_for(robot, q, wrench)
     return held(jacobian(robot, q, frame), force)
@@ -152,19 +170,33 @@ def reference(frame: str) -> Any:
         raise NameUnknownError(f"frame {frame!r} is unknown; {near(str(frame), FRAMES)}") from None
 
 
+def place(robot: Robot, at: str | None) -> int:
+    """Index of the frame that a caller means: the tool where none is named.
+
+    Raises:
+        NameUnknownError: no frame of that name; the near names are listed.
+    """
+    return robot.tool if at is None else frame_id(robot, at)
+
+
 def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Array:
     """Applies ``single`` to one state, or to each row of a stack."""
-    first = arguments[0]
-    if first.ndim == 1:
+    if arguments[0].ndim == 1:
         answer: Array = single(robot, *arguments)
         return answer
+    rows: Array = once(_each_row, robot, single, *arguments)
+    return rows
+
+
+def _each_row(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Array:
+    first = arguments[0]
     stacks = [a for a in arguments if isinstance(a, np.ndarray)]
     rest = arguments[len(stacks) :]
     if not len(first):
         sample = single(robot, *(np.zeros(stack.shape[1:]) for stack in stacks), *rest)
         return np.empty((0, *np.shape(sample)))
     rows = zip(*stacks, strict=True)
-    answer = np.asarray(single(robot, *next(rows), *rest))
+    answer: Array = np.asarray(single(robot, *next(rows), *rest))
     out = np.empty((len(first), *answer.shape))
     out[0] = answer
     for i, row in enumerate(rows, 1):
@@ -172,26 +204,41 @@ def each_state(robot: Robot, single: Callable[..., Any], *arguments: Any) -> Arr
     return out
 
 
-def tool_pose(robot: Robot, q: Array) -> Array:
-    """:func:`fk` of one state that has been checked."""
+def each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    """Pinocchio's ``call(model, data, *state)`` for each row of stacks: half of the time of
+    :func:`each_state` for what it answers by value."""
+    rows: Array = once(_each_call, robot, call, *stacks)
+    return rows
+
+
+def _each_call(robot: Robot, call: Any, *stacks: Array) -> Array:
+    model, data = robot.model, scratch(robot)
+    if not len(stacks[0]):
+        sample = call(model, data, *(np.zeros(robot.n) for _ in stacks))
+        return np.empty((0, *np.shape(sample)))
+    return np.array([call(model, data, *state) for state in zip(*stacks, strict=True)])
+
+
+def frame_pose(robot: Robot, q: Array, index: int) -> Array:
+    """:func:`fk` of one state that has been checked, of a frame by its index."""
     data = scratch(robot)
     pin.forwardKinematics(robot.model, data, q)
-    pose: Array = pin.updateFramePlacement(robot.model, data, robot.tool).homogeneous
+    pose: Array = pin.updateFramePlacement(robot.model, data, index).homogeneous
     return pose
 
 
-def tool_jacobian(robot: Robot, q: Array, frame: Any) -> Array:
-    """:func:`jacobian` of one state that has been checked, in Pinocchio's name of a frame."""
+def frame_jacobian(robot: Robot, q: Array, frame: Any, index: int) -> Array:
+    """As :func:`frame_pose` for :func:`jacobian`, with the axes in Pinocchio's name of them."""
     data = scratch(robot)
     pin.computeJointJacobians(robot.model, data, q)
-    pin.updateFramePlacement(robot.model, data, robot.tool)
-    jac: Array = pin.getFrameJacobian(robot.model, data, robot.tool, frame)
+    pin.updateFramePlacement(robot.model, data, index)
+    jac: Array = pin.getFrameJacobian(robot.model, data, index, frame)
     return jac.reshape(6, robot.n)  # eigenpy hands out a matrix of one column as a vector
 
 
-def _jacobian_dot(robot: Robot, q: Array, v: Array, frame: Any) -> Array:
+def _jacobian_dot(robot: Robot, q: Array, v: Array, frame: Any, index: int) -> Array:
     data = scratch(robot)
     pin.computeJointJacobiansTimeVariation(robot.model, data, q, v)
-    pin.updateFramePlacement(robot.model, data, robot.tool)
-    jac: Array = pin.getFrameJacobianTimeVariation(robot.model, data, robot.tool, frame)
+    pin.updateFramePlacement(robot.model, data, index)
+    jac: Array = pin.getFrameJacobianTimeVariation(robot.model, data, index, frame)
     return jac.reshape(6, robot.n)

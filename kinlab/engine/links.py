@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.engine.kinematics import each_state, read_wrench
 from kinlab.engine.states import joint_vector, joint_vectors
 from kinlab.errors import StateError
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia, scratch
 
 # -------- Motion of the single links, by Pinocchio
@@ -20,7 +21,7 @@ from kinlab.model.robot import Robot, require_inertia, scratch
 # the one before the row's Tx(a) Rx(alpha).
 
 
-def link_poses(robot: Robot, q: ArrayLike) -> Array:
+def link_poses(robot: ArmLike, q: ArrayLike) -> Array:
     """Poses of the link frames in the base.
 
     Args:
@@ -33,10 +34,11 @@ def link_poses(robot: Robot, q: ArrayLike) -> Array:
     Raises:
         StateError: q of the wrong shape or type, or not finite.
     """
+    robot = as_robot(robot)
     return each_state(robot, _poses, joint_vector(robot, q, "q"))
 
 
-def link_velocities(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+def link_velocities(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
     """Velocities (v, omega) of the link frames, each in its own axes (note 000, 000.vel).
 
     Args:
@@ -49,10 +51,11 @@ def link_velocities(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     Raises:
         StateError: as :func:`link_poses`.
     """
+    robot = as_robot(robot)
     return each_state(robot, _velocities, *joint_vectors(robot, q=q, v=v))
 
 
-def link_accelerations(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
+def link_accelerations(robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
     """Accelerations (v_dot, omega_dot) of the link frames in their own axes (000.ne.out).
 
     These are the accelerations of the frame's origin as a point (not spatial ones), the base at
@@ -68,10 +71,11 @@ def link_accelerations(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) -
     Raises:
         StateError: as :func:`link_poses`.
     """
+    robot = as_robot(robot)
     return each_state(robot, _accelerations, *joint_vectors(robot, q=q, v=v, a=a))
 
 
-def com_accelerations(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
+def com_accelerations(robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
     """Accelerations of the links' centres of mass, each in its link's axes (000.ne.com).
 
     Args, Raises: as :func:`link_accelerations`.
@@ -79,10 +83,11 @@ def com_accelerations(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) ->
     Returns:
         (n, 3) or (N, n, 3), m/s²; gravity is not in them.
     """
+    robot = as_robot(robot)
     return each_state(robot, _com_accelerations, *joint_vectors(robot, q=q, v=v, a=a))
 
 
-def com_positions(robot: Robot, q: ArrayLike) -> Array:
+def com_positions(robot: ArmLike, q: ArrayLike) -> Array:
     """Centres of mass of the links in the base (note 002, 002.com).
 
     Args, Raises: as :func:`link_poses`.
@@ -90,10 +95,11 @@ def com_positions(robot: Robot, q: ArrayLike) -> Array:
     Returns:
         (n, 3) or (N, n, 3), m.
     """
+    robot = as_robot(robot)
     return each_state(robot, _com_positions, joint_vector(robot, q, "q"))
 
 
-def com_jacobians(robot: Robot, q: ArrayLike) -> Array:
+def com_jacobians(robot: ArmLike, q: ArrayLike) -> Array:
     """Jacobians of the links' centres of mass, base axes, linear rows first (002.M).
 
     Args, Raises: as :func:`link_poses`.
@@ -101,6 +107,7 @@ def com_jacobians(robot: Robot, q: ArrayLike) -> Array:
     Returns:
         (n, 6, n) or (N, n, 6, n): entry i maps qdot to (r_dot_i, omega_i).
     """
+    robot = as_robot(robot)
     return each_state(robot, _com_jacobians, joint_vector(robot, q, "q"))
 
 
@@ -166,7 +173,7 @@ def _joints(robot: Robot) -> Any:
 
 
 def joint_wrenches(
-    robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
 ) -> Array:
     """Wrench (f_i, n_i) that link i-1 puts on link i through joint i (000.ne.in).
 
@@ -185,13 +192,14 @@ def joint_wrenches(
         StateError: an argument of the wrong shape or type, or not finite.
         InertiaError: a joint moves no inertia.
     """
+    robot = as_robot(robot)
     require_inertia(robot)
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
     load = _loads(robot, q, np.zeros(6) if wrench is None else wrench)
     return each_state(robot, _wrenches, q, v, a, load)
 
 
-def static_wrenches(robot: Robot, q: ArrayLike, wrench: ArrayLike) -> Array:
+def static_wrenches(robot: ArmLike, q: ArrayLike, wrench: ArrayLike) -> Array:
     """Joint wrenches (f_i, n_i) of an arm at rest that holds a load, without gravity (000.force).
 
     Args:
@@ -205,11 +213,12 @@ def static_wrenches(robot: Robot, q: ArrayLike, wrench: ArrayLike) -> Array:
     Raises:
         StateError: as :func:`joint_wrenches`.
     """
+    robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
     return each_state(robot, _static, q, _loads(robot, q, wrench))
 
 
-def inertial_wrenches(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
+def inertial_wrenches(robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
     """F_i = m v_dot_C and N_i = I omega_dot + omega x I omega of each link (000.ne.FN).
 
     Args:
@@ -223,11 +232,12 @@ def inertial_wrenches(robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike) ->
     Raises:
         StateError, InertiaError: as :func:`joint_wrenches`.
     """
+    robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, _inertial, *joint_vectors(robot, q=q, v=v, a=a))
 
 
-def link_kinetic_energies(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
+def link_kinetic_energies(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
     """k_i = ½ m v_C² + ½ omega^T I omega of each link (000.lag), without armatures.
 
     Args:
@@ -240,11 +250,12 @@ def link_kinetic_energies(robot: Robot, q: ArrayLike, v: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`joint_wrenches`.
     """
+    robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, _kinetic, *joint_vectors(robot, q=q, v=v))
 
 
-def link_potential_energies(robot: Robot, q: ArrayLike) -> Array:
+def link_potential_energies(robot: ArmLike, q: ArrayLike) -> Array:
     """u_i = -m_i g^T P_C of each link, zero at the base origin (000.lag).
 
     Args:
@@ -257,6 +268,7 @@ def link_potential_energies(robot: Robot, q: ArrayLike) -> Array:
     Raises:
         StateError, InertiaError: as :func:`joint_wrenches`.
     """
+    robot = as_robot(robot)
     require_inertia(robot)
     return each_state(robot, _potential, joint_vector(robot, q, "q"))
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import LARGEST, Array, real_array
 from kinlab.errors import StateError
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 
 _FLOAT = np.dtype(np.float64)
 Number = TypeVar("Number", Array, np.float64)
@@ -21,8 +21,6 @@ def plain(robot: Robot, *values: ArrayLike) -> bool:
     Says nothing about NaN: callers on the fast path look at the answer, one sum for all inputs
     together, and take the slow path to find the culprit.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     shape = robot.shape
     for value in values:  # a loop, since all() over a generator costs more than the engine's call
         if type(value) is not np.ndarray or value.dtype is not _FLOAT or value.shape != shape:
@@ -57,8 +55,6 @@ def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
     Raises:
         StateError: wrong length, not real numbers, NaN or infinity.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     if (
         type(value) is np.ndarray
         and value.dtype is _FLOAT

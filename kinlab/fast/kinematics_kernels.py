@@ -30,7 +30,7 @@ def frames(fixed, prismatic, q, axes, pose):  # type: ignore[no-untyped-def]
 
     Args:
         fixed, prismatic: the chain.
-        q: (n,).
+        q: (n,), real or complex; the arrays written are then complex too.
         axes: (k, 6), written: z axis of each joint and the origin of its frame, in the base.
         pose: (12,), written: the tool's [R | p] row by row.
     """
@@ -69,7 +69,7 @@ def frames(fixed, prismatic, q, axes, pose):  # type: ignore[no-untyped-def]
             z += c22 * q[i]
             a00, a01, a10, a11, a20, a21 = c00, c01, c10, c11, c20, c21
         else:
-            c, s = math.cos(q[i]), math.sin(q[i])
+            c, s = np.cos(q[i]), np.sin(q[i])
             a00, a01 = c00 * c + c01 * s, c01 * c - c00 * s
             a10, a11 = c10 * c + c11 * s, c11 * c - c10 * s
             a20, a21 = c20 * c + c21 * s, c21 * c - c20 * s

@@ -19,20 +19,22 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, truth
 from kinlab.engine import dynamics, kinematics
 from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
 from kinlab.engine.kinematics import (
     each_state,
+    frame_jacobian,
+    frame_pose,
     held,
+    place,
     reference,
-    tool_jacobian,
-    tool_pose,
     wrench_for,
 )
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors
 from kinlab.fast.arrays import chain
 from kinlab.fast.threads import over_rows, thread_count
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, model_pool, require_inertia
 
 COMPILED_FROM = 256
@@ -57,33 +59,45 @@ def _documented(engine: Callable[..., Any]) -> Callable[[_Function], _Function]:
 
 
 @_documented(kinematics.fk)
-def fk(robot: Robot, q: ArrayLike) -> Array:
+def fk(robot: ArmLike, q: ArrayLike, at: str | None = None) -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
+    index = robot.tool if at is None else place(robot, at)
     if q.ndim == 1:
-        return tool_pose(robot, q)
-    return _poses(robot, q) if len(q) >= COMPILED_FROM else each_state(robot, tool_pose, q)
+        return frame_pose(robot, q, index)
+    if len(q) >= COMPILED_FROM and index == robot.tool:  # the compiled chain ends at the tool
+        return _poses(robot, q)
+    return each_state(robot, frame_pose, q, index)
 
 
 @_documented(kinematics.jacobian)
-def jacobian(robot: Robot, q: ArrayLike, frame: str = "base") -> Array:
+def jacobian(robot: ArmLike, q: ArrayLike, frame: str = "base", at: str | None = None) -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
     axes = reference(frame)
+    index = robot.tool if at is None else place(robot, at)
     if q.ndim == 1:
-        return tool_jacobian(robot, q, axes)
-    if len(q) >= COMPILED_FROM:
+        return frame_jacobian(robot, q, axes, index)
+    if len(q) >= COMPILED_FROM and index == robot.tool:
         return _jacobians(robot, q, frame)
-    return each_state(robot, tool_jacobian, q, axes)
+    return each_state(robot, frame_jacobian, q, axes, index)
 
 
 @_documented(kinematics.statics)
-def statics(robot: Robot, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
+def statics(robot: ArmLike, q: ArrayLike, wrench: ArrayLike, frame: str = "base") -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     q = joint_vector(robot, q, "q")
     force = wrench_for(robot, q, wrench)
     return held(jacobian(robot, q, frame), force)
 
 
 @_documented(dynamics.gravity_torques)
-def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
+def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
     q = joint_vector(robot, q, "q")
     if q.ndim == 1:
@@ -96,10 +110,17 @@ def gravity_torques(robot: Robot, q: ArrayLike) -> Array:
 
 @_documented(dynamics.inverse_dynamics)
 def inverse_dynamics(
-    robot: Robot, q: ArrayLike, v: ArrayLike, a: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike,
+    q: ArrayLike,
+    v: ArrayLike,
+    a: ArrayLike,
+    wrench: ArrayLike | None = None,
+    friction: bool = False,
 ) -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
-    one = plain_inverse(robot, q, v, a) if wrench is None else None
+    one = plain_inverse(robot, q, v, a) if wrench is None and friction is False else None
     if one is not None:
         return one
     if _long(q, v, a):
@@ -108,16 +129,25 @@ def inverse_dynamics(
             tau = _in_parallel(pin.rneaInParallel, robot, q, v, a)
             if wrench is not None:
                 tau = tau + statics(robot, q, wrench)
+            if truth(friction, "friction"):
+                tau = tau + dynamics.friction_torques(robot, v)
             return finite_answer(robot, tau, "inverse_dynamics")
-    return dynamics.inverse_dynamics(robot, q, v, a, wrench)
+    return dynamics.inverse_dynamics(robot, q, v, a, wrench, friction)
 
 
 @_documented(dynamics.forward_dynamics)
 def forward_dynamics(
-    robot: Robot, q: ArrayLike, v: ArrayLike, tau: ArrayLike, wrench: ArrayLike | None = None
+    robot: ArmLike,
+    q: ArrayLike,
+    v: ArrayLike,
+    tau: ArrayLike,
+    wrench: ArrayLike | None = None,
+    friction: bool = False,
 ) -> Array:
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     require_inertia(robot)
-    one = plain_forward(robot, q, v, tau) if wrench is None else None
+    one = plain_forward(robot, q, v, tau) if wrench is None and friction is False else None
     if one is not None:
         return one
     if _long(q, v, tau):
@@ -125,9 +155,11 @@ def forward_dynamics(
         if q.ndim == 2:
             if wrench is not None:
                 tau = tau - statics(robot, q, wrench)
+            if truth(friction, "friction"):
+                tau = tau - dynamics.friction_torques(robot, v)
             a = _in_parallel(pin.abaInParallel, robot, q, v, tau)
             return finite_answer(robot, a, "forward_dynamics")
-    return dynamics.forward_dynamics(robot, q, v, tau, wrench)
+    return dynamics.forward_dynamics(robot, q, v, tau, wrench, friction)
 
 
 def singular_values(robot: Robot, q: Array, rows: Array) -> Array:

@@ -22,7 +22,9 @@ from dataclasses import dataclass
 from functools import cache, partial
 from typing import Any
 
+from kinlab.arrays import whole
 from kinlab.errors import OptionError
+from kinlab.host.processes import cores
 
 VARIABLE = "KINLAB_THREADS"
 """Environment variable that limits the threads of a batch."""
@@ -104,13 +106,6 @@ def available() -> int:
     return cores() if text is None else int(text)
 
 
-def cores() -> int:
-    """Cores this process may run on."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
-
-
 def wanted_threads(threads: int | None) -> int:
     """The number of threads to use: what was asked for, or all this process may use.
 
@@ -119,9 +114,7 @@ def wanted_threads(threads: int | None) -> int:
     """
     if threads is None:
         return available()
-    if isinstance(threads, bool) or not isinstance(threads, int) or threads < 1:
-        raise OptionError(f"threads is {threads!r}; give a whole number of at least 1")
-    return threads
+    return whole(threads, "threads")
 
 
 def over_rows(

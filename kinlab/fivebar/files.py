@@ -12,22 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
-from kinlab.errors import ExpressionError, MechanismError, NameUnknownError, near
+from kinlab.errors import ExpressionError, FileError, MechanismError, NameUnknownError, near
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml, write_text
-from kinlab.model.library import robots_dir
+from kinlab.model.library import presets as presets
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import FiveBar
 
 _TEXT = ("name", "source")
-_MOTORS = "motors"
-
-
-def presets() -> dict[str, Path]:
-    """The shipped five-bars, name to file."""
-    files = sorted((robots_dir() / "fivebar").glob("*.toml"))
-    return {file.stem: file for file in files if file.stem != _MOTORS}
 
 
 def read(name_or_path: str | Path, keys: Collection[str]) -> dict[str, Any]:
@@ -53,6 +46,22 @@ def read(name_or_path: str | Path, keys: Collection[str]) -> dict[str, Any]:
     else:
         raise NameUnknownError(f"no five-bar {text!r}; {near(text, presets())}")
     return loads(read_text(path), path.stem, keys)
+
+
+def holds_five_bar(name_or_path: str | Path) -> bool:
+    """Whether a name is a preset's, or a TOML file a five-bar's: those have crank lengths.
+
+    Raises:
+        FileError: a .toml file that cannot be read.
+    """
+    text = str(name_or_path)
+    if not text.lower().endswith(".toml"):
+        return text in presets()
+    content = read_text(text)
+    try:
+        return "l1" in read_toml(content, text, FileError)
+    except FileError:
+        return False  # the arm's reader says what is wrong with it
 
 
 def loads(text: str, name: str, keys: Collection[str]) -> dict[str, Any]:

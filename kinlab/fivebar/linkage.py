@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
+from functools import cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar, overload
 
@@ -34,6 +35,8 @@ from kinlab.fivebar import (
     singularity,
     workspace,
 )
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 
 T = TypeVar("T")
 
@@ -270,3 +273,41 @@ class FiveBar:
                     f"{self.name}: the loop cannot close and move: {bar} is {length:g} m long, "
                     f"the other four bars together {total - length:g} m; it must be shorter"
                 )
+
+
+def as_five_bar(mechanism: FiveBar | str | Path) -> FiveBar:
+    """The five-bar that a caller means; a preset is read once, a file at each call.
+
+    Args:
+        mechanism: a FiveBar, which comes back as it is; or a name or path, as for
+            :meth:`FiveBar.load`.
+
+    Raises:
+        MechanismError: neither.
+        KinlabError: as :meth:`FiveBar.load`.
+    """
+    if isinstance(mechanism, FiveBar):
+        return mechanism
+    if isinstance(mechanism, (str, Path)):
+        text = str(mechanism)
+        return _preset(text) if text in files.presets() else FiveBar.load(text)
+    kind = type(mechanism).__name__
+    raise MechanismError(f"five-bar: {kind} is none; give a FiveBar, a preset's name, or a path")
+
+
+@cache
+def _preset(name: str) -> FiveBar:
+    return FiveBar.load(name)
+
+
+def as_mechanism(mechanism: ArmLike | FiveBar) -> Robot | FiveBar:
+    """The arm or five-bar that a caller means, where a function takes both.
+
+    Raises:
+        KinlabError: as :func:`kinlab.model.library.as_robot` and :func:`as_five_bar`.
+    """
+    if isinstance(mechanism, FiveBar):
+        return mechanism
+    if isinstance(mechanism, (str, Path)) and files.holds_five_bar(mechanism):
+        return as_five_bar(mechanism)
+    return as_robot(mechanism)

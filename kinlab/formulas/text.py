@@ -96,7 +96,7 @@ def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
     entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
     typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
     for key, value in document.items():
-        if key in ("title", "source", "name"):
+        if key in _ABOUT:
             continue
         if not isinstance(value, str):
             raise FileError(f"{place}: {key!r} is no formula; write it as text in [formulas]")
@@ -120,6 +120,32 @@ def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
             for name, value in symbols.items()
         },
     )
+
+
+_ABOUT = ("title", "source", "name")
+"""Keys of a formula file that tell about it."""
+
+_TABLES = ("formulas", "latex")
+
+
+def entries_of(document: Mapping[str, Any]) -> list[str]:
+    """The names of the entries of a formula file's document, readable or not."""
+    tables = [table for key in _TABLES if isinstance(table := document.get(key), dict)]
+    plain = (key for key in document if key not in (*_ABOUT, *_TABLES, "robot", "symbols"))
+    return list(dict.fromkeys([*(name for table in tables for name in table), *plain]))
+
+
+def with_entries(document: Mapping[str, Any], kept: set[str]) -> dict[str, Any]:
+    """The document of a formula file with those entries alone, and what they stand on."""
+    left = {
+        key: value
+        for key, value in document.items()
+        if key in (*_ABOUT, *_TABLES, "robot", "symbols") or key in kept
+    }
+    for key in _TABLES:
+        if isinstance(table := left.get(key), dict):
+            left[key] = {name: value for name, value in table.items() if name in kept}
+    return left
 
 
 def parse(text: str, place: str = "expression") -> Node:

@@ -11,6 +11,13 @@ _ORPHANED = 70
 """Exit code of a worker whose parent has gone."""
 
 
+def cores() -> int:
+    """Cores this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
 def end_with_parent() -> None:
     """Called first in a worker: ends it as soon as its parent is gone, killed or not.
 

@@ -11,7 +11,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array, whole
+from kinlab.arrays import Array, number, real_array, whole
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.arrays import chain
 from kinlab.fast.compiled import kernel
@@ -21,7 +21,8 @@ from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECID
 from kinlab.inverse.families import IKFamily, families_at
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.inverse.structures import GENERAL, Known, known_form
-from kinlab.model.robot import Robot, require_robot, scratch
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot, scratch
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
@@ -112,7 +113,7 @@ _ARMS: WeakKeyDictionary[Robot, dict[Any, _Arm]] = WeakKeyDictionary()
 
 
 def ik_branches(
-    robot: Robot,
+    robot: ArmLike,
     T: ArrayLike,
     *,
     given: Mapping[str | int, float] | None = None,
@@ -147,9 +148,14 @@ def ik_branches(
         NameUnknownError: a given joint does not exist.
         OptionError: a value that is no finite number.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
+    if threads is not None:
+        threads = whole(threads, "threads")
     held = () if given is None else _read_given(robot, given)
     T = T if isinstance(T, np.ndarray) else real_array(T, f"robot {robot.name!r}: T")
+    if T.ndim not in (2, 3):
+        shapes = "(4, 4) or (N, 4, 4)"
+        raise StateError(f"robot {robot.name!r}: T has shape {T.shape}; expected {shapes}")
     if T.ndim == 3:
         targets = read_targets(robot, T)
         return _many(robot, held, targets, samples, threads)
@@ -355,7 +361,7 @@ def _spare(robot: Robot) -> int:
 
 
 def _read_given(robot: Robot, given: Mapping[str | int, float]) -> tuple[tuple[int, float], ...]:
-    held = {}
+    held: dict[int, float] = {}
     names = robot.joint_names
     for key, value in given.items():
         if isinstance(key, str):
@@ -370,10 +376,12 @@ def _read_given(robot: Robot, given: Mapping[str | int, float]) -> tuple[tuple[i
                 raise StateError(
                     f"robot {robot.name!r}: given names joint {joint}; it has 0 to {robot.n - 1}"
                 )
-        number = real_array(value, f"given[{key!r}]", OptionError)
-        if number.shape != ():
-            raise OptionError(f"given[{key!r}] is {value!r}; give one number")
-        held[joint] = float(number)
+        if joint in held:
+            raise OptionError(
+                f"robot {robot.name!r}: given names joint {names[joint]!r} twice, by its name and "
+                f"by its index {joint}; give one"
+            )
+        held[joint] = number(value, f"given[{key!r}]")
     return tuple(sorted(held.items()))
 
 

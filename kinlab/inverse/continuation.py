@@ -32,6 +32,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.fast.compiled import kernel
+from kinlab.fast.kinematics_kernels import columns, frames
 
 FOLLOWED, SINGULAR_END, LOST = 0, 1, 2
 """How a path ended: at a regular solution; where solutions run together; not at all."""
@@ -82,67 +83,6 @@ class Starts(NamedTuple):
     length: float
     loops: int
     quiet: int
-
-
-@kernel
-def complex_kinematics(fixed, prismatic, q, axes, pose, jac):  # type: ignore[no-untyped-def]
-    """Pose and Jacobian at the tool's origin in the base's axes, for complex q.
-
-    Args:
-        fixed, prismatic: the chain. q: (n,).
-        axes: (n, 6), pose: (12,), jac: (6, n), complex, written.
-    """
-    n = prismatic.shape[0]
-    a00, a01, a02 = 1.0 + 0.0j, 0.0j, 0.0j
-    a10, a11, a12 = 0.0j, 1.0 + 0.0j, 0.0j
-    a20, a21, a22 = 0.0j, 0.0j, 1.0 + 0.0j
-    x, y, z = 0.0j, 0.0j, 0.0j
-    for i in range(n + 1):
-        f = fixed[i]
-        x += a00 * f[3] + a01 * f[7] + a02 * f[11]
-        y += a10 * f[3] + a11 * f[7] + a12 * f[11]
-        z += a20 * f[3] + a21 * f[7] + a22 * f[11]
-        c00 = a00 * f[0] + a01 * f[4] + a02 * f[8]
-        c01 = a00 * f[1] + a01 * f[5] + a02 * f[9]
-        c02 = a00 * f[2] + a01 * f[6] + a02 * f[10]
-        c10 = a10 * f[0] + a11 * f[4] + a12 * f[8]
-        c11 = a10 * f[1] + a11 * f[5] + a12 * f[9]
-        c12 = a10 * f[2] + a11 * f[6] + a12 * f[10]
-        c20 = a20 * f[0] + a21 * f[4] + a22 * f[8]
-        c21 = a20 * f[1] + a21 * f[5] + a22 * f[9]
-        c22 = a20 * f[2] + a21 * f[6] + a22 * f[10]
-        if i == n:
-            pose[0], pose[1], pose[2], pose[3] = c00, c01, c02, x
-            pose[4], pose[5], pose[6], pose[7] = c10, c11, c12, y
-            pose[8], pose[9], pose[10], pose[11] = c20, c21, c22, z
-            break
-        axes[i, 0], axes[i, 1], axes[i, 2] = c02, c12, c22
-        a02, a12, a22 = c02, c12, c22
-        if prismatic[i]:
-            x += c02 * q[i]
-            y += c12 * q[i]
-            z += c22 * q[i]
-            a00, a01, a10, a11, a20, a21 = c00, c01, c10, c11, c20, c21
-        else:
-            ca, sa = math.cos(q[i].real), math.sin(q[i].real)
-            up = math.exp(q[i].imag)
-            ch, sh = 0.5 * (up + 1.0 / up), 0.5 * (up - 1.0 / up)
-            c, s = complex(ca * ch, -sa * sh), complex(sa * ch, ca * sh)
-            a00, a01 = c00 * c + c01 * s, c01 * c - c00 * s
-            a10, a11 = c10 * c + c11 * s, c11 * c - c10 * s
-            a20, a21 = c20 * c + c21 * s, c21 * c - c20 * s
-        axes[i, 3], axes[i, 4], axes[i, 5] = x, y, z
-    for i in range(n):
-        zx, zy, zz = axes[i, 0], axes[i, 1], axes[i, 2]
-        if prismatic[i]:
-            jac[0, i], jac[1, i], jac[2, i] = zx, zy, zz
-            jac[3, i], jac[4, i], jac[5, i] = 0.0j, 0.0j, 0.0j
-        else:
-            rx, ry, rz = pose[3] - axes[i, 3], pose[7] - axes[i, 4], pose[11] - axes[i, 5]
-            jac[0, i] = zy * rz - zz * ry
-            jac[1, i] = zz * rx - zx * rz
-            jac[2, i] = zx * ry - zy * rx
-            jac[3, i], jac[4, i], jac[5, i] = zx, zy, zz
 
 
 @kernel
@@ -252,7 +192,8 @@ def _pose_at(way, theta, target, s, out):  # type: ignore[no-untyped-def]
 @kernel
 def _newton(fixed, prismatic, goal, q, axes, pose, jac, order, e):  # type: ignore[no-untyped-def]
     """One Newton step towards a pose: e (6,) becomes dq; J is left factorised. Returns pivots."""
-    complex_kinematics(fixed, prismatic, q, axes, pose, jac)
+    frames(fixed, prismatic, q, axes, pose)
+    columns(prismatic, axes, pose, jac)
     for i in range(3):
         e[i] = goal[4 * i + 3] - pose[4 * i + 3]
         e[3 + i] = 0.0j
@@ -491,7 +432,8 @@ def _from_one_home(fixed: Array, prismatic: Any, seed: int) -> Starts | None:
     def at(q: Any) -> Any:
         axes, pose = np.empty((6, 6), np.complex128), np.empty(12, np.complex128)
         jac = np.empty((6, 6), np.complex128)
-        complex_kinematics(fixed, prismatic, q, axes, pose, jac)
+        frames(fixed, prismatic, q, axes, pose)
+        columns(prismatic, axes, pose, jac)
         jac[:3] /= length
         values = np.linalg.svd(jac * scale, compute_uv=False)
         return pose, values[-1] / values[0]

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, real_array, rigid_transform, seed_of, whole
-from kinlab.errors import OptionError, StateError
+from kinlab.arrays import LARGEST, Array, number, real_array, rigid_transform, seed_of, whole
+from kinlab.errors import StateError
 from kinlab.fast.compiled import kernel
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
+
+_FLOAT = np.dtype(np.float64)
 
 RESTARTS = 40
 """Searches after the first. Of 10,000 random poses an arm none needed more than 30 in all; an
@@ -45,6 +46,15 @@ def _first_unsound(poses, miss):  # type: ignore[no-untyped-def]
         if not _sound(poses[row], miss):
             return row
     return poses.shape[0]
+
+
+@kernel
+def _within(q, lower, upper):  # type: ignore[no-untyped-def]
+    """Whether (n,) is finite and within the limits; NaN fails every comparison."""
+    for i in range(q.shape[0]):  # noqa: SIM110  (numba knows no all())
+        if not (lower[i] <= q[i] <= upper[i] and abs(q[i]) < LARGEST):
+            return False
+    return True
 
 
 class Request(NamedTuple):
@@ -81,16 +91,18 @@ def read_request(
     Raises:
         StateError, OptionError, StructureError: as those.
     """
-    require_robot(robot)
     targets = read_targets(robot, poses) if many else read_target(robot, poses)[np.newaxis]
-    tolerances = positive(tol_position, "tol_position"), positive(tol_rotation, "tol_rotation")
-    searches, number = 1 + whole(restarts, "restarts", 0), seed_of(seed)
+    tolerances = (
+        number(tol_position, "tol_position", above=0.0),
+        number(tol_rotation, "tol_rotation", above=0.0),
+    )
+    searches, drawn = 1 + whole(restarts, "restarts", 0), seed_of(seed)
     start: Array | None = None
     remarks: list[str] = []
     if q0 is not None:
         start, remarks = read_guess(robot, q0, len(targets) if many else None)
     iterations = None if max_iterations is None else whole(max_iterations, "max_iterations", 1)
-    return Request(targets, tolerances, number, searches, start, iterations, tuple(remarks))
+    return Request(targets, tolerances, drawn, searches, start, iterations, tuple(remarks))
 
 
 def read_target(robot: Robot, pose: ArrayLike) -> Array:
@@ -104,7 +116,9 @@ def read_target(robot: Robot, pose: ArrayLike) -> Array:
         if _sound(copy, TOLERANCES.orthonormal):
             return copy
     where = f"robot {robot.name!r}: T"
-    checked = rigid_transform(pose, where)
+    checked = real_array(pose, where)
+    if checked.ndim <= 2:
+        checked = rigid_transform(checked, where)
     if checked.shape != (4, 4):
         raise StateError(f"{where}: shape {checked.shape}; expected (4, 4); for many use ik_batch")
     return np.array(checked, order="C")
@@ -139,6 +153,10 @@ def read_guess(robot: Robot, guess: ArrayLike, rows: int | None = None) -> tuple
     Raises:
         StateError: another shape, not finite.
     """
+    if type(guess) is np.ndarray and guess.dtype is _FLOAT and guess.shape == robot.shape:
+        copy = guess.copy()
+        if _within(copy, robot.lower, robot.upper):
+            return copy, []
     q0 = np.array(real_array(guess, f"robot {robot.name!r}: q0"), order="C")
     shapes = [(robot.n,)] if rows is None else [(robot.n,), (rows, robot.n)]
     if q0.shape not in shapes:
@@ -150,19 +168,3 @@ def read_guess(robot: Robot, guess: ArrayLike, rows: int | None = None) -> tuple
     names = ", ".join(repr(robot.joint_names[i]) for i in np.flatnonzero(outside))
     remark = f"q0 is outside the limits of {names}; started on the limit instead"
     return np.clip(q0, robot.lower, robot.upper), [remark]
-
-
-def positive(value: Any, name: str) -> float:
-    """A positive finite number.
-
-    Raises:
-        OptionError: anything else.
-    """
-    if type(value) is float and 0.0 < value < math.inf:
-        return value
-    if isinstance(value, bool):
-        raise OptionError(f"{name} is {value!r}; give a positive number")
-    number = real_array(value, name, OptionError)
-    if number.shape != () or not float(number) > 0.0:
-        raise OptionError(f"{name} is {value!r}; give a positive number")
-    return float(number)

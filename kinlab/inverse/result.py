@@ -31,6 +31,10 @@ class IKStatus(StrEnum):
     """Still coming closer when the iterations ran out."""
 
 
+BRANCH = "branch"
+"""The task where a branch was asked for: what :func:`kinlab.ik_branches` asks of such an arm."""
+
+
 @dataclass(frozen=True, eq=False)
 class IKHistory:
     """What happened in each iteration.
@@ -62,6 +66,7 @@ class IKResult:
         restarts: searches after the first.
         remarks: what was done to the input, such as a q0 put back onto its limits.
         history: every iteration, when asked for.
+        task: the coordinates of T that were asked for, by name; :data:`BRANCH` where a branch was.
     """
 
     q: Array
@@ -73,6 +78,7 @@ class IKResult:
     restarts: int
     remarks: tuple[str, ...] = ()
     history: IKHistory | None = None
+    task: str = "pose"
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +88,7 @@ class IKBatch:
     Attributes:
         q: (N, n). success: (N,), bool. status: (N,), text. position_error, rotation_error: (N,).
         iterations, restarts: (N,), integers. remarks: what was done to the input.
+        task: the coordinates that were asked for, of all poses.
     """
 
     q: Array
@@ -92,6 +99,7 @@ class IKBatch:
     iterations: Any
     restarts: Any
     remarks: tuple[str, ...] = ()
+    task: str = "pose"
 
     def __len__(self) -> int:
         return len(self.q)

@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shown
+from kinlab.arrays import Array, number, truth
 from kinlab.errors import OptionError
 from kinlab.fast.compiled import kernel as compiled
 from kinlab.fast.stacks import jacobian
@@ -22,8 +22,8 @@ from kinlab.fast.threads import over_rows
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.branch_names import matching
 from kinlab.inverse.branches import IKBranches, ik_branches
-from kinlab.inverse.request import RESTARTS, Request, positive, read_request
-from kinlab.inverse.result import IKBatch, IKHistory, IKResult, IKStatus
+from kinlab.inverse.request import RESTARTS, Request, read_request
+from kinlab.inverse.result import BRANCH, IKBatch, IKHistory, IKResult, IKStatus
 from kinlab.inverse.setup import (
     ITERATIONS,
     PATIENCE,
@@ -34,6 +34,7 @@ from kinlab.inverse.setup import (
     search_of,
     setup,
 )
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, scratch
 
 TOL_STEP = 1e-13
@@ -59,7 +60,7 @@ singularity."""
 
 
 def ik(
-    robot: Robot,
+    robot: ArmLike,
     T: ArrayLike,
     q0: ArrayLike | None = None,
     method: str = "lm",
@@ -67,7 +68,7 @@ def ik(
     tol_rotation: float = 1e-6,
     seed: int = 0,
     *,
-    task: Any = "pose",
+    task: Any = "auto",
     restarts: int = RESTARTS,
     max_iterations: int | None = None,
     tol_step: float | None = None,
@@ -91,8 +92,11 @@ def ik(
         tol_rotation: radians, of the rotation vector log(R_d R^T) in the base's axes, in the
             coordinates of the task.
         seed: of the table of starts.
-        task: a name of :data:`kinlab.structure.tasks.TASKS`, a mask of six booleans, or ``"auto"``.
-            With ``"pose"``, an arm of fewer than six joints meets only those T on its way.
+        task: a name of :data:`kinlab.structure.tasks.TASKS`, a mask of six booleans, or
+            ``"auto"``: as many coordinates as the arm can move independently (the answer's
+            ``task`` says which), and the rest of T too where one of the solutions is found to
+            meet it. With ``"pose"``, an arm of fewer than six joints meets only those T on its
+            way.
         restarts: searches after the first; from 10 up, a pose that is met outside the limits
             only gets further ones.
         max_iterations: of one search; left out, 60 (gradient: 5000).
@@ -113,11 +117,11 @@ def ik(
         NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
+    robot = as_robot(robot)
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
-    if not isinstance(history, (bool, np.bool_)):
-        raise OptionError(f"history is {shown(history)}; give True or False")
+    history = truth(history, "history")
     if branch is not None:
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")
@@ -125,11 +129,15 @@ def ik(
     arm, tolerance = setup(robot, task, asked.seed, max(asked.searches, STARTS)), asked.tolerances
     texts = isinstance(method, str) and isinstance(alpha, str)
     plain = texts and method == "lm" and alpha == "exact"
-    if plain and not history and tol_step is None:
-        q, outcome, errors = _search(robot, arm, asked, 1)
-        record = None
-    else:
-        q, outcome, errors, record = _readable(robot, arm, asked, method, alpha, tol_step)
+    record = None
+    for one in (arm,) if arm.whole is None else (arm.whole, arm):
+        if plain and not history and tol_step is None:
+            q, outcome, errors = _search(robot, one, asked, 1)
+        else:
+            q, outcome, errors, record = _readable(robot, one, asked, method, alpha, tol_step)
+        if one is not arm and _met(asked, outcome, errors)[0]:
+            _measure(robot, q, asked.targets, arm.weight, errors)
+            break
     end, iterations, searches = outcome[0].tolist()
     position, rotation = errors[0].tolist()
     status = IKStatus.CONVERGED
@@ -145,18 +153,19 @@ def ik(
         searches - 1,
         asked.remarks,
         record if history else None,
+        arm.task,
     )
 
 
 def ik_batch(
-    robot: Robot,
+    robot: ArmLike,
     Ts: ArrayLike,
     q0: ArrayLike | None = None,
     tol_position: float = 1e-6,
     tol_rotation: float = 1e-6,
     seed: int = 0,
     *,
-    task: Any = "pose",
+    task: Any = "auto",
     restarts: int = RESTARTS,
     max_iterations: int | None = None,
     threads: int | None = None,
@@ -181,13 +190,21 @@ def ik_batch(
         StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik`; a bad
             pose is named by its row.
     """
+    robot = as_robot(robot)
     asked = read_request(
         robot, Ts, True, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
     arm = setup(robot, task, asked.seed, max(asked.searches, STARTS))
-    q, outcome, errors = _search(robot, arm, asked, threads)
+    q, outcome, errors = _search(robot, arm.whole or arm, asked, threads)
+    success = _met(asked, outcome, errors)
+    if arm.whole is not None:
+        _measure(robot, q, asked.targets, arm.weight, errors)
+        left = np.flatnonzero(~success)
+        start = asked.start if asked.start is None or asked.start.ndim == 1 else asked.start[left]
+        again = asked._replace(targets=asked.targets[left], start=start)
+        q[left], outcome[left], errors[left] = _search(robot, arm, again, threads)
+        success = _met(asked, outcome, errors)
     status = np.full(len(q), IKStatus.CONVERGED.value, dtype="<U24")
-    success = (errors <= asked.tolerances).all(axis=1) & (outcome[:, 0] != kernel.OUTSIDE)
     for row in np.flatnonzero(~success):
         status[row] = _why(robot, arm, asked, int(row), q, outcome, errors).value
     return IKBatch(
@@ -199,7 +216,13 @@ def ik_batch(
         outcome[:, 1].copy(),
         outcome[:, 2] - 1,
         asked.remarks,
+        arm.task,
     )
+
+
+def _met(asked: Request, outcome: Any, errors: Array) -> Any:
+    """Which rows are within the tolerances and the limits, (N,) of booleans."""
+    return (errors <= asked.tolerances).all(axis=1) & (outcome[:, 0] != kernel.OUTSIDE)
 
 
 def _search(
@@ -213,7 +236,8 @@ def _search(
     count, n = len(asked.targets), robot.n
     iterations = ITERATIONS["lm"] if asked.iterations is None else asked.iterations
     problem = search_of(arm, asked.tolerances, iterations, asked.searches)
-    flat = asked.targets[:, :3].reshape(count, 12)
+    # one layout, so that the kernel is compiled once for one pose and for many
+    flat = np.ascontiguousarray(asked.targets[:, :3].reshape(count, 12))
     guesses = _guesses(arm, asked)
     q, outcome = np.empty((count, n)), np.empty((count, 3), dtype=np.int64)
     errors = np.empty((count, 2))
@@ -246,7 +270,7 @@ def _readable(
     step = methods.choose(method, alpha)
     limits = methods.Limits(
         *asked.tolerances,
-        TOL_STEP if tol_step is None else positive(tol_step, "tol_step"),
+        TOL_STEP if tol_step is None else number(tol_step, "tol_step", above=0.0),
         ITERATIONS[method] if asked.iterations is None else asked.iterations,
         asked.searches,
         PATIENCE[method],
@@ -381,7 +405,15 @@ def _on_branch(robot: Robot, asked: Request, branch: str) -> IKResult:
     if position > asked.tolerances[0] or rotation > asked.tolerances[1]:
         status = IKStatus.LOCAL_MINIMUM
     return IKResult(
-        q, status is IKStatus.CONVERGED, status, position, rotation, 0, 0, asked.remarks
+        q,
+        status is IKStatus.CONVERGED,
+        status,
+        position,
+        rotation,
+        0,
+        0,
+        asked.remarks,
+        task=BRANCH,
     )
 
 

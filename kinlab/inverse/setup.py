@@ -13,6 +13,7 @@ from kinlab.fast.arrays import chain
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse.kernel import Search
 from kinlab.model.robot import Robot
+from kinlab.structure.task_space import ENDLESS, TaskSpace, read_task
 from kinlab.structure.tasks import TASKS, require_task, task_rows
 
 STARTS = 256
@@ -41,9 +42,6 @@ ITERATIONS = {"newton": 60, "gradient": 5000, "lm": 60}
 PATIENCE = {"newton": 10, "gradient": 1000, "lm": 5}
 """A search whose squared error has not halved in so many iterations has stalled."""
 
-_ENDLESS = 1e6
-"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
-
 _KEPT = 16
 
 
@@ -59,7 +57,9 @@ class Setup(NamedTuple):
         table: poses of the starts, (12, S).
         starts: states in general position within the limits, (S, n).
         reach: farthest that the tool gets from the first joint's frame, metres.
-        rows: the task's rows.
+        rows: the task's rows. task: its name.
+        whole: the same arm with the whole pose as its task, which is tried first, where kinlab
+            chose the task and it is less.
         kept: the searches made of it (:func:`search_of`).
     """
 
@@ -74,6 +74,8 @@ class Setup(NamedTuple):
     starts: Array
     reach: float
     rows: tuple[int, ...]
+    task: str
+    whole: Setup | None
     kept: dict[Any, Search]
 
 
@@ -98,35 +100,27 @@ def setup(robot: Robot, task: Any, seed: int, starts: int = STARTS) -> Setup:
     kept = _SETUPS.get(robot)
     if kept is None:
         kept = _SETUPS[robot] = {}
-    key = (task if isinstance(task, str) else rows_of(robot, task), seed, max(starts, STARTS))
+    named = task is None or isinstance(task, str)
+    key = (task if named else task_rows(task), seed, max(starts, STARTS))
     found = kept.get(key)
     if found is None:
         if len(kept) >= _KEPT:
             kept.clear()
-        found = kept[key] = _work_out(robot, rows_of(robot, task), *key[1:])
+        space = read_task(robot, task)
+        found = kept[key] = _work_out(robot, space, *key[1:])
+        if space.suggested and space.m < 6:
+            found = kept[key] = found._replace(whole=setup(robot, "pose", seed, starts))
     return found
 
 
-def rows_of(robot: Robot, task: Any) -> tuple[int, ...]:
-    """The rows of a task; ``"auto"`` is the largest that suits the arm.
-
-    Raises:
-        NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
-    """
-    if isinstance(task, str) and task == "auto":
-        from kinlab.structure.task_space import read_task
-
-        return read_task(robot, task).rows
-    return task_rows(task)
-
-
-def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Setup:
+def _work_out(robot: Robot, space: TaskSpace, seed: int, count: int) -> Setup:
+    rows = space.rows
     fixed, prismatic = chain(robot)
     k, n = len(prismatic), robot.n
     slides = np.zeros(n, dtype=np.bool_)
     slides[:k] = prismatic
-    lower = np.where(robot.lower < -_ENDLESS, -np.inf, robot.lower)
-    upper = np.where(robot.upper > _ENDLESS, np.inf, robot.upper)
+    lower = np.where(robot.lower < -ENDLESS, -np.inf, robot.lower)
+    upper = np.where(robot.upper > ENDLESS, np.inf, robot.upper)
     rigid = float(np.linalg.norm(fixed[1:, [3, 7, 11]], axis=1).sum())
     low, high = _window(lower, upper, slides, max(rigid, 1.0))
     sample = np.random.default_rng(seed_of(seed)).uniform(low, high, (count, n))
@@ -152,6 +146,8 @@ def _work_out(robot: Robot, rows: tuple[int, ...], seed: int, count: int) -> Set
         sample,
         reach,
         rows,
+        space.name,
+        None,
         {},
     )
 

@@ -8,6 +8,7 @@ module              what it holds
 ``library``         Names to robots: the shipped tables, example-robot-data, and files
 ``link``            One row of a DH table: convention, geometry, limits, inertia, and what an
                     inertia can be
+``payload``         A load in the tool: the same arm with a heavier last link
 ``robot``           Robot: a small frozen handle of a serial arm in Pinocchio. It only looks
                     things up
 ``rotations``       Rotations as URDF writes them: fixed-axis roll, pitch, yaw

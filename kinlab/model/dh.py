@@ -11,22 +11,42 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, real_array, rigid_transform, set_fields, shaped, shown
-from kinlab.errors import StateError, TableError
+from kinlab.arrays import (
+    Array,
+    frozen,
+    real_array,
+    rigid_transform,
+    set_fields,
+    shaped,
+    shown,
+    truth,
+)
+from kinlab.errors import StateError, TableError, already_said, warn
 from kinlab.host.files import write_text
 from kinlab.model import table_files as table_io
-from kinlab.model.link import Convention, DHLink, check_name, read_convention, same_value
+from kinlab.model.link import (
+    Convention,
+    DHLink,
+    check_name,
+    read_convention,
+    refuse_flaw,
+    same_value,
+)
 
 __all__ = ["DHLink", "DHTable", "link_transform"]
 
 GRAVITY = (0.0, 0.0, -9.81)
+
+_WAY_OUT = (
+    "correct the numbers, or say unphysical = true in the table to compute with them as they are"
+)
 
 _LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
 
@@ -44,9 +64,16 @@ class DHTable:
         gravity: acceleration of gravity in the world, m/s², (3,).
         source: where the numbers come from.
         tool_name: name of the tool frame in the URDF.
+        unphysical: inertias that no body can have are meant, as some published tables print
+            them: the table loads and computes, and its URDF says so.
 
     Raises:
-        TableError: convention missing or unknown, no links, transforms not rigid.
+        TableError: convention missing or unknown, no links, transforms not rigid, an inertia that
+            no body can have (unless ``unphysical``).
+
+    Warns:
+        KinlabWarning: an inertia that only rounding keeps from being a body's; an angle of more
+            than one turn.
     """
 
     name: str
@@ -57,6 +84,7 @@ class DHTable:
     gravity: ArrayLike = GRAVITY
     source: str = ""
     tool_name: str = "tool"
+    unphysical: bool = False
 
     def __post_init__(self) -> None:
         check_name(self.name, "table: name")
@@ -82,12 +110,22 @@ class DHTable:
         for i, name in enumerate(names, 1):
             if name in names[: i - 1]:
                 raise TableError(f"{place}, link {i}: the name {name!r} is used twice")
+        unphysical = truth(self.unphysical, f"{place}: unphysical", TableError)
+        for i, link in enumerate(links, 1):
+            _check_link(link, " ".join([f"{place}, link {i}", *_quoted(link)]), unphysical)
         ends = {}
         for which in ("base", "tool"):
             transform = rigid_transform(getattr(self, which), f"{place}: {which}", TableError)
             ends[which] = frozen(shaped(transform, (4, 4), f"{place}: {which}", TableError))
         gravity = frozen(shaped(self.gravity, (3,), f"{place}: gravity", TableError))
-        set_fields(self, convention=convention, links=links, gravity=gravity, **ends)
+        set_fields(
+            self,
+            convention=convention,
+            links=links,
+            gravity=gravity,
+            unphysical=unphysical,
+            **ends,
+        )
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DHTable):
@@ -213,8 +251,41 @@ class DHTable:
     def to_toml(self) -> str:
         """The text that :meth:`save` writes."""
         document = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "links"}
+        document["unphysical"] = self.unphysical or None
         rows = [{f.name: getattr(link, f.name) for f in fields(link)} for link in self.links]
         return table_io.dumps({**document, "links": rows})
+
+
+def with_links(table: DHTable, links: Sequence[DHLink]) -> DHTable:
+    """The table with links made out of its own: nothing about them is said or refused again.
+
+    Where a tensor passed the door by the rounding of its digits, ones computed from it stand.
+    """
+    flawed = any(link.inertia_flaw is not None for link in links)
+    with already_said():
+        return replace(table, links=links, unphysical=table.unphysical or flawed)
+
+
+def _quoted(link: DHLink) -> list[str]:
+    return [repr(link.name)] if link.name else []
+
+
+def _check_link(link: DHLink, place: str, unphysical: bool) -> None:
+    """What a link may hold but a table asks about: its inertia, and angles beyond one turn.
+
+    Raises:
+        TableError: an inertia that no body can have.
+    """
+    if not unphysical:
+        refuse_flaw(link.inertia_flaw, place, TableError, _WAY_OUT)
+    for column in ("alpha", "theta"):
+        angle = getattr(link, column)
+        if abs(angle) > 2.0 * math.pi:
+            turns = abs(angle) / (2.0 * math.pi)
+            warn(
+                f"{place}: {column} is {angle:g} rad, {turns:.3g} turns: degrees? "
+                f'(write "{angle:g} deg")'
+            )
 
 
 def link_transform(

@@ -18,7 +18,9 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.errors import StructureError
 from kinlab.model.dh import DHLink, DHTable
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
+from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
@@ -31,24 +33,22 @@ class Axis:
     joint: str
 
 
-def to_dh(robot: Robot | Any) -> DHTable:
+def to_dh(robot: ArmLike) -> DHTable:
     """Extracts the modified DH table of a serial robot.
 
     Args:
-        robot: a :class:`Robot`, or a ``pin.Model`` whose joints form one chain.
+        robot: the arm (what :func:`kinlab.model.library.as_robot` takes).
 
     Returns:
-        A table with the robot's frames, limits, inertias, armatures and gravity: FK, M and g
-        are those of the robot at the same q. Its ``source`` states the measured difference of
-        the tool poses.
+        A table with the robot's frames, limits, inertias, armatures, friction and gravity: FK, M
+        and g are those of the robot at the same q. Its ``source`` states the measured difference
+        of the tool poses.
 
     Raises:
         StructureError: the joints branch, a joint has several degrees of freedom, or two axes
             are so nearly parallel that no DH table can hold the arm.
     """
-    if isinstance(robot, pin.Model):
-        robot = Robot.from_model(robot)
-    require_robot(robot)
+    robot = as_robot(robot)
     model, data = robot.model, robot.model.createData()
     zero = np.zeros(robot.n)
     pin.computeJointJacobians(model, data, zero)
@@ -65,6 +65,7 @@ def to_dh(robot: Robot | Any) -> DHTable:
         gravity=np.array(model.gravity.linear),
         source=f"extracted from {robot.source or robot.name}",
         tool_name=_tool_name(robot),
+        unphysical=any(link.inertia_flaw is not None for link in links),
     )
     miss = _pose_difference(robot, table)
     # near-parallel axes put the common normal far away, where rounding is magnified
@@ -74,6 +75,36 @@ def to_dh(robot: Robot | Any) -> DHTable:
             f"table misses the tool by {miss:.2g} m. DH parameters cannot hold this arm"
         )
     return replace(table, source=f"{table.source}; tool poses agree to {miss:.1g}")
+
+
+def as_table(arm: ArmLike) -> DHTable:
+    """The DH table of an arm: its own, or the one that :func:`to_dh` extracts.
+
+    Raises:
+        KinlabError: as :func:`kinlab.model.library.as_robot` and :func:`to_dh`.
+    """
+    if isinstance(arm, DHTable):
+        return arm
+    robot = as_robot(arm)
+    return to_dh(robot) if robot.table is None else robot.table
+
+
+def to_urdf(table: ArmLike) -> str:
+    """The URDF of an arm: written from its DH table, or the text that it was read from.
+
+    Args:
+        table: a DH table, or anything that names an arm.
+
+    Returns:
+        URDF text; of a table, as :func:`kinlab.model.urdf_write.written` says.
+
+    Raises:
+        KinlabError: as :func:`kinlab.model.library.as_robot` and :func:`to_dh`.
+    """
+    if isinstance(table, DHTable):
+        return written(table)
+    robot = as_robot(table)
+    return robot.urdf or written(as_table(robot))
 
 
 def _axes(model: Any, data: Any) -> list[Axis]:
@@ -171,6 +202,8 @@ def _link(model: Any, data: Any, frames: list[Array], axes: list[Axis], i: int) 
         com=np.array(inertia.lever),
         inertia=0.5 * (inertia.inertia + inertia.inertia.T),
         armature=float(model.armature[k]),
+        viscous_friction=float(model.damping[k]),
+        coulomb_friction=float(model.friction[k]),
         name=str(model.names[i]),
     )
 

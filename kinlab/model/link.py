@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from decimal import Decimal
 from enum import StrEnum
+from functools import cached_property
+from itertools import chain, combinations
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, frozen, set_fields, shaped, shown
-from kinlab.errors import TableError
+from kinlab.errors import KinlabError, TableError, warn
 from kinlab.tolerances import TOLERANCES
 
 # -------- The two Denavit-Hartenberg conventions. Every table states its own; there is no
@@ -45,41 +48,171 @@ def read_convention(value: object, place: str) -> Convention:
 
 
 # -------- What an inertia tensor can be
+# A tensor I belongs to a distribution of mass if and only if S = ½ tr(I) 1 - I, the integral of
+# r r^T dm, has no negative eigenvalue (Traversaro, Brossette, Escande and Nori 2016,
+# "Identification of fully physical consistent inertial parameters using optimization on
+# manifolds"). In principal moments: I1 + I2 >= I3 whichever is the largest, none negative.
 
 
-def check_inertia(inertia: Array, place: str, error: type[Exception]) -> None:
+@dataclass(frozen=True, eq=False)
+class InertiaFlaw:
+    """What no body can have about a tensor.
+
+    Attributes:
+        told: what is wrong, such as ``"inertia breaks the triangle inequality: ..."``.
+        nearest: the nearest tensor that a body can have (Frobenius norm), (3, 3), kg m².
+        rounding: whether a tensor that a body can have prints as the same digits.
+    """
+
+    told: str
+    nearest: Array
+    rounding: bool
+
+    @property
+    def remedy(self) -> str:
+        """The nearest tensor in words."""
+        return f"the nearest tensor that a body can have is {tensor_text(self.nearest)}"
+
+
+def check_symmetric(inertia: Array, place: str, error: type[KinlabError]) -> None:
+    """Refuses a matrix that is no tensor.
+
+    Raises:
+        KinlabError: (the class given) not symmetric, with ``place`` in front.
+    """
+    skew = float(np.max(np.abs(inertia - inertia.T)))
+    if skew > TOLERANCES.inertia_symmetry * _size(inertia):
+        raise error(f"{place}: inertia is not symmetric (off by {skew:.3g} kg m^2)")
+
+
+def inertia_flaw(inertia: Array) -> InertiaFlaw | None:
+    """What no body can have about a symmetric tensor, (3, 3), kg m²; None where it is sound."""
+    if not inertia.any():
+        return None
+    allowance = TOLERANCES.inertia_triangle * _size(inertia)
+    principal, axes = np.linalg.eigh(0.5 * (inertia + inertia.T))
+    if principal[0] < -allowance:
+        told = f"inertia is not positive (a principal moment is {principal[0]:.3g} kg m^2)"
+    elif principal[0] + principal[1] < principal[2] - allowance:
+        told = (
+            "inertia breaks the triangle inequality: principal moments "
+            f"{principal[0]:.4g} + {principal[1]:.4g} < {principal[2]:.4g} kg m^2"
+        )
+    else:
+        return None
+    nearest = axes @ np.diag(_nearest_moments(principal)) @ axes.T
+    nearest = 0.5 * (nearest + nearest.T)
+    nearest[np.abs(nearest) < TOLERANCES.residue * _size(nearest)] = 0.0
+    return InertiaFlaw(told, nearest, _is_rounding(inertia, principal, axes))
+
+
+def check_inertia(inertia: Array, place: str, error: type[KinlabError], way_out: str = "") -> None:
     """Refuses a tensor that no distribution of mass can have.
 
     Args:
         inertia: (3, 3) about the centre of mass, kg m².
         place: what to put in front of the message.
         error: the class to raise.
+        way_out: how to use the numbers all the same, for the end of the message.
 
     Raises:
-        Exception: (the class given) not symmetric, negative, or I1 + I2 < I3 for the
+        KinlabError: (the class given) not symmetric, negative, or I1 + I2 < I3 for the
             principal moments (the triangle inequality).
+
+    Warns:
+        KinlabWarning: it fails only by the rounding of its printed digits.
     """
-    scale = max(float(np.max(np.abs(inertia), initial=0.0)), TOLERANCES.inertia_floor)
-    skew = float(np.max(np.abs(inertia - inertia.T)))
-    if skew > TOLERANCES.inertia_symmetry * scale:
-        raise error(f"{place}: inertia is not symmetric (off by {skew:.3g} kg m^2)")
-    principal = np.linalg.eigvalsh(0.5 * (inertia + inertia.T))
-    allowance = TOLERANCES.inertia_triangle * scale
-    if principal[0] < -allowance:
-        raise error(
-            f"{place}: inertia is not positive (a principal moment is {principal[0]:.3g} kg m^2)"
+    check_symmetric(inertia, place, error)
+    refuse_flaw(inertia_flaw(inertia), place, error, way_out)
+
+
+def refuse_flaw(
+    flaw: InertiaFlaw | None, place: str, error: type[KinlabError], way_out: str = ""
+) -> None:
+    """Raises or warns of a flaw, as :func:`check_inertia`."""
+    if flaw is None:
+        return
+    if flaw.rounding:
+        warn(
+            f"{place}: {flaw.told}: no more than the rounding of its printed digits; it is used as "
+            f"it stands ({flaw.remedy})"
         )
-    if principal[0] + principal[1] < principal[2] - allowance:
-        raise error(
-            f"{place}: inertia breaks the triangle inequality: principal moments "
-            f"{principal[0]:.4g} + {principal[1]:.4g} < {principal[2]:.4g} kg m^2"
-        )
+        return
+    raise error(f"{place}: {flaw.told}; {flaw.remedy}" + (f"; {way_out}" if way_out else ""))
+
+
+def tensor_text(inertia: Array) -> str:
+    """A tensor in a message: its moments, and its products where it has any."""
+    entries = {
+        "ixx": inertia[0, 0],
+        "iyy": inertia[1, 1],
+        "izz": inertia[2, 2],
+        "ixy": inertia[0, 1],
+        "ixz": inertia[0, 2],
+        "iyz": inertia[1, 2],
+    }
+    told = [f"{key} = {x:.4g}" for key, x in entries.items() if x or key[1] == key[2]]
+    return "{ " + ", ".join(told) + " }"
+
+
+def _size(inertia: Array) -> float:
+    return max(float(np.max(np.abs(inertia), initial=0.0)), TOLERANCES.inertia_floor)
+
+
+_FACES = np.ones((3, 3)) - 2.0 * np.eye(3)
+"""Row k times the principal moments must not be negative."""
+
+
+def _nearest_moments(moments: Array) -> Array:
+    """The nearest triple that keeps all three triangle inequalities, (3,).
+
+    It is the foot of the perpendicular on one of the cone's faces, edges or its tip.
+    """
+    found = np.zeros(3)
+    for active in chain.from_iterable(combinations(range(3), k) for k in (1, 2)):
+        faces = _FACES[list(active)]
+        foot = moments - np.linalg.pinv(faces) @ (faces @ moments)
+        inside = bool(np.all(_FACES @ foot >= -TOLERANCES.residue * np.max(np.abs(moments))))
+        if inside and np.linalg.norm(foot - moments) < np.linalg.norm(found - moments):
+            found = foot
+    return found
+
+
+def _is_rounding(inertia: Array, principal: Array, axes: Array) -> bool:
+    """Whether changes within half a unit of the last printed digit can make S positive.
+
+    In each direction u in which S is negative, changes of the entries must gain enough.
+    """
+    spread = 0.5 * np.sum(principal) - principal
+    lacking = spread < 0.0
+    if np.min(spread) < -TOLERANCES.inertia_rounding * _size(inertia):
+        return False
+    for u, gap in zip(axes[:, lacking].T, -spread[lacking], strict=True):
+        weight = np.abs(0.5 * np.eye(3) - np.outer(u, u))
+        if float(np.sum(_half_units(inertia) * weight)) < gap:
+            return False
+    return True
+
+
+def _half_units(inertia: Array) -> Array:
+    """Half a unit of the last digit of each entry, (3, 3); a zero has the finest of them."""
+    last = [_last_digit(abs(float(x))) for x in inertia.ravel()]
+    finest = min(x for x in last if x)
+    return 0.5 * np.reshape([x or finest for x in last], (3, 3))
+
+
+def _last_digit(value: float) -> float:
+    """One unit of the last digit that a number is written with; 0 for zero."""
+    if value == 0.0:
+        return 0.0
+    return 10.0 ** int(Decimal(repr(value)).normalize().as_tuple().exponent)
 
 
 # -------- One row of a DH table: geometry, limits and inertia of a link and its joint
 
 _GEOMETRY = ("a", "alpha", "d", "theta")
-_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature")
+_FRICTION = ("viscous_friction", "coulomb_friction")
+_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature", *_FRICTION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,10 +233,14 @@ class DHLink:
         com: centre of mass in DH frame i, metres, shape (3,).
         inertia: tensor about the centre of mass with the axes of DH frame i, kg m², (3, 3).
         armature: rotor inertia reflected to the joint, kg m² or kg; adds to M_ii.
+        viscous_friction: torque per speed that the joint's bearings take, N m s/rad or N s/m: the
+            ``damping`` of URDF.
+        coulomb_friction: torque that they take at any speed, N m or N: the ``friction`` of URDF.
         name: the joint's name; ``None`` numbers it.
 
     Raises:
-        TableError: a value that is no number, not finite, or physically impossible.
+        TableError: a value that is no number, not finite, or physically impossible. Whether a
+            body can have the inertia is asked by the table, which can be ``unphysical``.
     """
 
     joint: Literal["revolute", "prismatic"] = "revolute"
@@ -120,6 +257,8 @@ class DHLink:
     com: ArrayLike = (0.0, 0.0, 0.0)
     inertia: ArrayLike = field(default_factory=lambda: np.zeros((3, 3)))
     armature: float = 0.0
+    viscous_friction: float = 0.0
+    coulomb_friction: float = 0.0
     name: str | None = None
 
     def __post_init__(self) -> None:
@@ -148,10 +287,15 @@ class DHLink:
         assert self.lower is not None and self.upper is not None
         if self.lower > self.upper:
             raise TableError(f"{place}: lower {self.lower:g} is above upper {self.upper:g}")
-        for column in ("mass", "armature", "velocity", "effort"):
+        for column in ("mass", "armature", "velocity", "effort", *_FRICTION):
             if getattr(self, column) < 0:
                 raise TableError(f"{place}: {column} is {getattr(self, column):g}; it must be >= 0")
-        check_inertia(np.asarray(self.inertia), place, TableError)
+        check_symmetric(np.asarray(self.inertia), place, TableError)
+
+    @cached_property
+    def inertia_flaw(self) -> InertiaFlaw | None:
+        """What no body can have about the inertia, or None; tables refuse it (``unphysical``)."""
+        return inertia_flaw(np.asarray(self.inertia))
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, DHLink):

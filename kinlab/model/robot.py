@@ -7,6 +7,7 @@ what does not lie on the way from the root to the tool is locked at zero.
 from __future__ import annotations
 
 import threading
+from collections.abc import Iterator
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
@@ -14,11 +15,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
-from kinlab.arrays import Array, frozen, set_fields
-from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
+from kinlab.arrays import Array, frozen, set_fields, shown
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
-from kinlab.model.urdf_write import to_urdf
+from kinlab.model.link import inertia_flaw
+from kinlab.model.urdf_records import read_tree
+from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
@@ -63,6 +66,8 @@ class Robot:
                 "floating base; continuous joints as revolute)"
             )
         n = int(self.model.nv)
+        if not n:
+            raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
         set_fields(
             self,
             n=n,
@@ -96,8 +101,9 @@ class Robot:
         Returns:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
-        text = to_urdf(table)
-        chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
+        text = written(table)
+        with already_said():  # by the table
+            chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
         return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
 
     @staticmethod
@@ -153,22 +159,6 @@ class Robot:
         return Robot(str(model.name), model, frame, source="pin.Model")
 
 
-def require_robot(robot: object) -> None:
-    """Refuses what is no robot.
-
-    Raises:
-        StructureError: saying how to make one of it.
-    """
-    if isinstance(robot, Robot):
-        return
-    if isinstance(robot, str):
-        raise StructureError(f"robot is the text {robot[:60]!r}; load it first: kl.load(...)")
-    if isinstance(robot, DHTable):
-        raise StructureError(f"robot is a DHTable; build one: Robot.from_dh(...) of {robot.name!r}")
-    kind = robot.__name__ if isinstance(robot, type) else type(robot).__name__
-    raise StructureError(f"robot: {kind} is no Robot; kl.load and Robot.from_... make one")
-
-
 def scratch(robot: Robot) -> Any:
     """The ``pin.Data`` of this robot for this thread; overwritten by every call."""
     try:
@@ -192,10 +182,55 @@ def require_inertia(robot: Robot) -> None:
     Raises:
         InertiaError: naming the joint that moves nothing.
     """
-    if type(robot) is not Robot:
-        require_robot(robot)
     if robot.singular_mass:
         raise InertiaError(robot.singular_mass)
+
+
+def remarks(robot: Robot) -> tuple[str, ...]:
+    """What must be said of a robot before its dynamics are used, a sentence each.
+
+    Joint friction, which counts only where it is asked for; masses without inertia; inertias that
+    no body can have but that its table or URDF says are meant, or that rounding made so.
+    """
+    said = []
+    model = robot.model
+    losses = zip(robot.joint_names, model.damping, model.friction, strict=True)
+    rough = [name for name, viscous, coulomb in losses if viscous or coulomb]
+    if rough:
+        said.append(
+            f"joint friction of {_listed(rough)}: it counts with friction=True in inverse_dynamics "
+            "and forward_dynamics, and in nothing else"
+        )
+    bodies = list(_moving_bodies(robot))
+    points = [name for name, mass, inertia in bodies if mass and not inertia.any()]
+    if points:
+        said.append(f"mass without inertia: {_listed(points)}: computed as point masses")
+    for name, _, inertia in bodies:
+        flaw = inertia_flaw(inertia)
+        if flaw is not None:
+            said.append(f"unphysical: {name}: {flaw.told}; computed with as it stands")
+    return tuple(said)
+
+
+def _moving_bodies(robot: Robot) -> Iterator[tuple[str, float, Array]]:
+    """Name, mass and tensor, as they were written, of each body that the arm moves."""
+    if robot.table is not None:
+        for i, link in enumerate(robot.table.links, 1):
+            yield f"link {i}", link.mass, np.asarray(link.inertia)
+    elif robot.urdf:
+        tree = read_tree(urdf_read.parse(robot.urdf, robot.name), robot.name)
+        for name in tree.links_behind(tree.joints[robot.joint_names[0]].child):
+            inertial = tree.links[name].inertial
+            if inertial is not None:
+                yield name, inertial.mass, inertial.inertia
+    else:
+        for name, body in zip(robot.joint_names, list(robot.model.inertias)[1:], strict=True):
+            yield f"the links behind joint {name}", float(body.mass), np.array(body.inertia)
+
+
+def _listed(names: list[str], most: int = 8) -> str:
+    rest = len(names) - most
+    return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
 
 
 def frame_id(robot: Robot, name: str) -> int:
@@ -205,8 +240,9 @@ def frame_id(robot: Robot, name: str) -> int:
         NameUnknownError: with the near names.
     """
     names = [str(frame.name) for frame in robot.model.frames]
-    if name not in names:
-        message = f"robot {robot.name!r}: frame {name!r} does not exist; {near(name, names)}"
+    if not isinstance(name, str) or name not in names:
+        told = near(name if isinstance(name, str) else "", names)
+        message = f"robot {robot.name!r}: frame {shown(name)} does not exist; {told}"
         raise NameUnknownError(message)
     return _frame_index(robot.model, name)
 

@@ -1,13 +1,16 @@
 """DH tables as files: TOML (read and written) and CSV (read), as plain values.
 
-TOML keys: ``name``, ``convention``, ``source``, ``gravity``, ``base``, ``tool``, ``tool_name``
-and one ``[[links]]`` per row with the fields of :class:`kinlab.DHLink`. Numbers may be text:
-``alpha = "pi/2"``, ``theta = "-90 deg"``. ``base`` and ``tool`` are 4x4 matrices or
+TOML keys: ``name``, ``convention``, ``source``, ``gravity``, ``base``, ``tool``, ``tool_name``,
+``unphysical`` and one ``[[links]]`` per row with the fields of :class:`kinlab.DHLink`. Numbers may
+be text: ``alpha = "pi/2"``, ``theta = "-90 deg"``. ``base`` and ``tool`` are 4x4 matrices or
 ``{ xyz = [..], rpy = [..] }``; ``inertia`` is 3x3 or ``{ ixx, iyy, izz, ixy, ixz, iyz }``
 (the products are the tensor's own entries, as in URDF).
 
 CSV has a header row of the same names, with ``com_x`` ... ``com_z`` and ``ixx`` ... ``iyz``
 instead of ``com`` and ``inertia``; the convention is a column, or given by the caller.
+
+``unphysical = true`` (in CSV a column with a true in it) is for tables whose inertias no body can
+have, as some are printed.
 """
 
 from __future__ import annotations
@@ -21,7 +24,7 @@ from typing import Any
 import numpy as np
 import tomli_w
 
-from kinlab.arrays import Array
+from kinlab.arrays import Array, truth
 from kinlab.errors import ExpressionError, FileError, TableError, near
 from kinlab.formulas.numbers import parse_angle, parse_number
 from kinlab.host.files import read_text, read_toml
@@ -32,16 +35,20 @@ MOST_LINKS = 100
 """Most links of a table: the engine's memory grows with the cube, 70 MB at 100."""
 
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
-_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature")
+_FRICTION = ("viscous_friction", "coulomb_friction")
+_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature", *_FRICTION)
 _ANGLES = ("alpha", "theta")
 _LIMITS = ("lower", "upper")
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _COM = ("com_x", "com_y", "com_z")
-_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature")
+_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature", *_FRICTION)
 _LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, *_DYNAMICS, "name")
-_TABLE_KEYS = ("name", "convention", "source", "gravity", "base", "tool", "tool_name", "links")
+_TABLE_KEYS = (
+    *("name", "convention", "source", "gravity", "base", "tool", "tool_name"),
+    *("unphysical", "links"),
+)
 _PLAIN_KEYS = tuple(k for k in _LINK_KEYS if k not in ("com", "inertia"))
-_CSV_COLUMNS = (*_PLAIN_KEYS, *_COM, *_TENSOR, "convention")
+_CSV_COLUMNS = (*_PLAIN_KEYS, *_COM, *_TENSOR, "convention", "unphysical")
 
 
 def read(path: str | Path, convention: str | None = None) -> dict[str, Any]:
@@ -72,6 +79,8 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
     """As :func:`read`, from TOML text; ``where`` names it in messages."""
     data = read_toml(text, where, TableError)
     place = f"table {data['name']!r}" if isinstance(data.get("name"), str) else where
+    if "l1" in data:
+        raise TableError(f"{where}: a five-bar, not a serial arm: kinlab fivebar {where}")
     for key in data:
         if key not in _TABLE_KEYS:
             raise _unknown_column(key, _TABLE_KEYS, place)
@@ -94,6 +103,8 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
             if not isinstance(data[key], str):
                 raise TableError(f"{place}: {key} must be text")
             optional[key] = data[key]
+    if "unphysical" in data:
+        optional["unphysical"] = truth(data["unphysical"], f"{place}: unphysical", TableError)
     links = [_link(row, f"{place}, link {i}") for i, row in enumerate(rows, 1)]
     return {"name": data["name"], "convention": data["convention"], "links": links, **optional}
 
@@ -119,6 +130,8 @@ def _unknown_column(name: str, valid: Sequence[str], place: str) -> TableError:
 
 def _link(row: Mapping[str, Any], place: str) -> dict[str, Any]:
     for key in row:
+        if key == "unphysical":
+            raise TableError(f"{place}: unphysical belongs to the whole table, above [[links]]")
         if key not in _LINK_KEYS:
             raise _unknown_column(key, _LINK_KEYS, place)
     for key in _REQUIRED:
@@ -218,7 +231,7 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
     for column in _REQUIRED:
         if column not in header:
             raise TableError(f"{place}: column {column!r} is missing")
-    links = []
+    links, unphysical = [], False
     for i, row in enumerate(_rows(reader, place), 1):
         if i > MOST_LINKS:
             raise TableError(f"{place}: more than {MOST_LINKS} links")
@@ -231,8 +244,10 @@ def _from_csv(text: str, name: str, convention: str | None) -> dict[str, Any]:
             if convention not in (None, stated):
                 raise TableError(f"{where}: convention '{stated}' differs from '{convention}'")
             convention = stated
+        unphysical |= _csv_truth(cells.pop("unphysical", "false"), f"{where}: unphysical")
         links.append(_link(_csv_link(cells, where), where))
-    return {"name": name, "convention": convention, "links": links, "source": "CSV import"}
+    values = {"name": name, "convention": convention, "links": links, "source": "CSV import"}
+    return {**values, "unphysical": unphysical}
 
 
 def _rows(reader: csv.DictReader[str], place: str) -> Iterator[dict[str, str]]:
@@ -248,12 +263,16 @@ def _csv_link(cells: Mapping[str, str], place: str) -> dict[str, Any]:
         if column not in row:
             raise TableError(f"{place}: column {column!r} is empty")
     if "flip" in row:
-        flips = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
-        if row["flip"].lower() not in flips:
-            raise TableError(f"{place}: flip is {row['flip']!r}; it must be true or false")
-        row["flip"] = flips[row["flip"].lower()]
+        row["flip"] = _csv_truth(row["flip"], f"{place}: flip")
     if any(c in cells for c in _COM):
         row["com"] = [cells.get(c, "0") for c in _COM]
     if any(c in cells for c in _TENSOR):
         row["inertia"] = {c: cells.get(c, "0") for c in _TENSOR}
     return row
+
+
+def _csv_truth(cell: str, place: str) -> bool:
+    words = {"true": True, "1": True, "yes": True, "false": False, "0": False, "no": False}
+    if cell.lower() not in words:
+        raise TableError(f"{place} is {cell!r}; it must be true or false")
+    return words[cell.lower()]

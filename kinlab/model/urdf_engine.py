@@ -39,7 +39,7 @@ def document(tree: UrdfTree, chain: list[str]) -> str:
     for link in tree.links.values():
         element = etree.SubElement(root, "link", name=link.name)
         if link.inertial is not None:
-            _write_inertial(element, link.inertial)
+            write_inertial(element, link.inertial)
     for joint in tree.joints.values():
         _write_joint(root, joint, joint.name in chain)
     text: str = etree.tostring(root, encoding="unicode")
@@ -89,7 +89,8 @@ def spatial_inertia(inertial: Inertial) -> Array:
     return result
 
 
-def _write_inertial(link: Any, inertial: Inertial) -> None:
+def write_inertial(link: Any, inertial: Inertial) -> None:
+    """Adds an ``<inertial>`` to an lxml element ``<link>``."""
     from lxml import etree
 
     element = etree.SubElement(link, "inertial")

@@ -28,7 +28,10 @@ WIDE_TURN = 2.0 * math.pi
 """Limit given to a continuous joint, either way, so that it is an ordinary revolute one."""
 
 EXTENSION = "kinlab"
-"""Element that carries what URDF has no place for: gravity and armature."""
+"""Element that carries what URDF has no place for: gravity, armature, and inertias that no body can
+have but are meant."""
+
+_WAY_OUT = f'correct it, or put <{EXTENSION} unphysical="true"/> into <robot> to use it as it is'
 
 MOST_ELEMENTS = 1000
 """Most joints of a file; a humanoid with hands has 150."""
@@ -140,6 +143,7 @@ class UrdfTree:
         root: name of the link that has no parent.
         gravity: (3,), m/s².
         armature: by joint, kg m² or kg.
+        unphysical: whether the file says that inertias that no body can have are meant.
     """
 
     name: str
@@ -148,6 +152,7 @@ class UrdfTree:
     root: str
     gravity: Array
     armature: dict[str, float]
+    unphysical: bool
 
     def below(self) -> dict[str, list[JointRecord]]:
         """Joints by parent link."""
@@ -197,9 +202,9 @@ def read_tree(root: Any, place: str) -> UrdfTree:
             )
         parents[joint.child] = joint.parent
         joints[joint.name] = joint
-    gravity, armature = _extension(root, joints, place)
+    extension = _extension(root, joints, place)
     base = _root_link(list(links), parents, place)
-    return UrdfTree(root.get("name") or "", links, joints, base, gravity, armature)
+    return UrdfTree(root.get("name") or "", links, joints, base, *extension)
 
 
 def check_moved_inertias(tree: UrdfTree, links: set[str], place: str) -> None:
@@ -210,10 +215,16 @@ def check_moved_inertias(tree: UrdfTree, links: set[str], place: str) -> None:
 
     Raises:
         UrdfError: naming the link.
+
+    Warns:
+        KinlabWarning: a tensor that only rounding keeps from being a body's.
     """
+    if tree.unphysical:
+        return
     for name, link in tree.links.items():
         if link.inertial is not None and name in links:
-            check_inertia(link.inertial.inertia, f"{place}: link {name!r}", UrdfError)
+            where = f"{place}: link {name!r}"
+            check_inertia(link.inertial.inertia, where, UrdfError, _WAY_OUT)
 
 
 def read_origin(element: Any, where: str) -> tuple[Array, Array]:
@@ -254,8 +265,9 @@ def _only(element: Any, tag: str, where: str) -> Any:
         return None
     known = _STRICT.get(tag, _LOOSE.get(tag, ()))
     for key in found[0].attrib:
-        like = difflib.get_close_matches(key, known, 1, _LIKENESS)
-        if known and key not in known and (tag in _STRICT or like):
+        if not known or key in known:
+            continue
+        if tag in _STRICT or difflib.get_close_matches(key, known, 1, _LIKENESS):
             choices = near(key, known)
             raise UrdfError(f"{where}: <{tag}> has an unknown attribute {key!r}; {choices}")
     return found[0]
@@ -267,8 +279,10 @@ def _check_spelling(root: Any, place: str) -> None:
     for element in (root, *root.findall("link"), *root.findall("joint"), *root.iter("inertial")):
         known = _ELEMENTS[element.tag]
         for child in element:
+            if child.tag in known:
+                continue
             like = difflib.get_close_matches(child.tag, known, 1, _LIKENESS)
-            if child.tag not in known and like:
+            if like:
                 within = f"<{element.tag}> {element.get('name') or ''}".strip()
                 raise UrdfError(
                     f"{place}: {within}: unknown element <{child.tag}>; did you mean <{like[0]}>?"
@@ -421,12 +435,12 @@ def _axis(element: Any, where: str) -> Array:
 
 def _extension(
     root: Any, joints: dict[str, JointRecord], place: str
-) -> tuple[Array, dict[str, float]]:
+) -> tuple[Array, dict[str, float], bool]:
     where = f"{place}: <{EXTENSION}>"
     standard = (0.0, 0.0, -9.81)
     extension = _only(root, EXTENSION, place)
     if extension is None:
-        return np.array(standard), {}
+        return np.array(standard), {}, False
     gravity = read_numbers(extension.get("gravity"), 3, standard, f"{where} gravity")
     armature: dict[str, float] = {}
     for element in extension.findall("joint"):
@@ -436,4 +450,7 @@ def _extension(
         if name in armature:
             raise UrdfError(f"{where}: joint {name!r} is given twice")
         armature[name] = _amount(element, "armature", f"{where} armature of {name!r}")
-    return gravity, armature
+    meant = extension.get("unphysical", "false")
+    if meant not in ("true", "false"):
+        raise UrdfError(f"{where}: unphysical is {meant!r}; it must be true or false")
+    return gravity, armature, meant == "true"

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.errors import TableError
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.rotations import matrices_rpy
@@ -162,7 +161,7 @@ _MATERIALS = {
 }
 
 
-def to_urdf(table: DHTable) -> str:
+def written(table: DHTable) -> str:
     """Writes a DH table as URDF.
 
     Links are named ``base_link``, ``link_1`` ... ``link_n`` and the tool; joints as the table
@@ -173,11 +172,9 @@ def to_urdf(table: DHTable) -> str:
         table: the DH table.
 
     Returns:
-        URDF text. Gravity other than standard and armatures stand in a ``<kinlab>`` element,
-        which other tools ignore.
+        URDF text. Gravity other than standard, armatures, and that inertias are meant which no body
+        can have, stand in a ``<kinlab>`` element, which other tools ignore.
     """
-    if not isinstance(table, DHTable):
-        raise TableError(f"to_urdf: {type(table).__name__} is no DHTable; kl.to_dh makes one")
     from yourdfpy import urdf as y  # half a second to import
 
     places = placements(table)
@@ -206,6 +203,7 @@ def to_urdf(table: DHTable) -> str:
                 limit=y.Limit(
                     effort=link.effort, velocity=link.velocity, lower=link.lower, upper=link.upper
                 ),
+                dynamics=_friction(link, y),
             )
         )
         parent = name
@@ -223,6 +221,12 @@ def _inertial(link: DHLink, place: LinkPlacement, y: Any) -> Any:
     centre = np.eye(4)
     centre[:3, 3] = link.com
     return y.Inertial(origin=place.tail @ centre, mass=link.mass, inertia=inertia)
+
+
+def _friction(link: DHLink, y: Any) -> Any:
+    if link.viscous_friction == 0.0 and link.coulomb_friction == 0.0:
+        return None
+    return y.Dynamics(damping=link.viscous_friction, friction=link.coulomb_friction)
 
 
 def _fixed(
@@ -259,6 +263,8 @@ def _text(urdf: Any, table: DHTable, names: tuple[str, ...]) -> str:
     extension = etree.SubElement(
         root, EXTENSION, gravity=" ".join(repr(float(g)) for g in np.asarray(table.gravity))
     )
+    if table.unphysical:
+        extension.set("unphysical", "true")
     for name, armature in armatures.items():
         etree.SubElement(extension, "joint", name=name, armature=repr(armature))
     etree.indent(root, "  ")

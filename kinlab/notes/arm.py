@@ -8,6 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from kinlab.formulas.record import once
+
 # -------- The numbers of a serial arm as the hand formulas read them, and small vector
 #          helpers
 # Angles in radians, lengths in metres. Every helper works on the last axes and keeps leading ones.
@@ -286,6 +288,11 @@ def mass_derivatives(arm: Arm, q: Array) -> Array:
     column at p_j for k < j; dr_l/dq_k is column k of link l's Jacobian; and the tensor of link l
     turns as d(R I R^T)/dq_k = W_k I - I W_k for k <= l.
     """
+    slope: Array = once(_mass_derivatives, arm, q)
+    return slope
+
+
+def _mass_derivatives(arm: Arm, q: Array) -> Array:
     body = links(arm, q)
     z, p = axes(arm, q)
     revolute = ~arm.prismatic[:, None]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kinlab.formulas.record import Printed, formula
+from kinlab.formulas.record import Printed, formula, once
 from kinlab.notes import arm as mass
 from kinlab.notes.arm import (
     Arm,
@@ -287,6 +287,11 @@ def joint_wrenches(arm: Arm, q: Array, v: Array, a: Array, wrench: Array) -> Arr
 
 def torques(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravity: Array) -> Array:
     """tau_i = n_i·Z or f_i·Z, and the rotor's share, (..., n), under a gravity (3,)."""
+    tau: Array = once(_torques, arm, q, v, a, wrench, gravity)
+    return tau
+
+
+def _torques(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravity: Array) -> Array:
     wrenches = inward(arm, q, v, a, wrench, gravity)
     share = np.where(arm.prismatic, wrenches[..., 2], wrenches[..., 5])
     return arm.sign * share + arm.armature * a

@@ -23,7 +23,8 @@ from kinlab.analysis.minors import Factor, factors
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.postures.cuspidality import square_task, yes_or_no
 from kinlab.structure.task_space import revolute
 
@@ -116,7 +117,7 @@ class Aspects:
         return numbers if len(numbers) == len(found) else None
 
 
-def aspects(robot: Robot, *, limits: bool = True) -> Aspects:
+def aspects(robot: ArmLike, *, limits: bool = True) -> Aspects:
     """The regions of joint space that singularities do not cut.
 
     Args:
@@ -132,7 +133,7 @@ def aspects(robot: Robot, *, limits: bool = True) -> Aspects:
         OptionError: a task with more or fewer coordinates than joints, or an arm singular
             everywhere.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     space = square_task(robot)
     limits = yes_or_no(limits)
     parts = factors(space)

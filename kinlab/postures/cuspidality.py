@@ -27,7 +27,8 @@ from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
 from kinlab.fast.stacks import fk
 from kinlab.inverse.branches import ik_branches
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
 from kinlab.postures.regional import Regional, first_axis, is_regional, singular_points
 from kinlab.postures.roadmap import Roadmap
@@ -87,7 +88,7 @@ class _Pairs:
 
 
 def is_cuspidal(
-    robot: Robot,
+    robot: ArmLike,
     *,
     poses: int = 200,
     nodes: int = 1500,
@@ -114,7 +115,7 @@ def is_cuspidal(
         OptionError: a task with more or fewer coordinates than joints; bad numbers.
         StructureError: no pose has a finite number of solutions.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     count, seed = whole(poses, "poses"), seed_of(seed)
     nodes = whole(nodes, "nodes")
     space, limits = square_task(robot), yes_or_no(limits)
@@ -172,7 +173,7 @@ def _near_cusps(robot: Robot, rng: np.random.Generator) -> Array:
 
 
 def posture_path(
-    robot: Robot,
+    robot: ArmLike,
     one: ArrayLike,
     two: ArrayLike,
     *,
@@ -193,7 +194,7 @@ def posture_path(
     Raises:
         StateError: q of the wrong shape, or outside the limits. OptionError: as above.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     space, limits = square_task(robot), yes_or_no(limits)
     first, second = joint_vector(robot, one, "one"), joint_vector(robot, two, "two")
     if first.ndim != 1 or second.ndim != 1:

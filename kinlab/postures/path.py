@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, seed_of
+from kinlab.arrays import Array, number, seed_of
 from kinlab.errors import NameUnknownError
 from kinlab.fast.stacks import jacobian
-from kinlab.inverse.request import positive, read_guess, read_targets
-from kinlab.inverse.result import IKResult, IKStatus
+from kinlab.inverse.request import read_guess, read_targets
+from kinlab.inverse.result import BRANCH, IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.postures.posture_change import PostureChange, posture_changes
 
 NEAR_SINGULAR = 1e-2
@@ -35,6 +36,7 @@ class IKPath:
         remarks: what was done to the input.
         posture_changes: where the path comes back to a pose with another posture, and whether
             the way there is shown to meet no singularity.
+        task: the coordinates of each pose that were asked for, by name.
     """
 
     q: Array
@@ -47,20 +49,21 @@ class IKPath:
     conditioning: Array
     remarks: tuple[str, ...] = ()
     posture_changes: tuple[PostureChange, ...] = ()
+    task: str = "pose"
 
     def __len__(self) -> int:
         return len(self.q)
 
 
 def ik_path(
-    robot: Robot,
+    robot: ArmLike,
     Ts: ArrayLike,
     q0: ArrayLike,
     tol_position: float = 1e-6,
     tol_rotation: float = 1e-6,
     seed: int = 0,
     *,
-    task: Any = "pose",
+    task: Any = "auto",
     max_step: float = 0.5,
     branch: str | None = None,
 ) -> IKPath:
@@ -86,10 +89,10 @@ def ik_path(
         StateError, OptionError, NameUnknownError, StructureError: as :func:`kinlab.ik_batch`;
             NameUnknownError also where the first pose has no such branch.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     targets = read_targets(robot, Ts)
     here, remarks = read_guess(robot, q0)
-    largest = positive(max_step, "max_step")
+    largest = number(max_step, "max_step", above=0.0)
     seed = seed_of(seed)
     arm = setup(robot, task, seed)
     answers: list[IKResult] = []
@@ -135,6 +138,7 @@ def ik_path(
         conditioning,
         tuple(remarks),
         posture_changes(robot, q) if len(q) else (),
+        arm.task if branch is None else BRANCH,
     )
 
 

@@ -12,7 +12,7 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import real_array, whole
 from kinlab.inverse.branches import IKBranches, ik_branches
 from kinlab.inverse.families import IKFamily
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +64,7 @@ class SolutionCounts:
         return _of_one(self._batch[row])
 
 
-def solution_count(robot: Robot, T: ArrayLike, *, threads: int | None = None) -> Any:
+def solution_count(robot: ArmLike, T: ArrayLike, *, threads: int | None = None) -> Any:
     """How many joint positions bring the tool to T.
 
     What of T counts is as in :func:`kinlab.ik_branches`: all of it for six joints, the position
@@ -81,7 +81,7 @@ def solution_count(robot: Robot, T: ArrayLike, *, threads: int | None = None) ->
     Raises:
         StateError, StructureError: as :func:`kinlab.ik_branches`. OptionError: bad threads.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     poses = real_array(T, f"robot {robot.name!r}: T")
     workers = None if threads is None else whole(threads, "threads")
     found = ik_branches(robot, poses, threads=workers)

@@ -11,7 +11,8 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array, number, whole
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 from kinlab.postures.regional import (
     Regional,
     collapsed_points,
@@ -78,7 +79,7 @@ class SolutionMap:
         )
 
 
-def solution_map(robot: Robot, *, cells: int = 160, angle: float = 0.0) -> SolutionMap:
+def solution_map(robot: ArmLike, *, cells: int = 160, angle: float = 0.0) -> SolutionMap:
     """Counts the solutions over a section of the workspace.
 
     Three revolute joints in space: the half plane (rho, z) through the first axis. Planar arms of
@@ -92,7 +93,7 @@ def solution_map(robot: Robot, *, cells: int = 160, angle: float = 0.0) -> Solut
     Raises:
         OptionError: another arm, or bad numbers.
     """
-    require_robot(robot)
+    robot = as_robot(robot)
     count, held = whole(cells, "cells", 2, 2000), number(angle, "angle")
     if is_regional(robot):
         return _regional(robot, count)

@@ -19,11 +19,17 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import jacobian
-from kinlab.model.robot import Robot, require_robot
+from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
 AUTO = "auto"
 """The task that suits the arm: as many coordinates as it can move independently."""
+
+MOST_METRES = 1e30
+"""Characteristic lengths beyond this, or below its inverse, leave numbers that overflow."""
+
+ENDLESS = 1e6
+"""Limits beyond this are none: Pinocchio writes the largest float where a model has no limit."""
 
 _SAMPLE = 8
 """States that show the generic rank of J: one is enough almost surely, eight are cheap."""
@@ -112,7 +118,6 @@ def read_task(robot: Robot, task: Any) -> TaskSpace:
     Raises:
         NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
     """
-    require_robot(robot)
     if task is None or (isinstance(task, str) and task == AUTO):
         rows = suggest_rows(robot)
         return TaskSpace(robot, rows, plain_name(rows), suggested=True)
@@ -162,16 +167,22 @@ def read_length(length: Any) -> float:
         raise OptionError(f"characteristic length: shape {value.shape}; give one number in metres")
     if value <= 0.0:
         raise OptionError(f"characteristic length {float(value):g} m; it must be above 0")
+    if not 1.0 / MOST_METRES <= value <= MOST_METRES:
+        bounds = f"{1.0 / MOST_METRES:g} to {MOST_METRES:g} m"
+        raise OptionError(f"characteristic length {float(value):g} m; give one from {bounds}")
     return float(value)
 
 
 def search_box(robot: Robot) -> tuple[Array, Array]:
-    """Where searches draw q: the limits, at most one turn about zero for a revolute joint."""
-    turn = np.where(revolute(robot), np.pi, np.inf)
-    wide = robot.upper - robot.lower >= 2.0 * np.pi
-    lower = np.where(wide, np.maximum(robot.lower, -turn), robot.lower)
-    upper = np.where(wide, np.minimum(robot.upper, turn), robot.upper)
-    return lower, upper
+    """Where searches draw q: the limits, at most one turn about zero for a revolute joint.
+
+    Of a slide without limits (Pinocchio writes the largest float), one metre either way.
+    """
+    turns = revolute(robot)
+    low, high = np.maximum(robot.lower, -ENDLESS), np.minimum(robot.upper, ENDLESS)
+    half = np.where(turns, np.pi, np.where(high - low >= ENDLESS, 1.0, np.inf))
+    wide = high - low >= 2.0 * half
+    return np.where(wide, np.maximum(low, -half), low), np.where(wide, np.minimum(high, half), high)
 
 
 def revolute(robot: Robot) -> Any:

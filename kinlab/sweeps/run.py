@@ -13,11 +13,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.fast.threads import available
+from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.sweeps.measures import Measure, describe, read_measure
 from kinlab.sweeps.parts import Columns, Folder, Memory, Parts, Run
@@ -126,7 +128,8 @@ def sweep(
     ``chunk`` are: states are drawn, and the measure is called, in fixed blocks of 4096.
 
     Args:
-        robot: what the measure is of: a robot, a five-bar, any object that can be pickled.
+        robot: what the measure is of: anything that names an arm or a five-bar, or any object
+            that can be pickled.
         measure: a name or names (``"pose"``, ``"position"``, ``"jacobian"``,
             ``"singular_values"``, ``"condition"``, ``"yoshikawa"``, ``"inverse_condition"``,
             ``"min_singular"``, ``"isotropy"``, all of the full Jacobian in SI units), or a
@@ -205,6 +208,10 @@ def plan(
 ) -> Plan:
     """As :func:`sweep`, but hands out the sweep before it runs, for those who may stop it."""
     function = read_measure(measure)
+    if isinstance(robot, (str, Path, DHTable, pin.Model)):
+        from kinlab.fivebar.linkage import as_mechanism  # its rooms take a while to import
+
+        robot = as_mechanism(robot)
     source = read_samples(robot, samples, seed, lower, upper)
     blocks = -(-source.count // BLOCK)
     size = _whole(chunk, "chunk", BLOCK)

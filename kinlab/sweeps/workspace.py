@@ -12,12 +12,14 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.arrays import Array, frozen, seed_of, whole, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.errors import FileError, NameUnknownError, OptionError
 from kinlab.fast.stacks import fk
 from kinlab.host.files import write_bytes
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.sweeps.run import plan
@@ -54,6 +56,17 @@ class WorkspaceMap:
     seed: int
     complete: bool
     planar: bool
+
+    @property
+    def evidence(self) -> Evidence:
+        """What the map rests on: samples, which show where the tool can be and nothing beyond."""
+        how = f"seed {self.seed}" if self.sampling == "random" else "evenly spaced"
+        count = f"{len(self.values):,} {self.sampling} states within the joint limits, {how}"
+        return Evidence(
+            searched=count if self.complete else f"{count}; the run was stopped before its end",
+            proved="each point is reached by its state, up to rounding",
+            found="the extent and the best and least values: between samples there may be more",
+        )
 
     def save(self, path: str | Path) -> None:
         """Writes a compressed .npz; an old file stays whole if writing fails.
@@ -117,7 +130,7 @@ class BinnedMap:
 
 
 def sample_workspace(
-    robot: Robot,
+    robot: ArmLike,
     task: Any = "auto",
     metric: str = "inverse_condition",
     *,
@@ -151,6 +164,7 @@ def sample_workspace(
         FileError: the folder cannot be written.
         InertiaError: metric ``"asada"`` of a robot with a singular mass matrix.
     """
+    robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
     read_kind(metric)
     sampling = word(sampling, ("random", "grid"), "sampling")

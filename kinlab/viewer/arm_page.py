@@ -10,7 +10,7 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.errors import StructureError
 from kinlab.fast.stacks import fk, jacobian
-from kinlab.model.extract import to_dh
+from kinlab.model.extract import as_table
 from kinlab.model.robot import Robot
 from kinlab.structure.tasks import TASKS, generic_rank
 from kinlab.tolerances import TOLERANCES
@@ -39,7 +39,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
     try:
-        picture = draw_dh(vis, robot, robot.table or to_dh(robot))
+        picture = draw_dh(vis, robot, as_table(robot))
     except StructureError as problem:  # an arm that DH parameters cannot hold
         picture = frames_only(vis, robot)
         spec["notes"].append(f"no DH table: {problem}")

@@ -1,4 +1,8 @@
-"""Motions of an arm for the page: joint sweeps, tool paths by IK, a walk on singularities."""
+"""Motions of an arm for the page: joint sweeps, tool paths by IK, a walk on singularities.
+
+Inverse kinematics brings numba, which would double a cold start; only motions that need it
+import it.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +18,6 @@ from kinlab.arrays import Array, real_array
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot
-from kinlab.postures.cuspidality import is_cuspidal
-from kinlab.postures.path import ik_path
 from kinlab.viewer.arm import reach
 from kinlab.viewer.arm_page import judged_rows
 
@@ -142,6 +144,8 @@ def posture(robot: Robot, start: Array) -> ShownMotion:
         StructureError: no such change was found.
         OptionError: the arm's task leaves joints free.
     """
+    from kinlab.postures.cuspidality import is_cuspidal
+
     found = is_cuspidal(robot)
     if found.path is None:
         raise StructureError(
@@ -209,6 +213,8 @@ def _track(robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array)
     """Follows a path of positions by IK; None where it cannot be had on one branch."""
     goals = np.tile(pose, (len(offsets), 1, 1))
     goals[:, :3, 3] += offsets
+    from kinlab.postures.path import ik_path
+
     task = [r in rows for r in range(6)]
     for pick in (goals[::10], goals):  # a few first: most paths that fail do so there
         way = ik_path(robot, pick, q, 1e-8, 1e-8, task=task)

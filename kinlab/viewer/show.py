@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import sys
 import webbrowser
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from kinlab.model.dh import DHTable
-from kinlab.model.library import load
+from kinlab.fivebar.linkage import as_mechanism
+from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
 
 if TYPE_CHECKING:
@@ -20,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def view(
-    robot: Robot | FiveBar | DHTable | str | Path,
+    robot: ArmLike | FiveBar,
     q: ArrayLike | None = None,
     *,
     meshes: bool = True,
@@ -32,7 +31,7 @@ def view(
     is printed. In a notebook nothing is served: the cell shows a page that stands by itself.
 
     Args:
-        robot: the arm, a DH table or its file, or a :class:`kinlab.FiveBar`.
+        robot: anything that names an arm, or a :class:`kinlab.FiveBar`, its name or path.
         q: joint positions at the start, (n,); of a five-bar the crank angles, (2,). Left out,
             zero, and for a five-bar its best-conditioned hanging pose.
         meshes: draw the URDF's meshes; otherwise rods from joint to joint.
@@ -50,10 +49,7 @@ def view(
 
     arm: Any = robot
     scene: Scene | FiveBarScene
-    if isinstance(robot, DHTable):
-        robot = Robot.from_dh(robot)
-    elif isinstance(robot, (str, Path)):
-        robot = load(robot)
+    robot = as_mechanism(robot)
     if against is not None:
         from kinlab.viewer.against import against_scene
 

@@ -63,7 +63,9 @@ def test_planar_arm_closed_forms():
     assert np.allclose(value, l1 * l2 * np.abs(np.sin(q[:, 1])), atol=1e-15)
     assert isinstance(kl.manipulability(robot, q[0], task="xy"), float)
     assert kl.manipulability(robot, [0.3, 0.0], task="xy") <= 1e-16
-    assert kl.manipulability(robot, q[0]) == 0.0  # a 2R arm spans two of six coordinates
+    assert (
+        kl.manipulability(robot, q[0], task="pose") == 0.0
+    )  # a 2R arm spans two of six coordinates
     report = kl.dexterity(robot, q[0])
     assert (report.task, report.suggested, report.length, report.rank) == ("xy", True, None, 2)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from console import kinlab as run
 
 import kinlab as kl
 from kinlab.errors import FileError, MissingExtraError, NameUnknownError, OptionError
@@ -126,6 +127,7 @@ def test_boundary_refuses_other_arms():
 def test_map_values_are_the_metric_and_points_the_tool():
     robot = kl.load("planar2r")
     chart = kl.sample_workspace(robot, samples=2000, seed=4)
+    assert "2,000 random states within the joint limits, seed 4" in chart.evidence.searched
     q = np.random.default_rng(4).uniform(-PI, PI, (2000, 2))
     assert np.allclose(chart.points, kl.fk(robot, q)[:, :3, 3], atol=0)
     assert np.allclose(chart.values, kl.manipulability(robot, q, "inverse_condition", "xy"), atol=0)
@@ -166,6 +168,7 @@ def test_stopping_keeps_what_was_computed():
 
     robot = kl.load("planar3r")
     part = kl.sample_workspace(robot, samples=3 * BLOCK, progress=stop)
+    assert "stopped before its end" in part.evidence.searched
     assert not part.complete and len(part.values) == BLOCK
     whole = kl.sample_workspace(robot, samples=3 * BLOCK)
     assert np.array_equal(part.values, whole.values[:BLOCK])
@@ -238,14 +241,6 @@ def test_figures_without_matplotlib_name_the_extra(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(MissingExtraError, match=r"kinlab\[plots\]"):
         canvas.new_axes()
-
-
-def run(*arguments, cwd):
-    environment = {**os.environ, "COLUMNS": "160", "NO_COLOR": "1"}
-    return subprocess.run(
-        [sys.executable, "-m", "kinlab", *arguments],
-        capture_output=True, text=True, cwd=cwd, env=environment, check=False,
-    )  # fmt: skip
 
 
 @pytest.mark.parametrize(

@@ -28,8 +28,8 @@ def test_a_seed_is_a_whole_number(seed):
 
 
 def test_what_is_no_robot_has_no_section():
-    with pytest.raises(StructureError, match="load it first"):
-        kl.workspace_section("stanford")
+    with pytest.raises(StructureError, match="give a Robot"):
+        kl.workspace_section(3.0)
 
 
 @pytest.mark.parametrize("name", ["x" * 5000, "a\0b", "\ud800"])

@@ -92,7 +92,7 @@ def test_unknown_names_list_the_near_ones():
         kl.compare("single_link", "gravity_torques[3]", gravity)
     with pytest.raises(NameUnknownError, match="no number or range"):
         kl.compare("single_link", "gravity_torques[1-]", gravity)
-    with pytest.raises(NameUnknownError, match="int is no Robot, DHTable, name or path"):
+    with pytest.raises(StructureError, match="int is no serial arm; give a Robot"):
         kl.compare(3, "gravity_torques", gravity)
 
 

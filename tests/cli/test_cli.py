@@ -7,21 +7,16 @@ import subprocess
 import sys
 
 import pytest
+from console import kinlab
 
 import kinlab as kl
 
 
-def kinlab(*arguments, cwd=None):
-    # wide, so that tables are not folded
-    environment = {**os.environ, "COLUMNS": "160", "NO_COLOR": "1"}
-    return subprocess.run(
-        [sys.executable, "-m", "kinlab", *arguments],
-        capture_output=True, text=True, cwd=cwd, env=environment, check=False,
+def test_list_by_a_process_of_its_own():
+    result = subprocess.run(
+        [sys.executable, "-m", "kinlab", "list"],
+        capture_output=True, text=True, env={**os.environ, "COLUMNS": "160"}, check=False,
     )  # fmt: skip
-
-
-def test_list():
-    result = kinlab("list")
     assert result.returncode == 0
     for name in ("puma560", "stanford", "erd:ur5", "kinova"):
         assert name in result.stdout

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import runpy
-import subprocess
-import sys
 
 import numpy as np
 import pytest
+from console import kinlab
 from typer.testing import CliRunner
 
 import kinlab as kl
@@ -92,14 +91,10 @@ def test_what_cannot_be_derived_is_told(arguments, message):
 
 
 def test_from_another_folder_to_a_file(tmp_path):
-    def kinlab(*arguments):
-        return subprocess.run(
-            [sys.executable, "-m", "kinlab", "derive", *arguments],
-            capture_output=True, text=True, cwd=tmp_path, check=False,
-        )  # fmt: skip
-
-    done = kinlab("planar2r", "--what", "tau", "--format", "latex", "-o", "tau.tex")
+    done = kinlab(
+        "derive", "planar2r", "--what", "tau", "--format", "latex", "-o", "tau.tex", cwd=tmp_path
+    )
     assert (done.returncode, done.stdout) == (0, "wrote tau.tex\n"), done.stderr
     assert (tmp_path / "tau.tex").read_text(encoding="utf-8").startswith(r"\left[\begin{matrix}")
-    done = kinlab("planar2")
+    done = kinlab("derive", "planar2", cwd=tmp_path)
     assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1

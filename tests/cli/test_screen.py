@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import subprocess
-import sys
-
 import pytest
+from console import kinlab
 
 from kinlab.cli.screen import visible
 
@@ -32,10 +30,7 @@ def test_codes_become_visible():
 def test_names_and_sources_stand_as_they_are(tmp_path, command):
     file = tmp_path / "t.toml"
     file.write_text(TABLE, encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "kinlab", command, str(file)],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    done = kinlab(command, str(file), columns=80)
     assert done.returncode == 0, done.stderr[-500:]
     assert "\x1b" not in done.stdout
     assert "\x9b" not in done.stdout
@@ -48,10 +43,7 @@ def test_names_and_sources_stand_as_they_are(tmp_path, command):
 def test_an_error_is_one_short_line(tmp_path):
     file = tmp_path / "t.toml"
     file.write_text(TABLE.replace("a = 1", 'a = "\\u001b[31m' + "x" * 150 + '"'), encoding="utf-8")
-    done = subprocess.run(
-        [sys.executable, "-m", "kinlab", "info", str(file)],
-        capture_output=True, text=True, check=False,
-    )  # fmt: skip
+    done = kinlab("info", str(file), columns=80)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert "\x1b" not in done.stderr

@@ -31,7 +31,7 @@ stop = threading.Event()
 def busy():
     while not stop.is_set():
         kl.fk(robot, q[:8192])
-threads = [threading.Thread(target=busy) for _ in range(16)] if sys.argv[2] == "busy" else []
+threads = [threading.Thread(target=busy) for _ in range(4)] if sys.argv[2] == "busy" else []
 for thread in threads:
     thread.start()
 with multiprocessing.get_context("fork").Pool(2) as pool:

@@ -6,35 +6,25 @@ import os
 import subprocess
 import sys
 
+import console
 import mujoco
 import pytest
 
-from kinlab.cli import main
+
+def kinlab(*arguments):
+    """Exit code, stdout, stderr."""
+    said = console.kinlab(*arguments, columns=120)
+    return said.returncode, said.stdout, said.stderr
 
 
-@pytest.fixture
-def kinlab(monkeypatch, capsys):
-    """Runs the command line in this process: exit code, stdout, stderr."""
-
-    def run(*arguments):
-        monkeypatch.setenv("COLUMNS", "120")
-        monkeypatch.setattr(sys, "argv", ["kinlab", *map(str, arguments)])
-        with pytest.raises(SystemExit) as left:
-            main()
-        said = capsys.readouterr()
-        return left.value.code, said.out, said.err
-
-    return run
-
-
-def test_list_names_linkages_and_motors(kinlab):
+def test_list_names_linkages_and_motors():
     code, out, _ = kinlab("fivebar", "list")
     assert code == 0
     for name in ("isotropic", "plotclock", "SGMAH-08A", "Mitsubishi Electric"):
         assert name in out
 
 
-def test_analyse(kinlab, tmp_path):
+def test_analyse(tmp_path):
     picture = tmp_path / "workspace.png"
     code, out, _ = kinlab(
         "fivebar", "analyse", "isotropic", "--at", "0", "-0.5", "--picture", picture
@@ -47,7 +37,7 @@ def test_analyse(kinlab, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG") and picture.stat().st_size > 20_000
 
 
-def test_size(kinlab, tmp_path):
+def test_size(tmp_path):
     code, out, _ = kinlab(
         "fivebar", "size", "unequal", "--workspace", "-0.2", "0.2", "-0.65", "-0.5",
         "--v-max", "3", "--a-max", "60", "--picture", tmp_path / "cycle.svg",
@@ -59,14 +49,14 @@ def test_size(kinlab, tmp_path):
     assert (tmp_path / "cycle-gain.svg").stat().st_size > 10_000
 
 
-def test_size_takes_a_workspace_of_its_own(kinlab):
+def test_size_takes_a_workspace_of_its_own():
     code, out, _ = kinlab(
         "fivebar", "size", "isotropic", "--v-max", "3", "--a-max", "60", "--motor", "HG-KN43J",
     )  # fmt: skip
     assert code == 0 and "condition number up to 3" in out and out.count("HG-KN") == 1
 
 
-def test_export(kinlab, tmp_path):
+def test_export(tmp_path):
     code, out, _ = kinlab("fivebar", "export", "isotropic", "-o", tmp_path / "five.xml")
     assert (code, out) == (0, f"wrote {tmp_path / 'five.xml'}\n")
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "five.xml")).nv == 4
@@ -90,7 +80,7 @@ def test_export(kinlab, tmp_path):
         (("export", "minitaur_leg", "-o", "leg.xml"), "crank 1 has mass 0"),
     ],
 )
-def test_an_error_is_one_line_and_exit_code_2(kinlab, arguments, message):
+def test_an_error_is_one_line_and_exit_code_2(arguments, message):
     code, _, err = kinlab("fivebar", *arguments)
     assert code == 2 and message in err
     assert len(err.strip().splitlines()) == 1

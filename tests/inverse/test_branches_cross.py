@@ -64,7 +64,7 @@ def test_closed_forms_find_what_continuation_finds(name):
     swapped = poses[rng.permutation(40), :3, :3]
     poses[20:, :3, :3] = swapped[20:]  # half of them perhaps out of reach
     flat = np.ascontiguousarray(poses[:, :3]).reshape(40, 12)
-    limits = (robot.lower, robot.upper, np.clip(0.0, robot.lower, robot.upper))
+    limits = (robot.lower.copy(), robot.upper.copy(), np.clip(0.0, robot.lower, robot.upper))
     one, other = all_branches(known.form, limits, flat), all_branches(general, limits, flat)
     assert not one.states.any() and not other.states.any()
     np.testing.assert_array_equal(one.counts, other.counts)

@@ -370,9 +370,41 @@ def test_the_task_that_suits_the_arm():
         robot = kl.load(name)
         _, T = poses(robot, 3, 17)
         for pose in T:
-            assert np.array_equal(
-                kl.ik(robot, pose, task="auto").q, kl.ik(robot, pose, task=task).q
-            )
+            answer = kl.ik(robot, pose)
+            assert answer.task == task == kl.ik_batch(robot, [pose]).task
+            assert max(independent_errors(robot, answer.q, pose)) <= 1e-6  # the whole pose is met
+            assert np.array_equal(answer.q, kl.ik(robot, pose, task="auto").q)
+            if robot.n < 6:  # what the arm never moves in cannot be met, and is not asked for
+                pose = pose @ turned_about_x(0.7)
+                answer = kl.ik(robot, pose)
+                assert answer.success and answer.task == task
+                assert np.array_equal(answer.q, kl.ik(robot, pose, task=task).q)
+
+
+def turned_about_x(angle):
+    pose = np.eye(4)
+    pose[1:3, 1:3] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    return pose
+
+
+@pytest.mark.parametrize("method", ["lm", "newton"])
+def test_a_spatial_3r_arm_meets_positions(method):
+    robot = kl.load("spatial3r")
+    q, T = poses(robot, 12, 3)
+    T[:, :3, :3] = np.eye(3)  # an orientation that three joints cannot give there
+    for start, pose in zip(q + 0.1, T, strict=True):
+        answer = kl.ik(robot, pose, np.clip(start, robot.lower, robot.upper), method)
+        assert answer.task == "position"
+        assert answer.success
+        assert independent_errors(robot, answer.q, pose)[0] <= 1e-6
+    batch = kl.ik_batch(robot, T, q)
+    assert batch.task == "position" and batch.success.all()
+    for row, (start, pose) in enumerate(zip(q, T, strict=True)):  # each as ik answers it
+        assert np.array_equal(batch.q[row], kl.ik(robot, pose, start).q)
+    values = kl.manipulability(robot, q)
+    linear = kl.jacobian(robot, q)[:, :3]
+    assert values.task == values[2:].task == kl.manipulability(robot, q[0]).task == "position"
+    assert values == pytest.approx(np.abs(np.linalg.det(linear)), rel=1e-9) and (values > 0).any()
 
 
 def test_no_robot_and_a_floating_base():

@@ -47,7 +47,7 @@ def test_the_closed_chain_reads_numbers_of_any_machine():
 
 @pytest.mark.parametrize(
     "robot",
-    ["planar2r", None, 5, ARM.table, np.zeros(2), kl.Robot, FIVE, b"x"],
+    [None, 5, np.zeros(2), kl.Robot, FIVE, b"x", ["planar2r"], kl.DHLink()],
     ids=lambda value: type(value).__name__,
 )
 def test_what_is_no_robot_is_refused(robot):

@@ -173,8 +173,10 @@ def test_a_run_that_is_stopped_goes_on(tmp_path, stop, workers):
     folder = tmp_path / "parts"
     script = tmp_path / "script.py"
     script.write_text(
-        "import sys, kinlab as kl, sweep_measures\n"
+        "import signal, sys, kinlab as kl, sweep_measures\n"
         "if __name__ == '__main__':\n"
+        # a shell starts what runs in the background deaf to Ctrl-C, and that is inherited
+        "    signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         f"    kl.sweep(1.0, sweep_measures.slow, {30 * BLOCK}, lower=[0], upper=[1],\n"
         f"             workers={workers}, chunk=1, folder={str(folder)!r})\n"
     )

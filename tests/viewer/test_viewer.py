@@ -13,6 +13,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import umsgpack
+from console import kinlab as run
 
 import kinlab as kl
 from kinlab.errors import (
@@ -48,11 +49,6 @@ def drawn(page):
 
 def paths(page, kind="set_object"):
     return {command["path"] for command in drawn(page) if command["type"] == kind}
-
-
-def run(*arguments, **options):
-    return subprocess.run([sys.executable, "-m", "kinlab", *arguments], capture_output=True,
-                          text=True, cwd=ROOT, check=False, **options)  # fmt: skip
 
 
 @pytest.mark.parametrize("name", sorted(shipped()))

@@ -31,14 +31,21 @@ def robots():
         yield kl.Robot.from_dh(random_table(seed, 5 + seed % 3, convention))
 
 
-def test_kinematics_of_the_page_are_pinocchios(tab, tmp_path):  # noqa: F811
+@pytest.fixture(scope="module")
+def bare(chromium, tmp_path_factory):  # noqa: F811
+    """A page of a small arm, for what needs the page's functions and no picture."""
+    page = chromium.new_page(viewport={"width": 200, "height": 200})
+    yield open_file(page, Scene(kl.load("planar2r")), tmp_path_factory.mktemp("bare"))
+    page.close()
+
+
+def test_kinematics_of_the_page_are_pinocchios(bare):
     """FK of every joint and of the tool, J and the singular values, on random poses."""
-    page = open_file(tab, Scene(kl.load("puma560")), tmp_path)
     rng = np.random.default_rng(0)
     for robot in robots():
         spec = Scene(robot, meshes=False)._spec
         poses = rng.uniform(np.maximum(robot.lower, -3), np.minimum(robot.upper, 3), (5, robot.n))
-        answers = page.evaluate(
+        answers = bare.evaluate(
             """([spec, poses]) => {
               const arm = kinlab.serialArm(spec);
               return poses.map(q => [arm.frames(q), arm.jacobian(q), kinlab.metrics(arm.task(q))]);
@@ -67,15 +74,14 @@ def test_kinematics_of_the_page_are_pinocchios(tab, tmp_path):  # noqa: F811
 
 
 @pytest.mark.parametrize("shape", [(6, 6), (3, 7), (6, 2), (2, 2), (3, 1)])
-def test_svd_of_the_page(tab, tmp_path, shape):  # noqa: F811
+def test_svd_of_the_page(bare, shape):
     """Against LAPACK, down to exactly singular matrices, where A A^T would lose half the digits."""
-    page = open_file(tab, Scene(kl.load("planar2r")), tmp_path)
     rng = np.random.default_rng(1)
     for least in (1.0, 1e-6, 1e-10, 0.0):
         U, _, Vt = np.linalg.svd(rng.normal(size=shape), full_matrices=False)
         sigma = np.geomspace(1.0, least, len(Vt)) if least else np.append(np.ones(len(Vt) - 1), 0)
         A = U * sigma @ Vt
-        found = page.evaluate("A => kinlab.svd(A)", A.tolist())
+        found = bare.evaluate("A => kinlab.svd(A)", A.tolist())
         values = np.array([entry["sigma"] for entry in found])
         vectors = np.array([entry["vector"] for entry in found])
         assert np.abs(values[: len(sigma)] - np.sort(sigma)[::-1]).max() < 1e-14

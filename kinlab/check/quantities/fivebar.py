@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import cache, lru_cache
-from pathlib import Path
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,12 +16,16 @@ from kinlab.errors import MechanismError, NameUnknownError, UnreachableError, ne
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.closed_chain import CRANKS, PASSIVE, ClosedChain
 from kinlab.fivebar.files import presets
+from kinlab.fivebar.linkage import as_five_bar
 from kinlab.notes.loop import Loop
 
 # -------- Five-bars as a domain: names and groups, the plain numbers, random closed poses
 
 _CLEAR = 0.15
 """Least sine between two bars in a drawn pose: what is compared is the formula, not rounding."""
+
+_PLAIN = 1e-6
+"""Share of the mechanism by which rods must miss each other to be given up without a try."""
 
 _TRIES = 200
 """Poses tried for each one drawn."""
@@ -56,21 +59,6 @@ def numbers(fivebar: FiveBar) -> Loop:
     )
 
 
-def load(fivebar: Any) -> FiveBar:
-    """A five-bar from itself, a preset's name or a path."""
-    if isinstance(fivebar, FiveBar):
-        return fivebar
-    if isinstance(fivebar, (str, Path)):
-        name = str(fivebar)
-        return _preset(name) if name in presets() else FiveBar.load(name)
-    raise NameUnknownError(f"five-bar: {type(fivebar).__name__} is no FiveBar, name or path of one")
-
-
-@cache
-def _preset(name: str) -> FiveBar:
-    return FiveBar.load(name)
-
-
 def members(name: str) -> tuple[str, ...]:
     """``"fivebar"`` is every preset; another name stands for itself."""
     return tuple(presets()) if name == "fivebar" else (name,)
@@ -95,8 +83,11 @@ def sample(
     drawn: dict[str, list[Array]] = {name: [] for name in DRAWS}
     for _ in range(_TRIES * count):
         theta = rng.uniform(-np.pi, np.pi, 2)
+        assembly = int(rng.choice([-1, 1]))
+        if _elbows_apart(chain, theta):
+            continue
         try:
-            q = chain.assemble(theta, int(rng.choice([-1, 1])))
+            q = chain.assemble(theta, assembly)
         except UnreachableError:
             continue
         sines = np.sin([q[1], q[3], q[2] + q[3] - q[0] - q[1]])
@@ -114,7 +105,7 @@ def _label(fivebar: FiveBar) -> str:
     return fivebar.name
 
 
-FIVEBAR = Domain("fivebar", load, _label, numbers, members, sample, DRAWS)
+FIVEBAR = Domain("fivebar", as_five_bar, _label, numbers, members, sample, DRAWS)
 
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
@@ -183,6 +174,14 @@ def _pins(chain: ClosedChain, theta: Array) -> tuple[Array, Array]:
     return places[[1, 3]], places[[2, 4]]
 
 
+def _elbows_apart(chain: ClosedChain, theta: Array) -> bool:
+    """Whether the rods cannot meet, plainly: Newton finds out too, after a long search."""
+    elbows = _pins(chain, theta)[1]
+    span, rods = np.linalg.norm(elbows[1] - elbows[0]), np.asarray(chain.linkage.l2)
+    slack = _PLAIN * chain.size
+    return bool(span > rods.sum() + slack or span < abs(rods[0] - rods[1]) - slack)
+
+
 def _rod_length(chain: ClosedChain, theta: Array, xy: Array) -> Any:
     return np.linalg.norm(xy - _pins(chain, theta)[1], axis=1)
 
@@ -206,10 +205,17 @@ def _power(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
 
 
 def _per_acceleration(chain: ClosedChain, q: Array) -> Any:
+    """G; three quantities are made of it, so that each pose's is found once."""
+    return _gains(chain.linkage, *q.tolist())
+
+
+@lru_cache(maxsize=1 << 12)
+def _gains(fivebar: FiveBar, *joints: float) -> Array:
+    chain, q = _chain(fivebar), np.array(joints)
     still = np.zeros(2)
     held = _torque(chain, q, still, still)
     columns = [_torque(chain, q, still, unit) - held for unit in np.eye(2)]
-    return np.stack(columns, axis=1)
+    return frozen(np.stack(columns, axis=1))
 
 
 def _load(chain: ClosedChain, q: Array) -> Any:

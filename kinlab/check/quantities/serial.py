@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache
-from pathlib import Path
+from functools import cache, lru_cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,8 @@ from kinlab.engine import dynamics, kinematics
 from kinlab.errors import NameUnknownError, near
 from kinlab.model import library
 from kinlab.model.dh import DHLink, DHTable
-from kinlab.model.extract import to_dh
+from kinlab.model.extract import as_table
+from kinlab.model.library import as_robot
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
 from kinlab.notes.arm import Arm
@@ -53,32 +53,21 @@ def arm_of(table: DHTable) -> Arm:
     )
 
 
+@lru_cache(maxsize=64)
 def numbers(robot: Robot) -> Arm:
     """The plain numbers of a robot's DH table, extracted where it comes from a URDF."""
-    return arm_of(to_dh(robot) if robot.table is None else robot.table)
+    return arm_of(as_table(robot))
 
 
 def load(robot: Any) -> Robot:
-    """A robot from itself, a DH table, a name or a path."""
-    if isinstance(robot, Robot):
-        return robot
-    if isinstance(robot, DHTable):
-        return Robot.from_dh(robot)
-    if isinstance(robot, (str, Path)):
-        name = str(robot)
-        # a file may change between two calls, what ships does not
-        return (
-            _shipped(name) if name in SPECIAL or name in library.shipped() else library.load(name)
-        )
-    raise NameUnknownError(
-        f"robot: {type(robot).__name__} is no Robot, DHTable, name or path of one"
-    )
+    """The arm of anything that names one, those that only a formula asks for included."""
+    special = isinstance(robot, str) and robot in SPECIAL
+    return _special(robot) if special else as_robot(robot)
 
 
 @cache
-def _shipped(name: str) -> Robot:
-    special = SPECIAL.get(name)
-    return library.load(name) if special is None else Robot.from_dh(special())
+def _special(name: str) -> Robot:
+    return Robot.from_dh(SPECIAL[name]())
 
 
 def _isotropic_2r() -> DHTable:

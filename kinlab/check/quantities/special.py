@@ -20,7 +20,8 @@ from kinlab.model.robot import Robot, frame_id, scratch
 def dh_poses(robot: Robot, q: Any) -> Array:
     """Poses of the DH frames of the robot's table, as Pinocchio places them."""
     if robot.table is not None and robot.table.convention is Convention.STANDARD:
-        return np.stack([_dh_frames(robot, one) for one in q])
+        frames = [frame_id(robot, f"dh_{i}") for i in range(1, robot.n + 1)]
+        return np.stack([_dh_frames(robot, one, frames) for one in q])
     return links.link_poses(robot, q)
 
 
@@ -34,13 +35,12 @@ def link_transforms(robot: Robot, q: Any) -> Array:
     return steps
 
 
-def _dh_frames(robot: Robot, q: Array) -> Array:
+def _dh_frames(robot: Robot, q: Array, frames: list[int]) -> Array:
     import pinocchio as pin
 
     data = scratch(robot)
     pin.framesForwardKinematics(robot.model, data, q)
-    names = [f"dh_{i}" for i in range(1, robot.n + 1)]
-    return np.stack([data.oMf[frame_id(robot, name)].homogeneous for name in names])
+    return np.stack([data.oMf[frame].homogeneous for frame in frames])
 
 
 def common_normals(robot: Robot, q: Any) -> Array:

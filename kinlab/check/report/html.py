@@ -28,6 +28,7 @@ from kinlab.check.report.words import (
     several,
     svg,
 )
+from kinlab.check.unread import Unread
 from kinlab.formulas.typeset import mathml
 from kinlab.host.web import page_text, policy
 
@@ -37,12 +38,15 @@ LONG = 110
 _FOLDER = Path(__file__).parent
 
 
-def page(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
+def page(
+    groups: Sequence[Group], judged: Sequence[Diagnosis] = (), unread: Sequence[Unread] = ()
+) -> str:
     """The whole page.
 
     Args:
         groups: from :func:`kinlab.check.report.summary.grouped`.
         judged: formulas that were taken apart.
+        unread: what could not be judged.
     """
     sections: dict[str, list[Group]] = {}
     for group in groups:
@@ -52,7 +56,8 @@ def page(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
     return render(
         "check.html.j2",
         title="Hand formulas beside the engine",
-        lead=lead(groups, judged),
+        lead=lead(groups, judged, unread),
+        unread=unread,
         how=HOW,
         taken_apart=TAKEN_APART if apart else "",
         sections=sections,

@@ -8,17 +8,24 @@ from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report.markdown_text import code, formula, words
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
+from kinlab.check.unread import Unread
 
 
-def text(groups: Sequence[Group], judged: Sequence[Diagnosis] = ()) -> str:
+def text(
+    groups: Sequence[Group], judged: Sequence[Diagnosis] = (), unread: Sequence[Unread] = ()
+) -> str:
     """The whole report.
 
     Args:
         groups: from :func:`kinlab.check.report.summary.grouped`.
         judged: formulas that were taken apart.
+        unread: what could not be judged.
     """
     how = f"{HOW} {TAKEN_APART}" if judged else HOW
-    lines = ["# Hand formulas beside the engine", "", lead(groups, judged), "", how, ""]
+    lines = ["# Hand formulas beside the engine", "", lead(groups, judged, unread), "", how, ""]
+    if unread:
+        lines += ["## Not judged", ""]
+        lines += [f"- {code(one.what)}: {words(one.reason)}" for one in unread] + [""]
     section = None
     for group in groups:
         name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")

@@ -12,6 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.catalogue import Row
 from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.unread import Unread
 from kinlab.formulas.record import Formula
 
 
@@ -80,18 +81,25 @@ def grouped(rows: Iterable[Row]) -> list[Group]:
     return [Group(several[0].formula, tuple(several)) for several in found.values()]
 
 
-def as_data(rows: Iterable[Row], judged: Iterable[Diagnosis] = ()) -> dict[str, Any]:
+def as_data(
+    rows: Iterable[Row], judged: Iterable[Diagnosis] = (), unread: Iterable[Unread] = ()
+) -> dict[str, Any]:
     """The rows and diagnoses as plain data; an infinite error is null.
 
     Returns:
-        ``{"ok": bool, "rows": [...], "formulas": [...]}``.
+        ``{"ok": bool, "rows": [...], "formulas": [...]}``; and ``"unread": [{"what", "reason"}]``
+        where something could not be judged, which is not ok.
     """
-    listed, judged = list(rows), list(judged)
-    return {
-        "ok": all(row.ok for row in listed) and all(one.agrees for one in judged),
+    listed, judged, missed = list(rows), list(judged), list(unread)
+    sound = all(row.ok for row in listed) and all(one.agrees for one in judged)
+    data: dict[str, Any] = {
+        "ok": sound and not missed,
         "rows": [_row(row) for row in listed],
         "formulas": [_diagnosis(one) for one in judged],
     }
+    if missed:
+        data["unread"] = [{"what": one.what, "reason": one.reason} for one in missed]
+    return data
 
 
 def _row(row: Row) -> dict[str, Any]:

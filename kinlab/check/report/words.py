@@ -10,6 +10,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report.summary import Group, size
+from kinlab.check.unread import Unread
 from kinlab.tolerances import TOLERANCES
 
 # -------- Words that the page and the Markdown report share
@@ -36,9 +37,13 @@ TAKEN_APART = (
 )
 
 
-def lead(groups: Sequence[Group], judged: Sequence[Diagnosis]) -> str:
-    """What was found, in a sentence or two."""
-    parts = [counts(groups)] if groups or not judged else []
+def lead(
+    groups: Sequence[Group], judged: Sequence[Diagnosis], unread: Sequence[Unread] = ()
+) -> str:
+    """What was found, in a sentence or two; what could not be judged comes first."""
+    parts = [f"NOT JUDGED: {', '.join(one.what for one in unread)}."] if unread else []
+    if groups or not (judged or unread):
+        parts.append(counts(groups))
     if judged:
         right = sum(one.agrees for one in judged)
         named = sum(one.known and not one.agrees for one in judged)

@@ -7,13 +7,12 @@ from pathlib import Path
 
 from kinlab.check.catalogue import Row
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.report import html as report_html
-from kinlab.check.report import markdown as report_md
 from kinlab.check.report.summary import grouped
+from kinlab.check.unread import Unread
 from kinlab.errors import FileError
 from kinlab.host.files import write_text
 
-_WRITERS = {".html": report_html.page, ".md": report_md.text}
+_ENDINGS = (".html", ".md")
 
 
 def check_report_path(path: str | Path) -> None:
@@ -23,22 +22,33 @@ def check_report_path(path: str | Path) -> None:
         FileError: another kind of file, or a folder that does not exist.
     """
     file = Path(path)
-    if file.suffix.lower() not in _WRITERS:
-        raise FileError(f"{file}: a report ends in {' or '.join(_WRITERS)}")
+    if file.suffix.lower() not in _ENDINGS:
+        raise FileError(f"{file}: a report ends in {' or '.join(_ENDINGS)}")
     if not file.parent.is_dir():
         raise FileError(f"{file}: the folder {str(file.parent)!r} does not exist")
 
 
-def write_report(path: str | Path, rows: Sequence[Row], judged: Sequence[Diagnosis] = ()) -> None:
+def write_report(
+    path: str | Path,
+    rows: Sequence[Row],
+    judged: Sequence[Diagnosis] = (),
+    unread: Sequence[Unread] = (),
+) -> None:
     """Writes a report.
 
     Args:
         path: ends in .html or .md.
         rows: what :func:`kinlab.check.catalogue.run` gave.
         judged: formulas that were taken apart, from :mod:`kinlab.doctor.report`.
+        unread: what could not be judged.
 
     Raises:
         FileError: another kind of file, or it cannot be written; an old one stays whole.
     """
     check_report_path(path)
-    write_text(path, _WRITERS[Path(path).suffix.lower()](grouped(rows), judged))
+    # imported here: typesetting takes as long to import as a small check to run
+    if Path(path).suffix.lower() == ".html":
+        from kinlab.check.report.html import page as made
+    else:
+        from kinlab.check.report.markdown import text as made
+    write_text(path, made(grouped(rows), judged, unread))

@@ -181,6 +181,8 @@ def reference_robot(against: Any, tool: str | None) -> Robot | DHTable:
         against = load(against, tool)
     elif isinstance(against, str):
         against = Robot.from_urdf(against, tool)
+    elif isinstance(against, pin.Model):
+        against = Robot.from_model(against, tool)
     if not isinstance(against, Robot):
         raise TableError(
             f"{type(against).__name__} is nothing to compare a table with; give a DHTable, a "

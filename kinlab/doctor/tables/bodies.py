@@ -18,7 +18,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import Chain, frames, inverse
 from kinlab.doctor.tables.words import Cause, number
-from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.dh import DHLink, DHTable, with_links
 from kinlab.tolerances import TOLERANCES
 
 
@@ -140,7 +140,7 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
                 changes["armature"] = meant
         if changes:
             links[i] = replace(link, **changes)  # type: ignore[arg-type]
-    repaired = replace(table, links=links)
+    repaired = with_links(table, links)
     if bodies.gravity is not None and mine.gravity is not None:
         gap = float(np.max(np.abs(bodies.gravity - mine.gravity)))
         if gap > 1e-9 * max(1.0, float(np.max(np.abs(bodies.gravity)))):

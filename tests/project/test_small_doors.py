@@ -1,0 +1,97 @@
+"""Doors that let nonsense through once: each says what was given and what to give instead."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.errors import FileError, NameUnknownError, OptionError, StateError
+
+ARM = kl.load("planar2r")
+T = kl.fk(ARM, [0.3, 0.4])
+
+
+@pytest.mark.parametrize("tiny", [5e-324, 1e-320, 1e-309, 3e-309, 1e-308])
+@pytest.mark.parametrize("name", ["single_link", "planar2r", "puma560", "scara"])
+def test_a_state_beside_zero_is_the_state_zero(name, tiny):
+    """No number tells such a q from 0: what is endless there is endless here, nothing is NaN."""
+    robot = kl.load(name)
+    here, zero = np.full(robot.n, tiny), np.zeros(robot.n)
+    for task in ("auto", "position"):
+        one, other = kl.dexterity(robot, here, task), kl.dexterity(robot, zero, task)
+        assert one.rank == other.rank
+        assert np.allclose(one.sigma, other.sigma, rtol=0, atol=1e-15)
+        for field in ("yoshikawa", "min_singular"):
+            assert getattr(one, field) == pytest.approx(getattr(other, field), abs=1e-15)
+        if len(one.sigma) > 1:  # one number alone is always best conditioned
+            assert one.condition >= 1e15 or one.condition == pytest.approx(other.condition)
+    assert (kl.redundancy(robot, here).inverse is None) == (
+        kl.redundancy(robot, zero).inverse is None
+    )
+    force = kl.ellipsoid(robot, here, "force").lengths
+    assert np.array_equal(np.isinf(force), np.isinf(kl.ellipsoid(robot, zero, "force").lengths))
+
+
+def test_a_joint_is_given_once():
+    robot = kl.load("panda")
+    pose = kl.fk(robot, np.zeros(7))
+    with pytest.raises(OptionError, match=r"joint 'panda_joint3' twice.*index 2"):
+        kl.ik_branches(robot, pose, given={"panda_joint3": 0.1, 2: 0.2})
+    for key in ("panda_joint3", 2):
+        assert len(kl.ik_branches(robot, pose, given={key: 0.0}))
+
+
+@pytest.mark.parametrize("threads", [0, -1, 1.5, True, "2"])
+def test_threads_are_a_whole_number_wherever_they_are_given(threads):
+    for call in (
+        lambda: kl.ik_batch(ARM, [T], threads=threads),
+        lambda: kl.ik_batch(ARM, np.empty((0, 4, 4)), threads=threads),
+        lambda: kl.ik_branches(ARM, T, threads=threads),
+        lambda: kl.ik_branches(ARM, [T, T], threads=threads),
+        lambda: kl.ik_branches("panda", kl.fk("panda", np.zeros(7)), threads=threads, samples=1),
+        lambda: kl.solution_count(ARM, T, threads=threads),
+        lambda: kl.solution_count(ARM, [T], threads=threads),
+    ):
+        with pytest.raises(OptionError, match="threads is .*whole number from 1"):
+            call()
+
+
+def test_a_stack_of_stacks_is_told_the_shapes_taken():
+    deep = np.tile(T, (2, 3, 1, 1))
+    for call, shapes in (
+        (lambda: kl.ik(ARM, deep), r"\(4, 4\); for many use ik_batch"),
+        (lambda: kl.ik_batch(ARM, deep), r"\(N, 4, 4\)"),
+        (lambda: kl.ik_path(ARM, deep, [0, 0]), r"\(N, 4, 4\)"),
+        (lambda: kl.ik_branches(ARM, deep), r"\(4, 4\) or \(N, 4, 4\)"),
+        (lambda: kl.solution_count(ARM, deep), r"\(4, 4\) or \(N, 4, 4\)"),
+        (lambda: kl.fk(ARM, np.zeros((2, 2, 2))), r"\(2,\) or \(N, 2\)"),
+    ):
+        with pytest.raises(StateError, match=f"shape .*expected {shapes}"):
+            call()
+
+
+def test_a_length_that_no_number_can_be_divided_by():
+    for length in (5e-324, 1e-300, 1e50):
+        with pytest.raises(OptionError, match="characteristic length .*give one from"):
+            kl.dexterity(ARM, [0.1, 0.2], length=length)
+
+
+@pytest.mark.parametrize(
+    ("text", "error", "said"),
+    [
+        ("my_arm.tml", FileError, "did you mean 'my_arm.toml'"),
+        ("folder/my.urd", FileError, "did you mean 'folder/my.urdf'"),
+        ("my_arm.TOLM", FileError, "did you mean 'my_arm.toml'"),
+        ("folder/arm", FileError, "ends in .toml, .csv or .urdf"),
+        ("arm.docx", FileError, "ends in .toml, .csv or .urdf"),
+        ("isotropic", NameUnknownError, "kinlab fivebar isotropic"),
+        ("pumma560", NameUnknownError, "did you mean 'puma560'"),
+    ],
+)
+def test_what_is_nearly_a_file_or_a_robot(text, error, said):
+    for call in (lambda: kl.load(text), lambda: kl.fk(text, [0.0, 0.0])):
+        with pytest.raises(error) as problem:
+            call()
+        assert said in str(problem.value)
+        assert len(str(problem.value)) < 300  # not the list of all robots
