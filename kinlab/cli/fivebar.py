@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinlab.cli.fivebar_design import design
-from kinlab.cli.screen import Screen, screen, styled
-from kinlab.errors import OptionError
+from kinlab.cli.screen import Screen, fine_table, screen, styled
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ def analyse(
 ) -> None:
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
     from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.arguments import MODES
+    from kinlab.fivebar.arguments import MODES, read_signs
     from kinlab.plots.canvas import save
     from kinlab.plots.fivebar import workspace_picture
 
@@ -164,6 +163,7 @@ def size(
 ) -> None:
     """Size the servos for a workspace, a speed and an acceleration in any direction."""
     from kinlab.fivebar import FiveBar
+    from kinlab.fivebar.arguments import read_signs
     from kinlab.plots.canvas import save
     from kinlab.plots.fivebar import cycle_picture, gain_picture
 
@@ -241,23 +241,12 @@ def export(
 ) -> None:
     """Write MJCF with the loop, or URDF with a loop sidecar; joint zero is the pose --at."""
     from kinlab.fivebar import FiveBar
+    from kinlab.fivebar.arguments import read_signs
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     place = at or fivebar.largest_circle(signs, assembly).centre
     for file in fivebar.export(output, place, signs):
         typer.echo(f"wrote {file}")
-
-
-def read_signs(mode: str) -> tuple[int, int]:
-    """Reads ``-+`` and the like.
-
-    Raises:
-        OptionError: anything but two signs.
-    """
-    if len(mode) != 2 or set(mode) - {"+", "-"}:
-        raise OptionError(f"mode {mode!r} does not exist; choose one of ++, +-, -+, --")
-    first, second = (1 if sign == "+" else -1 for sign in mode)
-    return first, second
 
 
 def _signs(mode: tuple[int, int]) -> str:
@@ -275,14 +264,3 @@ def _pair(values: object) -> str:
 def _fixed(metres: float) -> str:
     """To a micrometre, without a minus before zero."""
     return f"{round(metres, 6) + 0.0:.6f}"
-
-
-def fine_table(*columns: str, left: tuple[int, ...]) -> Table:
-    """A table of numbers; the columns of ``left`` are text."""
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
-    for k, column in enumerate(columns):
-        table.add_column(column, justify="left" if k in left else "right", no_wrap=k in left)
-    return table

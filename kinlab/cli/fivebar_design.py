@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import screen, styled
+from kinlab.cli.screen import fine_table, screen, styled
 from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def design(
     """Find l1, l2 and e for a rectangle: the worst pose in it is as good as it can be."""
     from rich.progress import Progress
 
-    from kinlab.cli.fivebar import read_signs
+    from kinlab.fivebar.arguments import read_signs
     from kinlab.fivebar.design.front import fivebar_front
     from kinlab.fivebar.design.synthesis import design_fivebar
     from kinlab.plots.canvas import save
@@ -127,7 +127,6 @@ def _numbers(texts: list[str], option: str, default: float | None) -> dict[str, 
 
 
 def _print_design(found: FiveBarDesign) -> None:
-    from kinlab.cli.fivebar import fine_table
 
     console = screen(highlight=False, soft_wrap=True)
     l1, l2, e = found.lengths
@@ -156,7 +155,6 @@ def _print_design(found: FiveBarDesign) -> None:
 
 
 def _print_front(front: DesignFront) -> None:
-    from kinlab.cli.fivebar import fine_table
     from kinlab.fivebar.design.goals import GOALS
 
     heads = [f"{goal}, {GOALS[goal].unit}".rstrip(", ") for goal in front.goals]
