@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number
-from kinlab.drives.cycles import LIFT, TRAVEL, Path, pick_and_place
+from kinlab.drives.cycles import LIFT, TRAVEL, Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_motors, stretch_to_motor
-from kinlab.drives.gears import Drive
-from kinlab.drives.motors import Motor, catalogue, find_motor
+from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors, stretch_to_motor
+from kinlab.drives.gears import Drive, Gearbox, gears_of
+from kinlab.drives.motors import Motor, find_motor, motors_of
+from kinlab.drives.waypoints import Cycle, adept
 from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError
 from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.bounds.worst import (
@@ -33,7 +35,7 @@ from kinlab.fivebar.bounds.worst import (
     torque_forms,
     worst,
 )
-from kinlab.fivebar.dynamics import crank_inertia, joint_mass, rod_model, torques
+from kinlab.fivebar.dynamics import crank_inertia, joint_mass, rod_model, tool_force, torques
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.metrics import sigma
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
@@ -70,6 +72,9 @@ def follow(
     rate = np.einsum("nij,nj->ni", jac, path.v)
     theta_ddot = np.einsum("nij,nj->ni", jac, path.a) + bias
     tau = torques(linkage, pose, path.v, path.a, rod_model(linkage, model))
+    if path.carried is not None:
+        force = path.carried[:, None] * (path.a - linkage.gravity)
+        tau = tau + tool_force(linkage, pose, force)
     theta = np.unwrap(ik(linkage, path.points, mode), axis=0)
     return Demand(path.t, theta, rate, theta_ddot, tau, linkage.reflected_inertia)
 
@@ -137,6 +142,38 @@ def fit_to_motor(
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
+def require_masses(linkage: FiveBar, massless: bool) -> None:
+    """Refuses a linkage whose bars have no mass where that was not said to be meant.
+
+    Args:
+        linkage: the five-bar.
+        massless: bars without mass are meant.
+
+    Raises:
+        InertiaError: nothing at all to move, or bars without mass; says what to give.
+    """
+    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
+        raise InertiaError(
+            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
+            "can be sized"
+        )
+    bars = {
+        "cranks": (linkage.crank_mass, linkage.crank_inertia),
+        "rods": (linkage.rod_mass, linkage.rod_inertia),
+    }
+    without = [
+        name for name, (mass, inertia) in bars.items() if np.any((mass == 0.0) & (inertia == 0.0))
+    ]
+    if without and not massless:
+        keys = " and ".join(f"{name.removesuffix('s')}_mass" for name in without)
+        raise InertiaError(
+            f"{linkage.name}: the {' and '.join(without)} have no mass, and torques without it are "
+            f"too small; give {keys} (and rod_com, crank_com, inertias), on the command line "
+            "--crank-mass and --rod-mass for uniform bars, or say that it is meant: massless=True, "
+            "--massless"
+        )
+
+
 @dataclass(frozen=True)
 class ServoSizing:
     """What a workspace, a speed and an acceleration ask of the drives.
@@ -191,6 +228,11 @@ def size_servo(
     gear_ratio: float | None = None,
     mode: Mode = HANGING,
     efficiency: float = 0.9,
+    *,
+    motors: str | File | Sequence[Motor] | None = None,
+    gears: str | File | Gearbox | Sequence[Gearbox] | None = None,
+    cycle: Cycle | None = None,
+    massless: bool = False,
 ) -> ServoSizing:
     """Sizes the drives for a rectangle, a speed and an acceleration of the tool in any direction.
 
@@ -204,16 +246,22 @@ def size_servo(
         mode: signs of u_i x w_i.
         efficiency: of the gears, 0 to 1. The load is taken to pay the losses or to be held by
             them, whichever asks more of the motor: an upper bound of the peak.
+        motors: a catalogue of one's own: a .toml or .csv file, or motors; none: the shipped one.
+        gears: gearboxes likewise, for pairs that can be bought; gear_ratio and efficiency are then
+            the gearboxes'.
+        cycle: what the RMS torques are taken over; none: the 25/305/25 mm one at the bottom of
+            the workspace, shrunk in proportion where the workspace is smaller.
+        massless: the bars are meant to have no mass.
 
     Returns:
-        The demands and the motors that meet them. The cycle is the 25/305/25 mm one at the
-        bottom of the workspace, shrunk in proportion where the workspace is smaller.
+        The demands, by their proved bounds, and the motors or pairs that meet them.
 
     Raises:
         OptionError: a limit that is not positive, an empty rectangle, an impossible efficiency.
         UnreachableError, SingularError: the rectangle is not free of singularities; says where.
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
-        InertiaError: the linkage has neither masses nor a payload.
+        InertiaError: the linkage has neither masses nor a payload, or bars without mass where
+            ``massless`` does not say so.
     """
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
@@ -231,30 +279,26 @@ def size_servo(
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
     if not TOLERANCES.no_motion < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
-    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
-        raise InertiaError(
-            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
-            "can be sized"
-        )
+    require_masses(linkage, massless)
     require_regular(linkage, box, mode)
-    exact, massless = rod_model(linkage, "exact"), rod_model(linkage, "massless")
+    exact, none = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)
 
     def measure(pose: Pose) -> dict[str, Any]:
         load, turn = torque_forms(bare, pose, exact), acceleration_forms(linkage, pose)
         return {
             "rate": row_norms(turn.linear) * v_max,
-            "load_inertia_note": _diagonal(joint_mass(bare, pose, massless)),
+            "load_inertia_note": _diagonal(joint_mass(bare, pose, none)),
             "load_inertia": _diagonal(joint_mass(bare, pose, exact)),
-            "torque_note": row_norms(torque_forms(bare, pose, massless).linear) * a_max,
+            "torque_note": row_norms(torque_forms(bare, pose, none).linear) * a_max,
             "torque": load.with_rotors(turn, linkage.reflected_inertia).peak(v_max, a_max),
             "load": load.peak(v_max, a_max),
             "sigma": sigma(linkage, pose) * np.array([1.0, -1.0]),
         }
 
     found = worst(linkage, box, mode, measure)
-    path = _cycle_in(box, v_max, a_max)
-    cycle = follow(linkage, path, mode)
+    path = (adept_in(box, v_max, a_max) if cycle is None else cycle).path()
+    demand = follow(linkage, path, mode)
 
     def forms(pose: Pose) -> tuple[MotionForms, MotionForms]:
         return torque_forms(bare, pose, exact), acceleration_forms(linkage, pose)
@@ -279,9 +323,16 @@ def size_servo(
 
     rate, inertia = found["rate"], found["load_inertia"]
     load = found["load"].largest
-    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate, load)
-    motors = list(catalogue().values()) if motor is None else [find_motor(motor)]
-    arm = crank_inertia(bare, massless)
+    duty = Duty(rate.largest, inertia.largest, demand, efficiency, peak, estimate, load)
+    among = motors_of(motors)
+    if motor is not None:
+        among = [find_motor(motor, None if motors is None else {m.name: m for m in among})]
+    fits = (
+        fit_motors(duty, among, gear_ratio)
+        if gears is None
+        else fit_drives(duty, among, gears_of(gears))
+    )
+    arm = crank_inertia(bare, none)
     return ServoSizing(
         workspace=box,
         v_max=float(v_max),
@@ -296,8 +347,8 @@ def size_servo(
         eta=np.divide(linkage.payload, arm, out=np.full(2, np.inf), where=arm > 0.0),
         sigma=(-float(found["sigma"].bound[1]), float(found["sigma"].bound[0])),
         path=path,
-        cycle=cycle,
-        fits=fit_motors(duty, motors, gear_ratio),
+        cycle=demand,
+        fits=fits,
     )
 
 
@@ -305,9 +356,10 @@ def _diagonal(matrix: Any) -> Any:
     return np.einsum("nii->ni", matrix)
 
 
-def _cycle_in(box: Rectangle, v_max: float, a_max: float) -> Path:
+def adept_in(box: Rectangle, v_max: float, a_max: float) -> Cycle:
+    """The 25/305/25 mm cycle at the bottom of a rectangle, shrunk where that is smaller."""
     shrink = min(1.0, (box.x_max - box.x_min) / TRAVEL, (box.y_max - box.y_min) / LIFT)
     if shrink <= 0.0:
         raise OptionError("workspace: a cycle needs a rectangle with both sides longer than zero")
-    centre = np.array([0.5 * (box.x_min + box.x_max), box.y_min])
-    return pick_and_place(centre, v_max, a_max, LIFT * shrink, TRAVEL * shrink)
+    centre = (0.5 * (box.x_min + box.x_max), box.y_min)
+    return adept(centre, v_max, a_max, LIFT * shrink, TRAVEL * shrink)

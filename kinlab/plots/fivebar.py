@@ -9,6 +9,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import HANGING, Mode
+from kinlab.fivebar.cycle import CycleSizing
 from kinlab.fivebar.dynamics import crank_inertia, rod_model
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.servo import ServoSizing
@@ -103,7 +104,7 @@ def bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
         axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
 
 
-def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
+def cycle_picture(linkage: FiveBar, sizing: ServoSizing | CycleSizing) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
 
     Returns:
@@ -114,10 +115,15 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     """
     figure = new_figure((9.6, 6.4))
     where, rate, torque, power = figure.subplots(2, 2).ravel()
-    path, cycle, box = sizing.path, sizing.cycle, sizing.workspace
+    path = sizing.path
+    if isinstance(sizing, CycleSizing):
+        cycle, mode, limits = sizing.demand, sizing.mode, f"cycle {figure_text(sizing.cycle.name)}"
+    else:
+        cycle, mode = sizing.cycle, sizing.mode
+        limits = f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
+        box_of(where, sizing.workspace, None, colour="tab:green")
     where.plot(*path.points.T, color="black", lw=1.5)
-    box_of(where, box, None, colour="tab:green")
-    bars(where, linkage, path.points[len(path.t) // 4], sizing.mode)
+    bars(where, linkage, path.points[len(path.t) // 4], mode)
     where.set(aspect="equal", xlabel="x, m", ylabel="y, m", title="path in the workspace")
     curves = (
         (rate, cycle.v, "crank rate, rad/s"),
@@ -134,8 +140,7 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
-        f"{figure_text(linkage.name)}: {60 / path.duration:.0f} cycles a minute, "
-        f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
+        f"{figure_text(linkage.name)}: {60 / path.duration:.0f} cycles a minute, {limits}"
     )
     return where
 
