@@ -53,6 +53,10 @@ class UnreachableError(StateError):
     """A point or joint vector at which the mechanism cannot be assembled."""
 
 
+class LimitError(StateError):
+    """A motion, or a point of one, breaks a limit of a joint: of position, velocity, ..."""
+
+
 class SingularError(StateError):
     """The quantity asked for does not exist at a singular pose."""
 

@@ -21,11 +21,12 @@ from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
+from kinlab.host.introductions import Introduction, Rows, numbered
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Rows):
     """A hand formula beside the engine.
 
     Attributes:
@@ -63,18 +64,27 @@ class Comparison:
         """Whether the two are the same formula, to rounding."""
         return self.max_error <= TOLERANCES.formula_agrees
 
-    def __str__(self) -> str:
+    def columns(self) -> dict[str, Any]:
+        """State by state: the arguments, both answers and the relative error."""
+        out: dict[str, Any] = {}
+        for name, values in (*self.arguments.items(), ("hand", self.hand), ("engine", self.engine)):
+            out |= numbered(name, values)
+        return out | {"error": self.errors}
+
+    def introduction(self) -> Introduction:
+        """Whether they are the same formula, and where they are furthest apart."""
         verdict = "agrees" if self.agrees else "DIFFERS"
         text = (
             f"{self.function} {verdict} with {self.quantity} of {self.robot}: largest relative "
             f"error {self.max_error:.2g} over {self.samples} states"
         )
         if self.agrees:
-            return text
+            return Introduction(text, mood="good")
         k = self.worst
         with np.printoptions(precision=6, suppress=True, linewidth=100):
             state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
-            return f"{text}\nworst at {state}\nhand   {self.hand[k]}\nengine {self.engine[k]}"
+            hand, engine = f"hand   {self.hand[k]}", f"engine {self.engine[k]}"
+        return Introduction(text, (f"worst at {state}", hand, engine), mood="bad")
 
 
 def compare(

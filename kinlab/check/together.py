@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterator, Sequence
 from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
-from kinlab.formulas.record import answers_kept
+from kinlab.host.answers import answers_kept
 from kinlab.host.processes import cores, end_with_parent
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import typer
 
 from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TIP
-from kinlab.cli.screen import Screen, echo, screen, styled, visible
+from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
 from kinlab.errors import KinlabError, OptionError
 
 if TYPE_CHECKING:
@@ -116,6 +116,8 @@ def check(
     for file in report or ():
         write_report(file, found.rows, found.judged, found.unread)
         echo(f"wrote {file}", err=json)
+    for missed in found.unread:
+        complain(KinlabError(f"not judged: {missed.what}: {missed.reason}"))
     if found.unread:
         raise typer.Exit(2)
     if not all(row.ok for row in found.rows) or not all(one.agrees for one in found.judged):
@@ -238,10 +240,6 @@ def _print_all(found: _Found, each: bool) -> None:
         _print_table(found.rows, each)
     for k, one in enumerate(found.judged):
         echo(("\n" if k or found.rows else "") + str(one))
-    for k, missed in enumerate(found.unread):
-        if not k:
-            echo(("" if found.nothing else "\n") + "NOT JUDGED:")
-        echo(f"  {missed.what}: {missed.reason}")
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:

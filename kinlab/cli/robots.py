@@ -140,11 +140,11 @@ def _joints(robot: Robot) -> Table:
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v
-        revolute = "P" not in model.joints[j].shortname().removeprefix("JointModel")
-        unit, factor = ("°", 180 / math.pi) if revolute else (" m", 1.0)
+        kind = robot.joint_kinds[j - 1]
+        unit, factor = ("°", 180 / math.pi) if kind == "revolute" else (" m", 1.0)
         table.add_row(
             name,
-            "revolute" if revolute else "prismatic",
+            kind,
             f"{robot.lower[k] * factor:.5g}{unit}",
             f"{robot.upper[k] * factor:.5g}{unit}",
             f"{model.upperVelocityLimit[k]:.4g}",
@@ -173,34 +173,13 @@ def _rows(dh_table: DHTable, remark: str) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    modified = dh_table.convention == "modified"
-    below = "i-1" if modified else "i"
+    from kinlab.model.dh import row_words
+
+    columns, rows = row_words(dh_table)
     title = f"DH table, {dh_table.convention} convention{remark}"
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in ("i", f"alpha_{below}", f"a_{below} [m]", "d_i [m]", "theta_i"):
+    for column in columns:
         table.add_column(column, justify="right")
-    for i, link in enumerate(dh_table.links, 1):
-        variable = f"-q{i}" if link.flip else f"q{i}"
-        revolute = link.joint == "revolute"
-        table.add_row(
-            str(i),
-            _degrees(link.alpha),
-            _metres(link.a),
-            _metres(link.d) if revolute else _plus(variable, _metres(link.d)),
-            _plus(variable, _degrees(link.theta)) if revolute else _degrees(link.theta),
-        )
+    for row in rows:
+        table.add_row(*row)
     return table
-
-
-def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 7) + 0.0:.8g}°"
-
-
-def _metres(length: float) -> str:
-    return f"{round(length, 9) + 0.0:.8g}"
-
-
-def _plus(variable: str, constant: str) -> str:
-    if constant in ("0", "0°"):
-        return variable
-    return f"{variable} - {constant[1:]}" if constant[0] == "-" else f"{variable} + {constant}"

@@ -63,8 +63,8 @@ def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
     typer.echo(visible(text), err=err, nl=nl)
 
 
-def complain(problem: BaseException) -> None:
-    """An error as one line on stderr."""
+def complain(problem: BaseException | str) -> None:
+    """An error or a warning as one line on stderr."""
     text = visible(" ".join(str(problem).split()))
     if len(text) > LONGEST:
         text = f"{text[:LONGEST]} ..."

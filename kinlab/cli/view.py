@@ -33,14 +33,17 @@ def view(
     tip: TIP = None,
     q: Annotated[
         str | None,
-        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, -0.5". Five-bar: cranks.'),
+        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, 30 deg". Five-bar: cranks.'),
     ] = None,
     save: Annotated[
         Path | None, typer.Option("--save", help="Write one HTML file instead of serving.")
     ] = None,
     animate: Annotated[
         str | None,
-        typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus, posture."),
+        typer.Option(
+            "--animate",
+            help="Give it a motion: sweep, line, pick, locus, posture, or a .csv (t, q1, ...).",
+        ),
     ] = None,
     branches: Annotated[
         bool, typer.Option("--branches", help="Draw all solutions of the pose at q as ghosts.")
@@ -113,7 +116,11 @@ def _open(
         found = ik_branches(robot, fk(robot, scene.q))
         if len(found):
             scene.ghosts("branches", found.q)
-    if animate is not None:
+    if animate is not None and animate.lower().endswith(".csv"):
+        from kinlab.motion.record import read_motion
+
+        scene.play(read_motion(robot, animate))
+    elif animate is not None:
         from kinlab.viewer import motions
 
         shown = motions.motion(robot, animate, scene.q)
@@ -137,9 +144,9 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 def _numbers(text: str) -> Array:
     import numpy as np
 
-    from kinlab.formulas.numbers import parse_number
+    from kinlab.formulas.numbers import parse_angle
 
-    return np.array([parse_number(word.strip()) for word in text.split(",")])
+    return np.array([parse_angle(word.strip()) for word in text.split(",")])
 
 
 def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:

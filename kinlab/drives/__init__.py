@@ -3,6 +3,8 @@
 =============  =====================================================================================
 module         what it holds
 =============  =====================================================================================
+``arm``        Drives of a serial arm: what a motion asks of each joint, and the motors and gears
+               that do it
 ``cycles``     The pick-and-place cycle: up, across, down, and back, with blended corners
 ``demand``     What a motion asks of the drives over time, at the joints and at the motors' shafts
 ``fitting``    Motors and gears against what a duty asks: pairs that can be bought, or the ratio

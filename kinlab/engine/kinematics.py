@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.engine.states import joint_vector, joint_vectors
 from kinlab.errors import NameUnknownError, StateError, near
-from kinlab.formulas.record import once
+from kinlab.host.answers import once
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, frame_id, scratch
 

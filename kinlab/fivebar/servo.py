@@ -22,7 +22,7 @@ from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors, stretc
 from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.drives.waypoints import Cycle, adept
-from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError
+from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
 from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.bounds.worst import (
     MotionForms,
@@ -35,10 +35,18 @@ from kinlab.fivebar.bounds.worst import (
     torque_forms,
     worst,
 )
-from kinlab.fivebar.dynamics import crank_inertia, joint_mass, rod_model, tool_force, torques
+from kinlab.fivebar.dynamics import (
+    bars_without_mass,
+    crank_inertia,
+    joint_mass,
+    rod_model,
+    tool_force,
+    torques,
+)
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.metrics import sigma
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
+from kinlab.host.introductions import Introduction, Rows, shown_cells, vector
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -142,40 +150,40 @@ def fit_to_motor(
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
-def require_masses(linkage: FiveBar, massless: bool) -> None:
+def require_masses(linkage: FiveBar, massless: bool) -> tuple[str, ...]:
     """Refuses a linkage whose bars have no mass where that was not said to be meant.
 
     Args:
         linkage: the five-bar.
         massless: bars without mass are meant.
 
+    Returns:
+        What the figures leave out: a sentence where bars have no mass.
+
     Raises:
         InertiaError: nothing at all to move, or bars without mass; says what to give.
+
+    Warns:
+        KinlabWarning: bars without mass, where they are meant.
     """
     if not any(np.any(getattr(linkage, name)) for name in _MASSES):
         raise InertiaError(
             f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
             "can be sized"
         )
-    bars = {
-        "cranks": (linkage.crank_mass, linkage.crank_inertia),
-        "rods": (linkage.rod_mass, linkage.rod_inertia),
-    }
-    without = [
-        name for name, (mass, inertia) in bars.items() if np.any((mass == 0.0) & (inertia == 0.0))
-    ]
-    if without and not massless:
-        keys = " and ".join(f"{name.removesuffix('s')}_mass" for name in without)
+    missing = bars_without_mass(linkage)
+    if missing and not massless:
         raise InertiaError(
-            f"{linkage.name}: the {' and '.join(without)} have no mass, and torques without it are "
-            f"too small; give {keys} (and rod_com, crank_com, inertias), on the command line "
-            "--crank-mass and --rod-mass for uniform bars, or say that it is meant: massless=True, "
-            "--massless"
+            f"{linkage.name}: {missing}; with_masses() and --crank-mass, --rod-mass take uniform "
+            "bars; if bars without mass are meant, say so: massless=True, --massless"
         )
+    if missing:
+        warn(f"{linkage.name}: {missing}")
+    return (missing,) if missing else ()
 
 
-@dataclass(frozen=True)
-class ServoSizing:
+@dataclass(frozen=True, repr=False)
+class ServoSizing(Rows):
     """What a workspace, a speed and an acceleration ask of the drives.
 
     Attributes:
@@ -195,6 +203,7 @@ class ServoSizing:
         cycle: what the cranks do along it.
         fits: the motors that fit first, the one of least peak torque first; then the others,
             the nearest to fitting first.
+        remarks: what the figures leave out, a sentence each: bars without mass.
     """
 
     workspace: Rectangle
@@ -212,6 +221,52 @@ class ServoSizing:
     path: Path
     cycle: Demand
     fits: tuple[MotorFit, ...]
+    remarks: tuple[str, ...] = ()
+
+    def columns(self) -> dict[str, Any]:
+        """Motor by motor: what it must give and what it has over that."""
+        return {
+            "motor": [fit.motor.name for fit in self.fits],
+            "gear_ratio": [fit.gear_ratio for fit in self.fits],
+            "peak_torque": [fit.peak for fit in self.fits],
+            "rms_torque": [fit.rms for fit in self.fits],
+            "speed": [fit.speed for fit in self.fits],
+            "inertia_ratio": [fit.inertia_ratio for fit in self.fits],
+            "margin": [fit.margin for fit in self.fits],
+            "fits": [fit.fits for fit in self.fits],
+            "limited_by": [" and ".join(fit.limits) for fit in self.fits],
+        }
+
+    def introduction(self) -> Introduction:
+        """The torque, speed and power asked for, the motor that meets them, what is left out."""
+        torque = f"{self.torque.largest:.4g} N m at the cranks"
+        fitting = self.short_list
+        if fitting:
+            first = f"{fitting[0].motor.name} at a gear of {fitting[0].gear_ratio:.4g} fits"
+            told = f"{torque}; {first}"
+            if len(self.fits) > 1:
+                told += f" ({len(fitting)} of {len(self.fits)} motors fit)"
+        else:
+            told = f"{torque}; NO motor of {len(self.fits)} fits"
+        light = " FOR THE PAYLOAD ALONE" if self.remarks else ""
+        cells, cycle = self.columns(), self.cycle
+        return Introduction(
+            f"servo sizing{light}: {told}",
+            (
+                *self.remarks,
+                f"at v {self.v_max:g} m/s, a {self.a_max:g} m/s² in any direction of workspace "
+                f"{vector(self.workspace)}; gear efficiency {self.efficiency:g}",
+                f"crank rate {self.rate.largest:.4g} rad/s, load inertia "
+                f"{self.load_inertia.largest:.4g} kg m²",
+                f"pick-and-place cycle of {self.path.duration:.4g} s: RMS "
+                f"{float(np.max(cycle.rms_torque)):.4g} N m, peak power "
+                f"{float(np.max(cycle.peak_power)):.4g} W",
+            ),
+            ("motor", "gear", "peak N m", "RMS N m", "r/min", *tuple(cells)[5:8], "limited by"),
+            shown_cells(cells, 4),
+            len(self.fits),
+            "unsure" if self.remarks else "good" if fitting else "bad",
+        )
 
     @property
     def short_list(self) -> tuple[MotorFit, ...]:
@@ -262,6 +317,9 @@ def size_servo(
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
         InertiaError: the linkage has neither masses nor a payload, or bars without mass where
             ``massless`` does not say so.
+
+    Warns:
+        KinlabWarning: cranks or rods have no mass, and are meant to.
     """
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
@@ -279,7 +337,7 @@ def size_servo(
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
     if not TOLERANCES.no_motion < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
-    require_masses(linkage, massless)
+    remarks = require_masses(linkage, massless)
     require_regular(linkage, box, mode)
     exact, none = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)
@@ -349,6 +407,7 @@ def size_servo(
         path=path,
         cycle=demand,
         fits=fits,
+        remarks=remarks,
     )
 
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from kinlab.formulas.record import once
+from kinlab.host.answers import once
 
 # -------- The numbers of a serial arm as the hand formulas read them, and small vector
 #          helpers

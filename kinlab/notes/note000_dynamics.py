@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from kinlab.formulas.record import Printed, formula, once
+from kinlab.formulas.record import Printed, formula
+from kinlab.host.answers import once
 from kinlab.notes import arm as mass
 from kinlab.notes.arm import (
     Arm,

@@ -6,6 +6,7 @@ module              what it holds
 ``arms``            The arm as a line, with its ellipses
 ``canvas``          Figures and files, and the one place that imports matplotlib
 ``curves``          Curves in joint space and along paths
+``drives``          Torque over speed of the drives of an arm, with the limits of each motor
 ``fivebar``         Pictures of a five-bar: its workspace in one mode, a cycle, and what sizing
                     rests on
 ``fivebar_design``  Pictures of designed five-bars: one design over its rectangle, and a Pareto

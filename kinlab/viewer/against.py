@@ -16,7 +16,7 @@ from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, joint_paths, reach
-from kinlab.viewer.arm_page import joint_json, origins
+from kinlab.viewer.arm_page import DIRECTION, MARGIN, joint_json, origins
 from kinlab.viewer.dh_picture import Carriers
 from kinlab.viewer.scene import Scene
 from kinlab.viewer.shapes import look_at
@@ -87,7 +87,7 @@ def _draw_over(scene: Scene, other: Robot, name: str) -> None:
         ]
     seen = [origins(scene.robot, scene.q)]
     seen += [origins(other, scene.q)] if follows else []
-    camera = look_at(np.concatenate(seen), np.array([1.0, -1.3, 0.7]), 0.2 * reach(scene.robot))
+    camera = look_at(np.concatenate(seen), DIRECTION, MARGIN * reach(scene.robot))
     scene._spec["camera"] = camera.as_json()
     scene._spec["groups"]["reference"] = [root]
     scene._spec["shown"].append("reference")

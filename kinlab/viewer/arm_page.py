@@ -18,6 +18,12 @@ from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
 from kinlab.viewer.shapes import add_ellipsoids, empty_spec, look_at, set_stage
 
+DIRECTION = np.array([1.0, -1.3, 0.7])
+"""From an arm towards the camera."""
+
+MARGIN = 0.2
+"""What is seen around the joints, over the arm's reach."""
+
 _ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
 
 
@@ -35,7 +41,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     """
     size = reach(robot)
     set_stage(vis, size)
-    camera = look_at(origins(robot, q), np.array([1.0, -1.3, 0.7]), 0.2 * size)
+    camera = look_at(origins(robot, q), DIRECTION, MARGIN * size)
     spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
     try:

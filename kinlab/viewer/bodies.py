@@ -1,6 +1,7 @@
 """The bodies of a URDF that can be drawn: read strictly, meshes tried one by one.
 
-What cannot be read is left out with a note that names it; a rod stands in its place.
+What cannot be read is left out with a note that names it; a rod stands in its place where the
+joint carries nothing else.
 """
 
 from __future__ import annotations
@@ -43,6 +44,7 @@ class DrawnBodies:
         self.notes: list[str] = []
         self.bare: set[int] = set()
         self._robot, self._folders, self._meshes = robot, folders, meshes
+        self._left_out: list[tuple[str, int | None]] = []
         self._tried: dict[tuple[str, str], str] = {}
         self._loader = _loader()
         place = f"robot {robot.name!r}"
@@ -63,8 +65,15 @@ class DrawnBodies:
         except (ValueError, RuntimeError) as problem:
             reason = " ".join(str(problem).split())[:200]
             self.notes.append(f"the bodies cannot be drawn ({reason}); rods stand for them")
-        if not len(self.visuals.geometryObjects):
+        drawn = {int(body.parentJoint) for body in self.visuals.geometryObjects}
+        if not drawn:
             self.bare = set(range(robot.model.njoints))
+        for reason, joint in self._left_out:
+            if joint is not None and joint not in drawn:
+                self.bare.add(joint)
+            stands = joint is not None and joint in self.bare - {0}
+            told = "a rod stands for it" if stands else "it is left out"
+            self.notes.append(f"{reason}; {told}")
 
     def _add(self, link: Any, visual: Any, paints: dict[str, Any]) -> None:
         """Writes one visual into our own document, or a note why not."""
@@ -77,12 +86,13 @@ class DrawnBodies:
             xyz, rpy = read_origin(visual, where)
             shape = self._geometry(visual, where)
             if shape is None:
-                self._leave_out(name)
+                joint = self._joint(name)
+                if joint is not None:
+                    self.bare.add(joint)
                 return
             color = _color(visual, paints, where)
         except UrdfError as problem:
-            self._leave_out(name)
-            self.notes.append(f"{problem}; a rod stands for it")
+            self._left_out.append((str(problem), self._joint(name)))
             return
         words = {"xyz": xyz, "rpy": rpy}
         etree.SubElement(
@@ -94,11 +104,12 @@ class DrawnBodies:
             etree.SubElement(paint, "color", rgba=color)
         link.append(made)
 
-    def _leave_out(self, link: str) -> None:
+    def _joint(self, link: str) -> int | None:
+        """The joint that carries a link, 0 for the base; None of a link the engine dropped."""
         model = self._robot.model
-        if model.existFrame(link, pin.FrameType.BODY):
-            frame = model.frames[model.getFrameId(link, pin.FrameType.BODY)]
-            self.bare.add(int(frame.parentJoint))
+        if not model.existFrame(link, pin.FrameType.BODY):
+            return None
+        return int(model.frames[model.getFrameId(link, pin.FrameType.BODY)].parentJoint)
 
     def _geometry(self, visual: Any, where: str) -> Any:
         """The shape with its numbers rewritten; None for a mesh that is not to be drawn.

@@ -236,6 +236,15 @@ const kinlab = (() => {
     return value.toExponential(Math.max(0, digits - 2));
   }
 
+  // A number with so many places; what rounds to zero has no sign.
+  function fixed(value, places) {
+    const text = value.toFixed(places);
+    return Number(text) === 0 ? text.replace("-", "") : text;
+  }
+
+  // The same without idle zeros: 90, 1.5, 0.002.
+  const brief = (value, places) => String(Number(fixed(value, places)));
+
   const node = (path) => viewer.scene_tree.find(path.split("/").filter((x) => x)).object;
 
   function place(path, T) {
@@ -243,7 +252,8 @@ const kinlab = (() => {
     viewer.handle_command({ type: "set_transform", path, matrix: columns });
   }
 
-  const degrees = (angle) => `${number((angle * 180) / Math.PI)}°`;
+  const degrees = (angle) => `${brief((angle * 180) / Math.PI, 3)}°`;
+  const metres = (length) => (Math.abs(length) < 5e-7 ? "0" : number(length));
 
   function dhValues(row, q) {
     const move = row.sign * q[row.joint];
@@ -294,8 +304,8 @@ const kinlab = (() => {
         update(label, q) {
           const { d } = dhValues(row, q);
           label.at = [0, 0, d / 2];
-          const text = `<b class="z">d<sub>${row.name}</sub> = ${number(d)}</b>`;
-          write(label, Math.abs(d) < 1e-9 ? "" : text);
+          const text = `<b class="z">d<sub>${row.name}</sub> = ${metres(d)}</b>`;
+          write(label, metres(d) === "0" ? "" : text);
         },
       },
     ];
@@ -325,6 +335,29 @@ const kinlab = (() => {
     root.traverse((object) => {
       if (!Array.isArray(object.material)) return;
       object.material = object.material.map((material) => [material].flat()[0]);
+    });
+  }
+
+  // A mesh file may leave out its normals, or give zeros for them, which no light falls on.
+  function mendNormals(root) {
+    root.traverse(({ geometry }) => {
+      const normal = geometry && geometry.attributes && geometry.attributes.normal;
+      if (!normal) return;
+      for (let i = 0; i < normal.count; i++) {
+        if (Math.hypot(normal.getX(i), normal.getY(i), normal.getZ(i)) > 1e-6) continue;
+        geometry.computeVertexNormals();
+        return;
+      }
+    });
+  }
+
+  // Frames are seen through the bodies they are in.
+  function bringForward(path) {
+    node(path).traverse((object) => {
+      if (!object.material) return;
+      object.renderOrder = 1;
+      object.material.depthTest = false;
+      object.material.transparent = true; // drawn after all that is solid
     });
   }
 
@@ -387,7 +420,7 @@ const kinlab = (() => {
       model.place(q);
       sliders.forEach(({ range, box }, i) => {
         range.value = q[i];
-        if (document.activeElement !== box) box.value = shown(model.joints[i], q[i]).toFixed(1);
+        if (document.activeElement !== box) box.value = fixed(shown(model.joints[i], q[i]), 1);
       });
       report.stopped.textContent = stopped;
       report.stopped.hidden = !stopped;
@@ -401,8 +434,8 @@ const kinlab = (() => {
       const at = origin(T);
       const { sigmaMin, kappa, det } = metrics(model.task(state.q));
       const coordinates = spec.planar ? at.slice(0, 2) : at;
-      report.position.textContent = coordinates.map((x) => x.toFixed(4)).join("  ");
-      report.angles.textContent = angles(T).map((x) => x.toFixed(1)).join("  ");
+      report.position.textContent = coordinates.map((x) => fixed(x, 4)).join("  ");
+      report.angles.textContent = angles(T).map((x) => fixed(x, 1)).join("  ");
       report.det.textContent = det === null ? "J is not square" : number(det);
       report.sigma.textContent = number(sigmaMin);
       report.kappa.textContent = number(kappa);
@@ -415,7 +448,7 @@ const kinlab = (() => {
       for (const [i, row] of spec.dh.entries()) {
         const { theta, d } = dhValues(row, state.q);
         report.dh[i].theta.textContent = degrees(theta);
-        report.dh[i].d.textContent = number(d);
+        report.dh[i].d.textContent = metres(d);
       }
     }
 
@@ -564,8 +597,8 @@ const kinlab = (() => {
     function dhTable() {
       report.dh = spec.dh.map((row, i) => {
         const [theta, d] = [element("td"), element("td")];
-        const fixed = [row.name, number(row.a), degrees(row.alpha)];
-        const cells = fixed.map((x) => element("td", {}, x));
+        const still = [row.name, metres(row.a), degrees(row.alpha)];
+        const cells = still.map((x) => element("td", {}, x));
         const tr = element("tr", { onclick: () => showRow(String(i)) }, ...cells, d, theta);
         return { line: tr, theta, d };
       });
@@ -636,12 +669,13 @@ const kinlab = (() => {
     report.stopped.hidden = true;
     panel.append(
       element("h1", {}, spec.title),
-      element("small", { class: "subtitle", title: spec.subtitle }, spec.subtitle),
+      element("small", { class: "subtitle", title: spec.subtitle,
+        onclick: (event) => event.target.classList.toggle("whole") }, spec.subtitle),
       report.ended,
       ...spec.notes.map((text) => element("div", { class: "warning" }, text)),
       ...animationPanel(),
       element("h2", {}, "Joints"),
-      ...model.joints.map(slider),
+      element("div", { id: "joints" }, ...model.joints.map(slider)),
       report.stopped,
       element("div", { class: "buttons" },
         ...Object.entries(spec.poses).map(([name, q]) => poseButton(name, q))),
@@ -658,9 +692,18 @@ const kinlab = (() => {
       ...dhTable(),
     );
     mendMaterials(viewer.scene);
+    mendNormals(viewer.scene);
+    for (const path of spec.groups.frames || []) bringForward(path);
     for (const group of spec.shown) show(group, true);
 
-    const [x, y, z] = spec.camera.position, target = spec.camera.target;
+    // meshcat takes the window's height for the picture's
+    const resize = viewer.set_3d_pane_size.bind(viewer);
+    viewer.set_3d_pane_size = (width, height = viewer.dom_element.offsetHeight) =>
+      resize(width, height);
+    viewer.set_3d_pane_size();
+    // the field of view is the height's; in a narrow picture the width must hold everything
+    const target = spec.camera.target, back = Math.max(1, 1 / viewer.camera.aspect);
+    const [x, y, z] = spec.camera.position.map((p, i) => target[i] + back * (p - target[i]));
     viewer.camera.fov = spec.camera.fov;
     viewer.camera.position.set(x, z, -y); // meshcat's world is z up, three.js is y up
     viewer.controls.target.set(target[0], target[2], -target[1]);

@@ -40,6 +40,11 @@ class Label:
         }
 
 
+def brief(value: float, places: int) -> str:
+    """A number for a label: four digits, no more places than given, no sign before zero."""
+    return f"{round(float(f'{value:.4g}'), places) + 0.0:g}"
+
+
 # -------- Where to look from, and how large to draw, so that the mechanism fills the
 #          picture
 

@@ -15,7 +15,7 @@ import kinlab as kl
 from kinlab.check.targets import tasks
 from kinlab.check.together import Helpers, run_together
 from kinlab.engine import lagrange
-from kinlab.formulas.record import answers_kept, once
+from kinlab.host.answers import answers_kept, once
 
 SAMPLES, SEED = 7, 3
 

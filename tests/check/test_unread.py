@@ -57,9 +57,9 @@ def test_every_file_that_can_be_read_is_judged(folder):
 def test_the_terminal_lists_them_too(folder):
     result = run("a.toml", "b.toml", "d.py")
     assert result.exit_code == 2
-    lines = result.stdout.splitlines()
-    below = lines[lines.index("NOT JUDGED:") + 1 :]
-    assert below[0].startswith("  b.toml: ") and below[1].startswith("  d.py: second: ")
+    told = [line for line in result.stderr.splitlines() if line]
+    assert told[0].startswith("kinlab: not judged: b.toml: ")
+    assert told[1].startswith("kinlab: not judged: d.py: second: ") and len(told) == 2
     assert "first" in result.stdout and "table:fk" in result.stdout
 
 

@@ -16,6 +16,7 @@ from kinlab.drives.motors import Motor, catalogue
 from kinlab.drives.waypoints import Cycle, Waypoint, adept, read_cycle
 from kinlab.errors import (
     InertiaError,
+    KinlabWarning,
     MotorError,
     NameUnknownError,
     OptionError,
@@ -216,11 +217,13 @@ def test_bars_without_mass_are_asked_for():
         lambda five, **how: five.size_cycle(CYCLE, **how),
         lambda five, **how: five.size_servo((-0.1, 0.1, -0.6, -0.5), 1, 5, "SGMAH-08A", 20, **how),
     ):
-        with pytest.raises(InertiaError, match=r"cranks and rods have no mass.*massless=True"):
+        with pytest.raises(InertiaError, match=r"cranks and rods have NO MASS.*massless=True"):
             call(bare)
-        with pytest.raises(InertiaError, match="the rods have no mass, .*give rod_mass"):
+        with pytest.raises(InertiaError, match="the rods have NO MASS.*give rod_mass"):
             call(bare.with_masses(crank=1.0))
-        assert call(bare, massless=True).fits and call(bare.with_masses(1.0, 0.4)).fits
+        with pytest.warns(KinlabWarning, match="NO MASS"):
+            assert call(bare, massless=True).fits
+        assert call(bare.with_masses(1.0, 0.4)).fits
     uniform = bare.with_masses(crank=1.0, rod=0.4)
     assert uniform.rod_com.tolist() == [0.25, 0.25]
     assert uniform.rod_inertia[0] == pytest.approx(0.4 * 0.25 / 12)
@@ -254,7 +257,7 @@ def test_the_command_with_own_motors_gears_and_cycle(monkeypatch, capsys, tmp_pa
     assert code == 0 and "cycle adept" in out
     for arguments, error, message in [
         (("doggo_leg", "--cycle", "adept", "--v-max", 1, "--a-max", 1, "--payload", 1), InertiaError,
-         "have no mass"),
+         "have NO MASS"),
         (("isotropic", "--cycle", "adapt"), NameUnknownError, "no cycle 'adapt'"),
         (("isotropic", "--cycle", "adept"), OptionError, "give --v-max and --a-max"),
         (("isotropic",), OptionError, "give --v-max and --a-max"),

@@ -86,7 +86,7 @@ CALLS: Calls = {
         "robot": ("robot", "puma560"), "q": ("array", [0.1, 0.3, -0.8, 0.4, 0.7, 0.1]),
         "task": ("task", "pose"), "length": ("positive", 0.5)}),
     "nearest_singularity": ("nearest_singularity", _arm(
-        q=_q, task=_task, boxes=("count", 50), seed=_seed)),
+        q=_q, task=_task, boxes=("count", 50), points=("count", 4), seed=_seed)),
     "workspace_section": ("workspace_section", {
         "robot": ("robot", "stanford"), "step": ("positive", 0.5), "seed": _seed}),
     "find_singularities": ("find_singularities", _arm(

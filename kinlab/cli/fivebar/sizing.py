@@ -1,4 +1,4 @@
-"""Commands about five-bars: list, analyse, size, export."""
+"""The command fivebar size: servos for a workspace, or for a cycle."""
 
 from __future__ import annotations
 
@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.fivebar_design import design
 from kinlab.cli.screen import Screen, fine_table, screen, styled
-from kinlab.errors import OptionError
-from kinlab.tolerances import TOLERANCES
+from kinlab.errors import OptionError, already_said
 
 if TYPE_CHECKING:
     from kinlab.drives.fitting import MotorFit
@@ -22,138 +20,10 @@ if TYPE_CHECKING:
     from kinlab.fivebar.servo import ServoSizing
     from kinlab.fivebar.workspace import Rectangle
 
-NAME = Annotated[str, typer.Argument(help="A name from `kinlab fivebar list`, or a .toml file.")]
-MODE = Annotated[str, typer.Option(help="Working mode: signs of u1 x w1 and u2 x w2, as in -+.")]
-ASSEMBLY = Annotated[int, typer.Option(help="Assembly mode: sign of w1 x w2, 1 or -1.")]
-PICTURE = Annotated[Path | None, typer.Option(help="Write pictures: a .png, .svg or .pdf file.")]
-AT = Annotated[
-    tuple[float, float] | None, typer.Option(help="A place of the tool, m.", metavar="X Y")
-]
-BOX = Annotated[
-    tuple[float, float, float, float] | None,
-    typer.Option(help="Workspace, m.", metavar="X0 X1 Y0 Y1"),
-]
+from kinlab.cli.fivebar.words import BOX, MODE, NAME, PICTURE, pair
 
 _CONDITION = 3.0
 """Bound on the condition number of the workspace that `size` takes where none is given."""
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the commands of this file under ``kinlab fivebar``."""
-    group = typer.Typer(
-        help="Five-bar linkages: analyse, size the servos, export.",
-        no_args_is_help=True,
-        context_settings={"help_option_names": ["-h", "--help"]},
-    )
-    group.command("list")(list_fivebars)
-    group.command("analyse")(analyse)
-    group.command("size")(size)
-    group.command("servo", hidden=True)(size)
-    group.command("design")(design)
-    group.command("export")(export)
-    app.add_typer(group, name="fivebar")
-
-
-def list_fivebars() -> None:
-    """List the shipped five-bars and servomotors."""
-    from kinlab.drives.motors import catalogue
-    from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.files import presets
-
-    console = screen(highlight=False)
-    table = fine_table("five-bar", "l1, m", "l2, m", "e, m", "payload, kg", left=(0,))
-    for name in presets():
-        one = FiveBar.load(name)
-        table.add_row(name, _pair(one.l1), _pair(one.l2), f"{one.e:.4g}", f"{one.payload:g}")
-    console.print(table)
-    columns = {
-        "rated W": "rated_power",
-        "rated N m": "rated_torque",
-        "peak N m": "peak_torque",
-        "max r/min": "max_speed",
-        "rotor kg m²": "rotor_inertia",
-    }
-    table = fine_table("motor", "maker", *columns, left=(0, 1))
-    for motor in catalogue().values():
-        figures = (getattr(motor, column) for column in columns.values())
-        table.add_row(motor.name, motor.maker, *("-" if f is None else f"{f:g}" for f in figures))
-    console.print(table)
-
-
-def analyse(
-    name: NAME,
-    mode: MODE = "-+",
-    assembly: ASSEMBLY = 1,
-    at: AT = None,
-    picture: PICTURE = None,
-) -> None:
-    """Workspace, singularities and isotropic poses; with --at, everything at one place."""
-    from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.arguments import MODES, read_signs
-    from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import workspace_picture
-
-    fivebar, signs = FiveBar.load(name), read_signs(mode)
-    console = screen(highlight=False)
-    about = f": {fivebar.source}" if fivebar.source.strip() else ""
-    console.print(styled((fivebar.name, "bold"), about))
-    console.print(
-        f"l1 {_pair(fivebar.l1)} m, l2 {_pair(fivebar.l2)} m, e {fivebar.e:.6g} m; "
-        f"reachable area {fivebar.reachable_area():.6g} m²"
-    )
-    table = fine_table(
-        "mode", "area w1 x w2 > 0, m²", "area w1 x w2 < 0, m²", "isotropic", left=(0,)
-    )
-    poses = {each: fivebar.isotropic_poses(each) for each in MODES}
-    for each in MODES:
-        areas = (f"{area:.4g}" for area in fivebar.workspace_map(each).area)
-        table.add_row(_signs(each), *areas, str(len(poses[each])))
-    console.print(table)
-    for pose in poses[signs]:
-        place = f"({_fixed(pose.xy[0])}, {_fixed(pose.xy[1])}) m"
-        full = (
-            ", fully (pressure angles 0)" if max(pose.pressure) < TOLERANCES.pressure_angle else ""
-        )
-        console.print(f"isotropic in mode {_signs(signs)}: {place}{full}")
-    circle = fivebar.largest_circle(signs, assembly)
-    box = fivebar.largest_rectangle(signs, assembly)
-    console.print(f"free of singularities in mode {_signs(signs)}, assembly {assembly:+d}:")
-    console.print(
-        f"  largest circle: radius {circle.radius:.6g} m about "
-        f"({_fixed(circle.centre[0])}, {_fixed(circle.centre[1])}) m"
-    )
-    console.print(
-        f"  largest rectangle: x {box.x_min:.6g} to {box.x_max:.6g}, "
-        f"y {box.y_min:.6g} to {box.y_max:.6g} m ({box.area:.6g} m²)"
-    )
-    if at is not None:
-        _print_place(fivebar, at, signs)
-    if picture is not None:
-        save(workspace_picture(fivebar, signs, assembly), picture)
-        console.print(f"wrote {picture}")
-
-
-def _print_place(fivebar: FiveBar, at: tuple[float, float], mode: tuple[int, int]) -> None:
-    import numpy as np
-
-    console = screen(highlight=False)
-    away = fivebar.singularity_distances(at, mode)
-    (kind,) = fivebar.classify(at, mode)
-    console.print(f"at ({at[0]:g}, {at[1]:g}) m, mode {_signs(mode)}: {kind}")
-
-    def degrees(radians: object) -> str:
-        return ", ".join(f"{x:.4g}°" for x in np.atleast_1d(np.degrees(np.asarray(radians))))
-
-    console.print(f"  crank angles {degrees(fivebar.ik(at, mode))}")
-    console.print(f"  passive angles {degrees(fivebar.passive_angles(at, mode))}")
-    console.print(f"  pressure angles {degrees(fivebar.pressure_angles(at, mode))}")
-    console.print(f"  transmission angle {degrees(fivebar.transmission_angle(at, mode))}")
-    console.print(
-        f"  to type I: outer {_pair(away.outer)}, inner {_pair(away.inner)} m; "
-        f"to type II {float(away.type_two):.4g} m (w1 x w2 = {float(away.rods):.4g})"
-    )
-    if kind == "regular":
-        console.print(f"  condition number {float(fivebar.condition_number(at, mode)):.6g}")
 
 
 def size(
@@ -231,19 +101,20 @@ def size(
     if workspace is None:
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
     round_trip = None if cycle is None else _read_cycle(cycle, fivebar, signs, v_max, a_max, box)
-    sizing = fivebar.size_servo(
-        box,
-        v_max or (round_trip.v_max if round_trip else 0.0),
-        a_max or (round_trip.a_max if round_trip else 0.0),
-        motor,
-        gear_ratio,
-        signs,
-        efficiency,
-        motors=motors,
-        gears=pairs,
-        cycle=round_trip,
-        massless=massless,
-    )
+    with already_said():  # it is printed with the figures
+        sizing = fivebar.size_servo(
+            box,
+            v_max or (round_trip.v_max if round_trip else 0.0),
+            a_max or (round_trip.a_max if round_trip else 0.0),
+            motor,
+            gear_ratio,
+            signs,
+            efficiency,
+            motors=motors,
+            gears=pairs,
+            cycle=round_trip,
+            massless=massless,
+        )
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
@@ -298,8 +169,8 @@ def _print_cycle(found: CycleSizing, console: Screen, *, fastest: bool) -> None:
     head = "the fastest cycle of this drive: " if fastest else ""
     console.print(f"{head}cycle {found.cycle.name}: {found.time:.4g} s{stretch}")
     console.print(
-        f"cranks: peak {_pair(demand.peak_torque)} N m, RMS {_pair(demand.rms_torque)} N m, "
-        f"rate {_pair(demand.peak_rate)} rad/s, power {_pair(demand.peak_power)} W; "
+        f"cranks: peak {pair(demand.peak_torque)} N m, RMS {pair(demand.rms_torque)} N m, "
+        f"rate {pair(demand.peak_rate)} rad/s, power {pair(demand.peak_power)} W; "
         f"load inertia {found.load_inertia:.4g} kg m²"
     )
     _print_fits(found.fits, console)
@@ -313,6 +184,8 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
         f"v {sizing.v_max:g} m/s, a {sizing.a_max:g} m/s²"
     )
+    for remark in sizing.remarks:
+        console.print(remark, style="bold yellow", soft_wrap=True)
     table = fine_table("worst over the workspace", "crank 1", "crank 2", left=(0,))
     rows = {
         "crank rate, rad/s": sizing.rate,
@@ -332,8 +205,8 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"sigma in the workspace is {sizing.sigma[0]:.4g} to {sizing.sigma[1]:.4g}"
     )
     console.print(
-        f"pick-and-place cycle of {sizing.path.duration:.4g} s: peak {_pair(cycle.peak_torque)}, "
-        f"RMS {_pair(cycle.rms_torque)} N m, peak power {_pair(cycle.peak_power)} W"
+        f"pick-and-place cycle of {sizing.path.duration:.4g} s: peak {pair(cycle.peak_torque)}, "
+        f"RMS {pair(cycle.rms_torque)} N m, peak power {pair(cycle.peak_power)} W"
     )
     _print_fits(sizing.fits, console)
 
@@ -367,37 +240,3 @@ def _print_fits(fits: tuple[MotorFit, ...], console: Screen) -> None:
     if unstated:
         console.print(f"not judged, for a gearbox does not state it: {', '.join(sorted(unstated))}")
     console.print("inertia: I_L / (j² I_M), which the note wants between 1 and 3")
-
-
-def export(
-    name: NAME,
-    output: Annotated[Path, typer.Option("--output", "-o", help="A .xml (MJCF) or .urdf file.")],
-    at: AT = None,
-    mode: MODE = "-+",
-    assembly: ASSEMBLY = 1,
-) -> None:
-    """Write MJCF with the loop, or URDF with a loop sidecar; joint zero is the pose --at."""
-    from kinlab.fivebar import FiveBar
-    from kinlab.fivebar.arguments import read_signs
-
-    fivebar, signs = FiveBar.load(name), read_signs(mode)
-    place = at or fivebar.largest_circle(signs, assembly).centre
-    for file in fivebar.export(output, place, signs):
-        typer.echo(f"wrote {file}")
-
-
-def _signs(mode: tuple[int, int]) -> str:
-    return "".join("+" if s > 0 else "-" for s in mode)
-
-
-def _pair(values: object) -> str:
-    import numpy as np
-
-    first, second = np.asarray(values, dtype=float)
-    texts = dict.fromkeys((f"{first:.4g}", f"{second:.4g}"))
-    return "/".join(texts)
-
-
-def _fixed(metres: float) -> str:
-    """To a micrometre, without a minus before zero."""
-    return f"{round(metres, 6) + 0.0:.6f}"
