@@ -6,6 +6,7 @@ from . import check as check
 from . import errors as errors
 from . import fivebar as fivebar
 from . import motion as motion
+from . import plots as plots
 from . import tolerances as tolerances
 from . import viewer as viewer
 from .analysis.boundary import planar_boundary as planar_boundary

@@ -178,6 +178,17 @@ def error_sizes(engine: Array, scale: float = 0.0) -> Array:
     return sizes
 
 
+def some_rows(has: tuple[int, ...], wants: tuple[int, ...], name: str) -> str:
+    """What to ask for instead, where answers (N, ...) hold some rows of a quantity."""
+    if len(has) != len(wants) or len(has) < 2 or has[2:] != wants[2:] or "[" in name:
+        return ""
+    rows, of = has[1], wants[1]
+    if not 0 < rows < of:
+        return ""
+    first, last = f"{name}[:{rows}]", f"{name}[{of - rows}:]"
+    return f"the first {rows} of its {of} rows are the quantity {first!r}, the last {last!r}"
+
+
 def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
     values = np.asarray(answer)
     if values.dtype.kind not in "iuf":
@@ -186,9 +197,10 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
             "numbers"
         )
     if values.shape != engine.shape:
+        meant = some_rows(values.shape, engine.shape, quantity.name)
         raise AnswerShapeError(
             f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
-            f"shape {engine.shape[1:]} ({quantity.about})"
+            f"shape {engine.shape[1:]} ({quantity.about}){meant and '; '}{meant}"
         )
     result: Array = values.astype(float)
     return result

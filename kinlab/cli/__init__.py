@@ -12,7 +12,8 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar/``           Commands about five-bars: list, analyse, size, design, export
 ``ik``                 Command ``ik``: one pose from the command line
-from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
+``mark``               Command ``mark``: a class's submissions, judged
+``motion``             Command ``motion``: a motion of an arm, checked, drawn, saved
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
@@ -52,6 +53,9 @@ _GROUPS = (
     view,
 )
 
+_OLDER = {"tip": "tool"}
+"""What options were called before, which is still understood."""
+
 _IMPORTING = "<frozen importlib._bootstrap>"
 """The file of the frames in which Python imports a module."""
 
@@ -60,7 +64,10 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        "token_normalize_func": lambda word: _OLDER.get(word, word),
+    },
 )
 
 

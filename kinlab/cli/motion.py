@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.robots import TIP
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def motion(
         list[str],
         typer.Argument(help='Joint positions in order, rad and m, "0, pi/4, -0.5" each.'),
     ],
-    tip: TIP = None,
+    tool: TOOL = None,
     law: Annotated[
         str, typer.Option(help="quintic, trapezoid, spline, jerk (ruckig), optimal (toppra).")
     ] = "quintic",
@@ -53,7 +53,7 @@ def motion(
     from kinlab.model.library import load
     from kinlab.motion import cartesian, check, joint
 
-    robot = load(name, tip)
+    robot = load(name, tool)
     rows = [[parse_number(word.strip()) for word in point.split(",")] for point in points]
     if len({len(row) for row in rows}) > 1:
         raise OptionError("motion: the points have different numbers of joints")

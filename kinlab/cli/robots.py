@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from kinlab.model.robot import Robot
 
 NAME = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv/.urdf file.")]
-TIP = Annotated[str | None, typer.Option("--tip", help="Link that is the tool (URDF only).")]
+TOOL = Annotated[
+    str | None,
+    typer.Option("--tool", help="Link that is the tool (URDF; a DH table has one of its own)."),
+]
 OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
 
 
@@ -56,13 +59,13 @@ def list_robots() -> None:
     screen().print(table)
 
 
-def info(name: NAME, tip: TIP = None) -> None:
+def info(name: NAME, tool: TOOL = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
     from kinlab.model.extract import as_table
     from kinlab.model.library import load
     from kinlab.model.robot import remarks
 
-    robot = load(name, tip)
+    robot = load(name, tool)
     console = screen()
     gravity = " ".join(f"{g:g}" for g in robot.model.gravity.linear)
     mass = sum(inertia.mass for inertia in list(robot.model.inertias)[1:])
@@ -87,19 +90,19 @@ def info(name: NAME, tip: TIP = None) -> None:
     console.print("frames: " + ", ".join(dict.fromkeys(frames)), highlight=False, soft_wrap=False)
 
 
-def urdf(name: NAME, output: OUTPUT = None, tip: TIP = None) -> None:
+def urdf(name: NAME, output: OUTPUT = None, tool: TOOL = None) -> None:
     """Print the URDF of a robot, or write it to a file."""
     from kinlab.model.library import load
 
-    _give(load(name, tip).urdf, output)
+    _give(load(name, tool).urdf, output)
 
 
-def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
+def dh(name: NAME, tool: TOOL = None, output: OUTPUT = None) -> None:
     """Print the modified DH table of a robot, or write it as TOML with -o."""
     from kinlab.model.extract import to_dh
     from kinlab.model.library import load
 
-    table = to_dh(load(name, tip))
+    table = to_dh(load(name, tool))
     if output is not None:
         _give(table.to_toml(), output)
         return

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.robots import TIP
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
 
 if TYPE_CHECKING:
@@ -30,7 +30,7 @@ def register(app: typer.Typer) -> None:
 
 def view(
     name: NAME,
-    tip: TIP = None,
+    tool: TOOL = None,
     q: Annotated[
         str | None,
         typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, 30 deg". Five-bar: cranks.'),
@@ -65,7 +65,7 @@ def view(
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
-    page = _open(name, tip, q, animate, meshes, against, branches)
+    page = _open(name, tool, q, animate, meshes, against, branches)
     for note in page.notes:
         echo(f"note: {note}", err=True)
     if save is not None:
@@ -77,7 +77,7 @@ def view(
 
 def _open(
     name: str,
-    tip: str | None,
+    tool: str | None,
     q: str | None,
     animate: str | None,
     meshes: bool,
@@ -97,15 +97,15 @@ def _open(
 
         if animate is not None:
             raise OptionError("view --against: leave --animate out; the sliders move both arms")
-        return against_scene(name, against, start, tool=tip)
+        return against_scene(name, against, start, tool=tool)
     if holds_five_bar(name):
-        if tip is not None:
-            raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
+        if tool is not None:
+            raise OptionError(f"{name}: a five-bar has one tool; leave --tool {tool!r} out")
         return _open_five_bar(name, start, animate)
     try:
-        robot = load(name, tip)
+        robot = load(name, tool)
     except NameUnknownError as problem:
-        if tip is not None or "/" in name:
+        if tool is not None or "/" in name:
             raise
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)

@@ -23,6 +23,7 @@ from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.engine.dynamics import inverse_dynamics, mass_matrix
 from kinlab.errors import MotorError, OptionError, StructureError
+from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia
 
@@ -47,7 +48,7 @@ class JointMotion(Protocol):
 
 
 @dataclass(frozen=True)
-class ArmSizing:
+class ArmSizing(Told):
     """What a motion asks of the drives of an arm, joint by joint.
 
     Attributes:

@@ -89,7 +89,7 @@ class Introduction:
 
         body = "".join(line("td", row) for row in self.rows[:MOST_ROWS])
         head = line("th", self.columns)
-        table = f'<table style="border-collapse: collapse; margin: 0.4em 0">{head}{body}</table>'
+        table = f"<table>{head}{body}</table>"
         return Markup(table)
 
     @property
@@ -114,6 +114,14 @@ class Answer:
 
     def _repr_html_(self) -> str:
         return self.introduction().html()
+
+
+class Told:
+    """A result that says itself in its own ``__str__``, the verdict in the first line."""
+
+    def _repr_html_(self) -> str:
+        verdict, *lines = str(self).splitlines()
+        return Introduction(verdict, tuple(line.removeprefix("  ") for line in lines)).html()
 
 
 class Rows(Answer):
@@ -146,7 +154,9 @@ class Rows(Answer):
         try:
             import pandas as pd
         except ImportError:
-            raise MissingExtraError("to_dataframe needs pandas: pip install pandas") from None
+            raise MissingExtraError(
+                "to_dataframe needs pandas: pip install 'kinlab[dataframes]'"
+            ) from None
         return pd.DataFrame(self.columns())
 
 

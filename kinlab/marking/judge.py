@@ -295,11 +295,13 @@ def _places(
     for entry, written in file.formulas.items():
         plain, index = split_name(quantity_of(entry, robot.table))
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
-        right = best.corrected.get(label) if best else None
+        right = best.corrected.get(entry, best.corrected.get(label)) if best else None
         paths: frozenset[Any] = frozenset()
         if right:
-            meaning = {n: _meaning(n, file, robot, entry) for n in tree.names(written)}
-            paths, _ = differences(written, parse(right), meaning)
+            formula = parse(right)  # in the writer's names or in the robot's
+            used = tree.names(written) | tree.names(formula)
+            meaning = {n: _meaning(n, file, robot, entry) for n in used}
+            paths, _ = differences(written, tree.renamed(formula, meaning), meaning)
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
             places.append(f"{shown}: look at {' and '.join(pieces)}" if pieces else shown)

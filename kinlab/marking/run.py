@@ -17,7 +17,7 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
-from kinlab.arrays import whole
+from kinlab.arrays import shown, whole
 from kinlab.errors import FileError, KinlabError, OptionError, near
 from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
@@ -72,10 +72,10 @@ def mark(
     level = feedback or read.feedback
     if level not in FEEDBACK:
         raise OptionError(f"feedback is {level!r}; {near(str(level), FEEDBACK)}")
+    count = whole(workers, "workers") if workers is not None else (os.cpu_count() or 1)
     if isinstance(submissions, Mapping):
         done = [_of_mapping(read, who, given, level) for who, given in submissions.items()]
     else:
-        count = whole(workers, "workers") if workers is not None else (os.cpu_count() or 1)
         done = _of_files(read, submissions, output, level, run_python, count, progress)
     marks = Marks(read, tuple(_with_notes(done)), level)
     if output is not None:
@@ -103,6 +103,17 @@ def _of_mapping(sheet: Sheet, student: Any, given: Mapping[str, Any], level: str
     return _finished(who, submission, outcomes, submission.note, slug_of(who))
 
 
+def _paths(submissions: Any) -> list[Path]:
+    try:
+        if not isinstance(submissions, (bytes, bytearray)):
+            return [Path(path) for path in submissions]
+    except TypeError:
+        pass
+    raise FileError(
+        f"submissions is {shown(submissions)}; give a folder, paths, or answers by student"
+    )
+
+
 def _of_files(
     sheet: Sheet,
     submissions: str | Path | Sequence[str | Path],
@@ -116,7 +127,7 @@ def _of_files(
         root: Path | None = Path(submissions)
         paths = found_in(submissions)
     else:
-        root, paths = None, [Path(path) for path in submissions]
+        root, paths = None, _paths(submissions)
     records = Path(output) / _RECORDS if output is not None else None
     if records is not None:
         try:

@@ -80,7 +80,7 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
     data = read_toml(text, where, TableError)
     place = f"table {data['name']!r}" if isinstance(data.get("name"), str) else where
     if "l1" in data:
-        raise TableError(f"{where}: a five-bar, not a serial arm: kinlab fivebar {where}")
+        raise TableError(f"{where}: a five-bar, not a serial arm: kinlab fivebar analyse {where}")
     for key in data:
         if key not in _TABLE_KEYS:
             raise _unknown_column(key, _TABLE_KEYS, place)

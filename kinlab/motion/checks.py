@@ -21,6 +21,7 @@ from kinlab.arrays import Array
 from kinlab.engine.dynamics import inverse_dynamics
 from kinlab.errors import StructureError
 from kinlab.fast.stacks import fk
+from kinlab.host.introductions import Told
 from kinlab.inverse.branches import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -54,7 +55,7 @@ class Finding:
 
 
 @dataclass(frozen=True, eq=False)
-class MotionCheck:
+class MotionCheck(Told):
     """What :func:`check` found.
 
     Attributes:

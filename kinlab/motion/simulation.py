@@ -25,6 +25,7 @@ from kinlab.errors import OptionError, StateError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar import simulation as fivebar_simulation
 from kinlab.fivebar.linkage import as_mechanism
+from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot, require_inertia, scratch
 from kinlab.motion.record import even_times
@@ -38,7 +39,7 @@ _REST = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
-class Simulation:
+class Simulation(Told):
     """A simulated motion, K samples.
 
     Attributes:

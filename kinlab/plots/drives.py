@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.drives.arm import ArmSizing
+from kinlab.errors import OptionError
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, figure_text, new_figure
 
 
-def torque_speed_picture(sizing: ArmSizing) -> Any:
+def torque_speed(sizing: ArmSizing, ax: Any = None) -> Any:
     """The motion of each shaft over speed and torque, inside what its motor allows.
 
     The drive is the first of each joint's list. Filled: what the motor may do for a while, up to
@@ -20,18 +21,25 @@ def torque_speed_picture(sizing: ArmSizing) -> Any:
 
     Args:
         sizing: of :func:`kinlab.size_servos`.
+        ax: axes of one figure, as many as joints; a new figure if left out.
 
     Returns:
         The first of the axes.
 
     Raises:
+        OptionError: too few axes.
         MissingExtraError: matplotlib is not installed.
     """
     count = len(sizing.joints)
     columns = min(3, count)
     rows = -(-count // columns)
-    figure = new_figure((3.9 * columns, 3.1 * rows + 0.6))
-    grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
+    given = (
+        new_figure((3.9 * columns, 3.1 * rows + 0.6)).subplots(rows, columns) if ax is None else ax
+    )
+    grid = np.ravel(given)
+    if len(grid) < count:
+        raise OptionError(f"ax: {len(grid)} axes; the arm has {count} joints")
+    figure = grid[0].figure
     speeds, torques = sizing.at_shafts()
     for joint, axes in enumerate(grid):
         if joint >= count:

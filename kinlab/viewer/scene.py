@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -12,9 +14,6 @@ from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.model.robot import Robot
-from kinlab.motion.checks import check
-from kinlab.motion.record import Motion
-from kinlab.motion.simulation import Simulation
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
@@ -23,6 +22,10 @@ from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
 from kinlab.viewer.page import COLORS, Page, one_pose
 from kinlab.viewer.shapes import look_at
 from kinlab.viewer.static_page import new_scene
+
+if TYPE_CHECKING:
+    from kinlab.motion.record import Motion
+    from kinlab.motion.simulation import Simulation
 
 _SEEN = 60
 """Poses of a motion that the camera is placed by."""
@@ -106,6 +109,9 @@ class Scene(Page):
         Raises:
             StateError: a motion of another number of joints.
         """
+        from kinlab.motion.checks import check  # numba, which other pages do without
+        from kinlab.motion.simulation import Simulation
+
         rows = self._joints(motion.q)
         tool = fk(self.robot, rows)[:, :3, 3]
         if np.ptp(tool, axis=0).max() > 0.0:

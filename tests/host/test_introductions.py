@@ -172,7 +172,17 @@ def test_long_tables_are_counted():
 
 def test_without_pandas_the_message_says_how(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(MissingExtraError, match="pip install pandas"):
+    with pytest.raises(MissingExtraError, match=r"kinlab\[dataframes\]"):
         ANSWERS["IKBranches"][0].to_dataframe()
     with pytest.raises(FileError, match="cannot be written"):
         ANSWERS["IKBranches"][0].to_csv(tmp_path / "no" / "rows.csv")
+
+
+def test_what_says_itself_is_shown_in_notebooks_too():
+    motion = kl.motion.joint(ARM, [[0.0] * 6, [0.2] * 6])
+    checked = kl.motion.check(ARM, motion)
+    moved = kl.simulate("planar2r", [0.1, 0.2], duration=0.05)
+    for answer in (checked, moved):
+        page = Tags()
+        page.feed(answer._repr_html_())
+        assert page.text.startswith(str(answer).splitlines()[0])

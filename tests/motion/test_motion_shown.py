@@ -13,7 +13,7 @@ from console import kinlab as run
 import kinlab as kl
 from kinlab.errors import KinlabError, OptionError
 from kinlab.plots.canvas import save
-from kinlab.plots.drives import torque_speed_picture
+from kinlab.plots.drives import torque_speed
 from kinlab.viewer import show
 from kinlab.viewer.scene import Scene
 
@@ -78,9 +78,9 @@ def test_bad_lines(words, says):
 
 def test_the_picture_frames_what_fails(tmp_path):
     weak = kl.size_servos(ELBOW, MOTION, "SGMAH-A3A", gear_ratio=3.0)
-    axes = torque_speed_picture(weak)
+    axes = torque_speed(weak)
     assert "fails: rated torque" in axes.get_title() or "fails: peak torque" in axes.get_title()
-    strong = torque_speed_picture(kl.size_servos(ELBOW, MOTION))
+    strong = torque_speed(kl.size_servos(ELBOW, MOTION))
     assert "least margin" in strong.get_title()
     assert save(strong, tmp_path / "drives.png").stat().st_size > 10_000
 

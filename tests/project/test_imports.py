@@ -82,7 +82,7 @@ def undeclared(trees: dict[str, ast.Module], required: set[str], optional: set[s
 REQUIRED = declared(PROJECT["dependencies"])
 EXTRAS = {
     one
-    for name in ("plots", "dask", "motion")
+    for name in ("plots", "dask", "motion", "dataframes")
     for one in declared(PROJECT["optional-dependencies"][name])
 }
 

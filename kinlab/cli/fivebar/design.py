@@ -99,7 +99,7 @@ def design(
         found.fivebar.save(output)
         console.print(f"wrote {output}")
     if picture is not None:
-        from kinlab.plots.fivebar_design import design_picture, front_picture
+        from kinlab.plots.designs import design_picture, front_picture
 
         save(front_picture(front) if pareto is not None else design_picture(found), picture)
         console.print(f"wrote {picture}")

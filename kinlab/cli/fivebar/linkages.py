@@ -52,8 +52,8 @@ def analyse(
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.arguments import MODES, read_signs
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import workspace_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
@@ -91,7 +91,7 @@ def analyse(
     if at is not None:
         _print_place(fivebar, at, signs)
     if picture is not None:
-        save(workspace_picture(fivebar, signs, assembly), picture)
+        save(mechanisms.fivebar(fivebar, signs, assembly), picture)
         console.print(f"wrote {picture}")
 
 

@@ -64,8 +64,8 @@ def size(
     """Size the servos for a workspace, a speed and an acceleration; or for a cycle (--cycle)."""
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.arguments import read_signs
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     fivebar = fivebar.with_masses(crank_mass, rod_mass, payload)
@@ -94,7 +94,7 @@ def size(
             )
         _print_cycle(done, console, fastest=fastest)
         if picture is not None:
-            save(cycle_picture(fivebar, done), picture)
+            save(mechanisms.fivebar_cycle(fivebar, done), picture)
             console.print(f"wrote {picture}")
         return
     box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
@@ -118,8 +118,8 @@ def size(
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
-        save(cycle_picture(fivebar, sizing), picture)
-        save(gain_picture(fivebar, sizing), gains)
+        save(mechanisms.fivebar_cycle(fivebar, sizing), picture)
+        save(mechanisms.fivebar_gains(fivebar, sizing), gains)
         console.print(f"wrote {picture} and {gains}")
 
 

@@ -10,7 +10,7 @@ from kinlab.fivebar.design.front import DesignFront
 from kinlab.fivebar.design.goals import GOALS
 from kinlab.fivebar.design.synthesis import FiveBarDesign
 from kinlab.plots.canvas import BLUE, GREY, new_axes, new_figure
-from kinlab.plots.fivebar import bars, box_of
+from kinlab.plots.mechanisms import bars, box_of
 
 
 def design_picture(design: FiveBarDesign, resolution: int = 121) -> Any:
