@@ -80,9 +80,10 @@ class Robot(Answer):
             for limits in (self.model.lowerPositionLimit, self.model.upperPositionLimit)
         )
         kinds = tuple(_kind(joint) for joint in list(self.model.joints)[1:])
-        stroke = np.maximum(10.0 * (upper - lower), 1.0)
-        slack = np.where([kind == "revolute" for kind in kinds], 2.0 * np.pi, stroke)
-        nearest = float(np.min(np.minimum(upper + slack, slack - lower)))
+        with np.errstate(over="ignore"):  # limits of a model may be as wide as numbers are
+            stroke = np.maximum(10.0 * (upper - lower), 1.0)
+            slack = np.where([kind == "revolute" for kind in kinds], 2.0 * np.pi, stroke)
+            nearest = float(np.min(np.minimum(upper + slack, slack - lower)))
         set_fields(
             self,
             n=n,
@@ -91,7 +92,7 @@ class Robot(Answer):
             upper=upper,
             joint_kinds=kinds,
             slack=frozen(slack),
-            near_square=max(nearest, 0.0) ** 2,
+            near_square=min(max(nearest, 0.0), 1e150) ** 2,
             singular_mass=_why_singular(self.model, self.name),
         )
 

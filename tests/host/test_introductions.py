@@ -179,7 +179,7 @@ def test_without_pandas_the_message_says_how(monkeypatch, tmp_path):
 
 
 def test_what_says_itself_is_shown_in_notebooks_too():
-    motion = kl.motion.joint(ARM, [[0.0] * 6, [0.2] * 6])
+    motion = kl.motion.joint(ARM, [[0.0] * 6, [0.2] * 6], duration=1.0)
     checked = kl.motion.check(ARM, motion)
     moved = kl.simulate("planar2r", [0.1, 0.2], duration=0.05)
     for answer in (checked, moved):

@@ -16,8 +16,9 @@ from kinlab.model.library import as_robot, shipped
 ARM_NAMES = ("robot", "table")
 """What the first parameter of a function is called where it is an arm."""
 
-NOT_ARMS = {"load", "diagnose_table", "hand_formula"}
-"""load makes the robot; diagnose_table judges a table; hand_formula marks a function."""
+NOT_ARMS = {"load", "diagnose_table", "hand_formula", "mark"}
+"""load makes the robot; diagnose_table judges a table; hand_formula marks a function; mark reads a
+sheet that names its robot."""
 
 SMALL: dict[str, dict[str, object]] = {
     "compare": {"quantity": "gravity_torques", "samples": 3},
@@ -66,6 +67,9 @@ def arguments(name: str, robot: kl.Robot) -> dict[str, object]:
         "two": q + 0.05,
         "function": lambda q: 0.0 * np.asarray(q),
         "weights": None,
+        "duration": 0.02,
+        "mass": 0.5,
+        "motion": kl.motion.joint(robot, [q, q + 0.2], duration=1.0),
     }
     if name == "action":
         times = np.linspace(0.0, 1.0, 5)[:, None]
