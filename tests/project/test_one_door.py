@@ -16,7 +16,7 @@ from kinlab.model.library import as_robot, shipped
 ARM_NAMES = ("robot", "table")
 """What the first parameter of a function is called where it is an arm."""
 
-NOT_ARMS = {"load", "diagnose_table", "hand_formula", "mark"}
+NOT_ARMS = {"design_fivebar", "fivebar_front", "load", "diagnose_table", "hand_formula", "mark"}
 """load makes the robot; diagnose_table judges a table; hand_formula marks a function; mark reads a
 sheet that names its robot."""
 
