@@ -178,6 +178,9 @@ def test_a_front_has_no_design_that_another_beats(tmp_path):
     [
         (lambda: kl.design_fivebar((0, 1, 0)), OptionError, "expected .x_min"),
         (lambda: kl.design_fivebar((0, 0, -1, 1)), OptionError, "has no area"),
+        (lambda: kl.design_fivebar((0, 1e90, -1, 1)), OptionError, "is no machine's"),
+        (lambda: kl.design_fivebar((-0.1, 0.1, -0.1, 0.1), e=0), UnreachableError,
+         "move the rectangle from the pins"),
         (lambda: kl.design_fivebar(BOX, "kondition"), NameUnknownError, "did you mean 'condition'"),
         (lambda: kl.design_fivebar(BOX, {"size": -1}), OptionError, "weight of size is -1"),
         (lambda: kl.design_fivebar(BOX, {}), OptionError, "goal is {}"),

@@ -26,6 +26,9 @@ _AT_LIMIT = 1e-4
 _SIZES = (0.02, 2.5)
 """Range of lengths where none is given, in parts of the farthest corner's distance."""
 
+_SPAN = (1e-6, 1e6)
+"""m. Shortest side and farthest corner of a rectangle that is designed for."""
+
 Range = tuple[float, float] | float | None
 
 
@@ -246,11 +249,15 @@ def require_feasible(problem: Problem, x: Array) -> None:
         )
     if breaks["reach"] > SLACK:
         far = np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max)))
-        raise UnreachableError(
-            f"{place} is out of reach of every linkage within the limits: l1 + l2 is at most "
-            f"{problem.high[0] + problem.high[1]:.4g} m, and the farthest corner is {far:.4g} m "
-            f"from the origin; with e = 0, l1 + l2 above {far:.4g} m would reach it"
+        longest = float(problem.high[0] + problem.high[1])
+        why = (
+            f"l1 + l2 is at most {longest:.4g} m, and the farthest corner is {far:.4g} m from the "
+            f"origin; with e = 0, l1 + l2 above {far:.4g} m would reach it"
+            if longest < far
+            else "no leg spans its nearest and farthest places from a base pin; move the rectangle "
+            "from the pins, or widen the lengths"
         )
+        raise UnreachableError(f"{place} is out of reach of every linkage within the limits: {why}")
     if breaks["rods"] > SLACK:
         raise UnreachableError(
             f"{place} holds a singularity for every linkage within the limits (the rods get in "
@@ -279,6 +286,12 @@ def read_problem(
     box = read_rectangle(workspace, what)
     if not (box.x_max > box.x_min and box.y_max > box.y_min):
         raise OptionError(f"{what}: workspace {tuple(box)} has no area; give it two sides")
+    shortest = min(box.x_max - box.x_min, box.y_max - box.y_min)
+    if shortest < _SPAN[0] or np.max(np.abs(box)) > _SPAN[1]:
+        raise OptionError(
+            f"{what}: workspace {tuple(box)} is no machine's, its shorter side being {shortest:g} "
+            f"m; metres between {_SPAN[0]:g} and {_SPAN[1]:g} are taken"
+        )
     weights = _weights(goal)
     asked = _limits(limits)
     needs = [name for name in ("torque",) if name in weights or name in asked]
@@ -351,8 +364,12 @@ def _range(value: Any, what: str, default: tuple[float, float]) -> tuple[float, 
         return default
     if isinstance(value, Sequence) and not isinstance(value, str) and len(value) == 2:
         low, high = (number(each, what) for each in value)
+        if max(abs(low), abs(high)) > _SPAN[1]:
+            raise OptionError(f"{what} is ({low:g}, {high:g}); at most {_SPAN[1]:g} m")
         if low > high:
             raise OptionError(f"{what} is ({low:g}, {high:g}); give the least first")
         return low, high
     one = number(value, what)
+    if abs(one) > _SPAN[1]:
+        raise OptionError(f"{what} is {one:g}; at most {_SPAN[1]:g} m")
     return one, one
