@@ -17,6 +17,12 @@ from kinlab.host.introductions import Answer, Introduction
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""
 
+_FORMS = {"": "", "rounded": ", with rounded numbers", "unusual": ", written unusually"}
+_GRADES = {
+    "": "right",
+    "rounded": "right with rounded numbers",
+    "unusual": "right but written unusually",
+}
 _OTHERS = 3
 """Causes that are told beside the first."""
 
@@ -48,7 +54,8 @@ class Diagnosis(Answer):
 
     Attributes:
         quantity, robot, function: what was compared.
-        agrees: whether the formula is the engine's, to rounding.
+        agrees: whether the formula is right: the engine's to rounding, or to the digits it is
+            written with, or another valid one.
         error_before: its largest relative error over the states.
         causes: what explains the difference, the simplest first; empty where nothing does.
         partial: entries that are explained where others are not.
@@ -56,6 +63,10 @@ class Diagnosis(Answer):
         worst_state: the state where, by argument.
         hand, engine: both answers there.
         source: the file the formula is from, where it is from one.
+        form: how a right formula is right: ``""`` (as the engine has it), ``"rounded"`` (with
+            rounded numbers) or ``"unusual"`` (another valid one).
+        remarks: what is to be said of a right formula: which numbers are rounded, for which robot
+            alone it holds, in what it is unusual.
         given, corrected: for a report, the formulas as written, and as they should be where that
             is known.
     """
@@ -71,6 +82,8 @@ class Diagnosis(Answer):
     worst_state: dict[str, Array] = field(default_factory=dict, repr=False)
     hand: Array | None = field(default=None, repr=False)
     engine: Array | None = field(default=None, repr=False)
+    form: str = ""
+    remarks: tuple[str, ...] = ()
     source: str = field(default="", repr=False)
     given: tuple[Typeset, ...] = field(default=(), repr=False)
     corrected: tuple[Typeset, ...] = field(default=(), repr=False)
@@ -100,16 +113,26 @@ class Diagnosis(Answer):
 
     @property
     def verdict(self) -> str:
-        """``"agrees"``, ``"differs"`` or ``"differs, cause unknown"``."""
+        """``"agrees"`` (also with ``", with rounded numbers"`` or ``", written unusually"`` behind
+        it), ``"differs"`` or ``"differs, cause unknown"``.
+        """
         if self.agrees:
-            return "agrees"
+            return f"agrees{_FORMS[self.form]}"
         return "differs" if self.causes else "differs, cause unknown"
+
+    @property
+    def grade(self) -> str:
+        """As a teacher says it: ``"right"``, ``"right with rounded numbers"``, ``"right but written
+        unusually"`` or ``"wrong"``.
+        """
+        return _GRADES[self.form] if self.agrees else "wrong"
 
     @property
     def sentence(self) -> str:
         """The diagnosis in one sentence."""
         if self.agrees:
-            return f"{self.function} is {self.quantity} of {self.robot}"
+            said = f"{self.function} is {self.quantity} of {self.robot}"
+            return "; ".join((said, *self.remarks))
         if self.causes:
             return self.causes[0].sentence
         return f"{self.function} is not {self.quantity} of {self.robot}; no known slip explains it"
@@ -119,7 +142,7 @@ class Diagnosis(Answer):
         verdict = f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"
         if self.agrees:
             text = f"{verdict}, largest relative error {self.error_before:.2g}"
-            return Introduction(text, mood="good")
+            return Introduction(text, tuple(self.remarks), mood="good")
         if self.causes:
             best = self.causes[0]
             errors = f"before {self.error_before:.3g}, after {best.error_after:.2g}"
@@ -145,6 +168,8 @@ class Diagnosis(Answer):
             "robot": self.robot,
             "function": self.function,
             "verdict": self.verdict,
+            "grade": self.grade,
+            "remarks": list(self.remarks),
             "diagnosis": self.sentence,
             "error_before": _finite(self.error_before),
             "causes": [

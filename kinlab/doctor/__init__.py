@@ -13,18 +13,20 @@ module              what it holds
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
-``otherwise``       What the engine says if asked otherwise: another frame, another split of C,
-                    terms left out
-``readings``        The table of known confusions: every reading that makes sense for a quantity
+``pen``             Slips of the pen in a text, found and mended in the line itself
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
 ``report``          Diagnoses for a report: with the formulas typeset and the differences marked
-``robot_readings``  Readings of the robot itself: convention, offsets, base and tool, gravity,
-                    inertias
 ``search``          Finds the one or two edits that turn one formula into another, by their effect
                     on values
 ``terms``           Slips within single entries: the derived formula beside a user's text or
                     function
+``verdicts``         Right in another way: with rounded numbers, with numbers for names, or another
+                    valid formula
+``written``         A formula as its writer wrote it: names, literals with their digits, and
+                    values at any numbers
+``confusions/``     What people take differently: a known confusion, and what the engine would say
+                    if one does
 ``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
                     table is wrong?
 ==================  ==============================================================================

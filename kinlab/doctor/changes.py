@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.quantity import Quantity
+from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 
 Stage = Literal["robot", "arguments", "engine", "answer"]
@@ -85,3 +86,9 @@ class Case:
             if reading.stage == "answer":
                 values = reading.apply(values)
         return values[(slice(None), *self.index)]
+
+
+def table_of(mechanism: Any) -> DHTable | None:
+    """The DH table of an arm that has one; a linkage has none."""
+    table: DHTable | None = getattr(mechanism, "table", None)
+    return table

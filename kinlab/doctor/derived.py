@@ -105,6 +105,25 @@ def _planar_pose(a: SymbolicArm) -> Any:
     return [pose[0][3], pose[1][3], pose[0][0], pose[1][0]]
 
 
+def _determinant(a: SymbolicArm, rows: tuple[int, ...]) -> Poly | None:
+    """det of some rows of J, of arms with as many joints."""
+    if a.n != len(rows):
+        return None
+    grid = _jacobian("base")(a)
+    square = [grid[r] for r in rows]
+
+    def minor(part: list[list[Poly]]) -> Poly:
+        if len(part) == 1:
+            return part[0][0]
+        total = a.trig.ring.zero
+        for k, front in enumerate(part[0]):
+            rest = [[x for j, x in enumerate(row) if j != k] for row in part[1:]]
+            total += (-1) ** k * front * minor(rest)
+        return a.trig.reduce(total)
+
+    return minor(square)
+
+
 def _coriolis_torques(a: SymbolicArm) -> Any:
     speeds = [[a.trig.gens[s.name]] for s in a.qd]
     return _column(kinematics.product(a, dynamics.coriolis_grid(a), speeds))
@@ -116,6 +135,8 @@ _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "jacobian_tool": _jacobian("tool"),
     "jacobian_spatial": _jacobian("spatial"),
     "planar_pose": _planar_pose,
+    "planar_determinant": lambda a: _determinant(a, (0, 1, 5)),
+    "planar_position_determinant": lambda a: _determinant(a, (0, 1)),
     "planar_jacobian": lambda a: [_jacobian("base")(a)[r] for r in (0, 1, 5)],
 }
 _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
@@ -184,7 +205,8 @@ def derivation(table: DHTable, quantity: str) -> Derivation | None:
     else:
         return None
     named = arm(table)
-    return Derivation(named, _objects(make(named)))
+    made = make(named)
+    return Derivation(named, _objects(made)) if made is not None else None
 
 
 def searchable(poly: Poly) -> bool:

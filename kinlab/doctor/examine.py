@@ -17,15 +17,21 @@ from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.check.quantities.serial import SERIAL
-from kinlab.doctor import terms
-from kinlab.doctor.changes import Case, Confusion
+from kinlab.doctor import terms, verdicts
+from kinlab.doctor.changes import Case, Confusion, table_of
+from kinlab.doctor.confusions.derivations import (
+    Found,
+    christoffel_terms,
+    taken_otherwise,
+    two_taken_otherwise,
+)
+from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.readings import readings
 from kinlab.doctor.terms import AnswerEntry, Slip, entries, split_name
+from kinlab.doctor.verdicts import Excuse
+from kinlab.doctor.written import Written
 from kinlab.errors import KinlabError, OptionError
 from kinlab.formulas.record import function_name, state_by_state
-from kinlab.formulas.tree import Node
 from kinlab.tolerances import TOLERANCES
 
 _SCREEN = 3
@@ -36,10 +42,15 @@ _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
 """Entries without an explanation after which the rest are not tried."""
+_WHOLE_ONLY = 3
+"""Joints above which pairs of readings of single links are not tried: there are too many."""
+_PLAIN = 1.1
+"""Cost up to which one reading is likelier than two slips in a text."""
 _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _LIST = 3
 """Slips in one cause above which a reading with fewer slips is looked for too."""
+_WHOLE_TERMS = {"extra term", "missing term"}
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
 
@@ -62,7 +73,7 @@ def diagnose(
 
     Raises:
         NameUnknownError: no such robot or quantity.
-        OptionError: samples below 10, or the quantity is not one of a serial arm.
+        OptionError: samples below 10.
         FormulaError: the function failed.
     """
     if not callable(function):
@@ -75,7 +86,7 @@ def diagnose(
 
 
 def examine(
-    case: Case, hand: Any, engine: Array, quantity: str, name: str, written: dict[str, Node]
+    case: Case, hand: Any, engine: Array, quantity: str, name: str, written: dict[str, Written]
 ) -> Diagnosis:
     """Judges answers that are known already; ``written`` holds entries given as text.
 
@@ -87,20 +98,35 @@ def examine(
     same = values.shape == engine.shape
     errors = relative_errors(values, engine) if same else np.full(len(values), np.inf)
     worst = float(np.max(errors))
-    label = str(case.robot.name)
+    label = case.quantity.domain.label(case.robot)
     if worst <= TOLERANCES.formula_agrees:
-        hidden, gap = _hidden(case, engine, written)
-        return Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
+        hidden, gap, remarks = _hidden(case, engine, written)
+        right = Diagnosis(quantity, label, name, not hidden, max(worst, gap), tuple(hidden))
+        rounded = tuple(dict.fromkeys(note for text in written.values() for note in text.rounded))
+        form = "rounded" if rounded and not hidden else ""
+        return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
+    excuse = _excuse(case, engine, written) if same else None
+    if excuse is not None:
+        right = Diagnosis(quantity, label, name, True, worst)
+        return replace(right, form=excuse.form, remarks=excuse.remarks)
     tried = readings(case)
-    if _bare_signs(values):
+    signs = _bare_signs(values)
+    if signs:
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
-    causes = [*_singly(case, tried)]
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
-    if off and (not causes or len(off) <= _RIVALS):
-        found, partial = _slips(case, off, written)
-        causes += found
+    causes: list[Cause] = []
+    if written and off:
+        causes, partial = _slips(case, off, written)
+    visible = bool(causes) and len(causes[0].kinds) <= 1
+    if not visible:
+        causes = _outranked(causes, [*_singly(case, tried), *_by_derivation(case, signs)])
+        if not written and off and (not causes or len(off) <= _RIVALS):
+            found, partial = _slips(case, off, written)
+            causes += found
+    if not causes and not signs:
+        causes = [_as_steps(found) for found in two_taken_otherwise(case)]
     if not causes:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
@@ -127,25 +153,101 @@ def examine(
     )
 
 
-def _hidden(case: Case, engine: Array, written: dict[str, Node]) -> tuple[list[Cause], float]:
-    """Slips of a text that only the robot's numbers cover up (l1/2 for l1**2 where l1 is 0.5)."""
-    table = case.robot.table
+def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
+    """Causes that are one step of a textbook's derivation, taken otherwise."""
+    if signs:
+        return
+    terms_ = christoffel_terms(case)
+    if terms_ is not None:
+        said, error, count = terms_
+        yield Cause(f"the formula, {said}", ("Christoffel",) * count, ("",) * count, error, 1.05)
+    for found in taken_otherwise(case):
+        yield _as_steps(found)
+
+
+def _as_steps(found: Found) -> Cause:
+    return Cause(
+        "the formula " + " and ".join(step.sentence for step in found.steps),
+        tuple(step.kind for step in found.steps),
+        tuple("" if step.joint is None else f"joint {step.joint + 1}" for step in found.steps),
+        found.error,
+        found.cost,
+    )
+
+
+def _outranked(slips: list[Cause], whole_: list[Cause]) -> list[Cause]:
+    """Slips in the writer's line before a far-fetched reading; a plain one before many slips."""
+    if not slips:
+        return whole_
+    plain = [cause for cause in whole_ if cause.cost <= _PLAIN and len(slips[0].kinds) > 1]
+    return plain or slips
+
+
+def _hidden(
+    case: Case, engine: Array, written: dict[str, Written]
+) -> tuple[list[Cause], float, list[str]]:
+    """Slips of a text that only the robot's numbers cover up (l1/2 for l1**2 where l1 is 0.5).
+
+    Numbers that stand for the robot's, as in (m1 + m2)*0.25, are none, but a remark.
+    """
+    table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if written and table is not None else None
     if derived is None:
-        return [], 0.0
+        return [], 0.0, []
     slips: list[Slip] = []
+    only: list[str] = []
     largest = 0.0
     for entry in entries(case, engine):
         poly = derived.polys[entry.index] if entry.index else derived.polys.item()
         text = written.get(entry.label)
         if text is None:
             continue
-        gap = terms.hidden_gap(text, derived, poly, case.quantity.arguments)
+        kept, plain = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
+        only += [name for name in kept if name not in only]
+        gap = plain if not kept else 0.0
         if gap > TOLERANCES.formula_agrees:
-            found = _of_entry(case, entry, text)
-            slips += found[:1]
-            largest = max(largest, gap) if found else largest
-    return ([_slip_cause(tuple(slips))] if slips else []), largest
+            # a term put in for another of the same value is no slip, but another form
+            told = [s for s in _of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
+            slips += told[:1]
+            largest = max(largest, gap) if told else largest
+    said = " and ".join(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
+    remarks = [f"but it holds only for {said}"] if only else []
+    return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
+
+
+def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
+    """Why answers that are not the engine's are right, if they are."""
+    odd = verdicts.unusual(case, engine)
+    if odd is not None:
+        return odd
+    for found in verdicts.roundings(case, engine, not written):
+        return found
+    off = [entry for entry in entries(case, engine) if not entry.agrees]
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    remarks: list[str] = []
+    for entry in off:
+        text = written.get(entry.label)
+        if text is not None:
+            at = verdicts.numbers_at(case)
+            changed = verdicts.stand_ins(text, at, entry.engine, entry.scale)
+            if changed is None and derived is not None:
+                said = verdicts.of_data(text, entry, derived, case)
+                if said is None:
+                    return None
+                remarks.append(said)
+                continue
+            if changed is None:
+                return None
+            remarks += [*text.rounded, *verdicts.rounding_remarks(changed, at)]
+            continue
+        if written or derived is None:
+            return None
+        found_here = verdicts.of_function(entry, derived, case)
+        if found_here is None:
+            return None
+        remarks += found_here
+    return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
 
 
 def prepare(
@@ -158,12 +260,7 @@ def prepare(
     """
     samples, seed = whole(samples, "samples", 10), seed_of(seed)
     found = find_quantity(plain)
-    if found.domain is not SERIAL:
-        raise OptionError(
-            f"quantity {plain!r} belongs to {found.domain.name!r}; the doctor knows serial arms "
-            "(kinlab check compares the others)"
-        )
-    mechanism = SERIAL.load(robot)
+    mechanism = found.domain.load(robot)
     states = found.states(mechanism, int(samples), seed)
     arguments = dict(zip(found.arguments, states, strict=True))
     case = Case(mechanism, found, arguments, np.empty(0), index)
@@ -212,6 +309,8 @@ def _singly(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
 
 def _in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
+    if case.arguments and getattr(case.robot, "n", 0) > _WHOLE_ONLY:
+        tried = [reading for reading in tried if not reading.place]
     answers = [r for r in tried if r.stage == "answer"]
     before = [r for r in tried if r.stage != "answer"]
     yield from _found(
@@ -268,12 +367,20 @@ def _as_cause(chosen: tuple[Confusion, ...], error: float) -> Cause:
 
 
 def _slips(
-    case: Case, off: list[AnswerEntry], written: dict[str, Node]
+    case: Case, off: list[AnswerEntry], written: dict[str, Written]
 ) -> tuple[list[Cause], tuple[str, ...]]:
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     per_entry: list[list[Slip]] = []
+    seen: list[Written] = []
     for entry in off:
-        per_entry.append(_varied(_of_entry(case, entry, written.get(entry.label))))
+        text = written.get(entry.label)
+        if text is not None:
+            if any(text is other for other in seen):
+                continue  # the mirror image of an entry that is given once
+            seen.append(text)
+        found = _of_entry(case, entry, text)
+        # all repairs of a text give one formula: the likeliest is told
+        per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
         if sum(not found for found in per_entry) >= _PATIENCE:
             break
     if not all(per_entry):
@@ -304,8 +411,8 @@ def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
     )
 
 
-def _of_entry(case: Case, entry: AnswerEntry, text: Node | None) -> list[Slip]:
-    table = case.robot.table
+def _of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]:
+    table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
     if derived is None:
         return []

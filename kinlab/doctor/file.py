@@ -17,9 +17,9 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.written import Written, literal
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas import tree
-from kinlab.formulas.evaluate import plain_values
 from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text, read_toml
@@ -165,9 +165,11 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
         _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
 
 
-def _claims(file: FormulaFile, robot: Robot) -> tuple[dict[str, dict[str, Node]], dict[str, str]]:
+def _claims(
+    file: FormulaFile, robot: Robot
+) -> tuple[dict[str, dict[str, Written]], dict[str, str]]:
     """The formulas by quantity and by the place they claim, and the entries' names by place."""
-    wanted: dict[str, dict[str, Node]] = {}
+    wanted: dict[str, dict[str, Written]] = {}
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
         try:
@@ -178,20 +180,21 @@ def _claims(file: FormulaFile, robot: Robot) -> tuple[dict[str, dict[str, Node]]
         if any(isinstance(k, slice) for k in index):
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
-        wanted.setdefault(plain, {})[label] = in_robot_names(text, file, robot, entry)
+        node = in_robot_names(text, file, robot, entry)
+        wanted.setdefault(plain, {})[label] = _written(entry, node, file, robot)
         titles[label] = entry
     return wanted, titles
 
 
 def _answers(
     plain: str,
-    formulas: dict[str, Node],
+    formulas: dict[str, Written],
     titles: dict[str, str],
     robot: Robot,
     file: FormulaFile,
     samples: int,
     seed: int,
-) -> tuple[Case, Array, list[str], dict[str, Node], dict[str, Array]]:
+) -> tuple[Case, Array, list[str], dict[str, Written], dict[str, Array]]:
     """The case, the engine's answers, every place there is, and the formulas with their values."""
     case, engine = prepare(robot, plain, (), samples, seed)
     shape = engine.shape[1:]
@@ -210,15 +213,15 @@ def _answers(
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
     values = {
-        label: _values(node, case, file, _entry_of(label, titles))
-        for label, node in formulas.items()
+        label: _values(text, case, file, _entry_of(label, titles))
+        for label, text in formulas.items()
     }
     return case, engine, labels, formulas, values
 
 
 def _of_quantity(
     plain: str,
-    formulas: dict[str, Node],
+    formulas: dict[str, Written],
     titles: dict[str, str],
     robot: Robot,
     file: FormulaFile,
@@ -233,11 +236,32 @@ def _of_quantity(
         shown = ", ".join(titles[label] for label in labels if label in titles)
         yield examine(case, hand, engine, plain, shown, formulas)
         return
+    if plain == "coriolis_matrix":
+        yield from _complete_rows(case, engine, formulas, values, titles)
     for label, answer in values.items():
         _, index = split_name(label)
         part = replace(case, index=index)
         one = {label: formulas[label]}
         yield examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
+
+
+def _complete_rows(
+    case: Case,
+    engine: Array,
+    formulas: dict[str, Written],
+    values: dict[str, Array],
+    titles: dict[str, str],
+) -> Iterable[Diagnosis]:
+    """Rows of C that are whole, taken out of the entries: one row has many valid splits."""
+    for i in range(case.robot.n):
+        labels = [f"coriolis_matrix[{i},{j}]" for j in range(case.robot.n)]
+        if not all(label in values for label in labels):
+            continue
+        row = replace(case, index=(i,))
+        hand = np.stack([values.pop(label) for label in labels], axis=-1)
+        texts = {label: formulas[label] for label in labels}
+        shown = ", ".join(titles[label] for label in labels)
+        yield examine(row, hand, engine[:, i], f"coriolis_matrix[{i}]", shown, texts)
 
 
 def robot_of(file: FormulaFile) -> Robot:
@@ -325,7 +349,7 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     """A user's symbol with a number: the robot's parameter of that value, or the number."""
     value = float(given.value)
     if name in words:
-        if abs(words[name] - value) > TOLERANCES.same_number * abs(words[name]):
+        if not _stands_for(_digits(given), words[name]):
             raise ExpressionError(
                 f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
                 "give the robot's number, or another name"
@@ -339,6 +363,40 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     return given
 
 
+def _digits(given: Node) -> str:
+    """A symbol's number as digits; 10.0 was 10 before it was read."""
+    return repr(float(given.value)).removesuffix(".0")
+
+
+def _stands_for(digits: str, value: float) -> bool:
+    """Whether a number is another one, or that one rounded to its digits."""
+    one = literal(digits.lstrip("-"))
+    gap = abs((-one.value if digits.startswith("-") else one.value) - value)
+    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.half)
+
+
+def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:
+    """A formula with what its writer's names stand for."""
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    known: dict[str, Node] = {}
+    texts: dict[str, str] = {}
+    rounded: list[str] = []
+    for name, given in file.symbols.items():
+        texts[name] = file.symbol_texts[name]
+        if given.op != "num":
+            continue
+        texts[name] = _digits(given)
+        meant = _by_value(name, given, words, f"{file.path}: {entry}")
+        if meant.op == "sym":
+            known[name] = meant
+            exact = words[str(meant.value)]
+            if abs(float(given.value) - exact) > TOLERANCES.same_number * abs(exact):
+                rounded.append(f"{name} = {texts[name]} in [symbols] stands for {exact:.10g}")
+    inside = tree.names(file.formulas[entry])
+    used = [note for note in rounded if note.split(" =")[0] in inside]
+    return Written(entry, file.texts[entry], node, texts, known, tuple(used))
+
+
 def _entry_of(label: str, titles: dict[str, str]) -> str:
     """The file's entry that gives a place, its mirror image where only that is given."""
     if label in titles:
@@ -347,7 +405,7 @@ def _entry_of(label: str, titles: dict[str, str]) -> str:
     return titles[f"{plain}[{index[1]},{index[0]}]"]
 
 
-def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
+def _values(text: Written, case: Case, file: FormulaFile, entry: str) -> Array:
     """The values of an entry, by its text as it is written."""
     count = len(next(iter(case.arguments.values())))
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
@@ -356,24 +414,10 @@ def _values(node: Node, case: Case, file: FormulaFile, entry: str) -> Array:
         if argument in LETTERS:
             for i in range(case.robot.n):
                 at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
-    missing = tree.names(node) - set(at)
-    if missing:
+    foreign = sorted(tree.names(text.node) - set(at)) or text.foreign(set(at))
+    if foreign:
         raise ExpressionError(
-            f"{file.path}: {entry}: {sorted(missing)[0]} does not belong into "
+            f"{file.path}: {entry}: {foreign[0]} does not belong into "
             f"{case.quantity.name}, which depends on {', '.join(case.quantity.arguments)}"
         )
-
-    def meaning(name: str) -> Array:
-        if name in file.symbol_texts:
-            return plain_values(file.symbol_texts[name], meaning, count)
-        if name in at:
-            return at[name]
-        known = canonical(name)
-        if not tree.names(known) <= set(at):  # it cancels out of the tree, not out of the text
-            raise ExpressionError(
-                f"{file.path}: {entry}: {name} does not belong into {case.quantity.name}, which "
-                f"depends on {', '.join(case.quantity.arguments)}"
-            )
-        return np.array(np.broadcast_to(tree.evaluate(known, at), (count,)), dtype=float)
-
-    return plain_values(file.texts[entry], meaning, count)
+    return text.values(at)

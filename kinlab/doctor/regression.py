@@ -60,6 +60,12 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
     return [list(dict.fromkeys(map(tree.ordered, circle))) for circle in circles]
 
 
+def joint_functions(derived: list[Node], names: Names) -> list[Node]:
+    """The joint functions of derived entries, each once."""
+    parts = (_joint_part(term, names) for entry in derived for term in _terms(entry))
+    return list(dict.fromkeys(tree.ordered(part) for part in parts))
+
+
 def explain(difference: Array, words: list[Node], at: dict[str, Array]) -> list[Term]:
     """The few terms that add up to the difference at every state, or none.
 

@@ -18,7 +18,6 @@ from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import (
     examine_formulas,
-    in_robot_names,
     quantity_of,
     require_sound,
     robot_of,
@@ -28,7 +27,7 @@ from kinlab.errors import KinlabError
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError
 from kinlab.formulas.text import FormulaFile, entries_of, formula_file, parse, with_entries
-from kinlab.formulas.tree import Node, Path, names, sym
+from kinlab.formulas.tree import Path
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.model.robot import Robot
 
@@ -154,12 +153,12 @@ def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Diagnosis:
     corrected: list[Typeset] = []
     for entry, label in _entries(found, file, robot):
         written = file.formulas[entry]
-        if label not in right:
+        text = right.get(entry) or right.get(label)
+        if text is None:
             given.append(equation(entry, written))
             continue
-        formula = parse(right[label])
-        meaning = {name: _meaning(name, file, robot, entry) for name in names(written)}
-        wrong, fixed = differences(written, formula, meaning) if pointed else (_NONE, _NONE)
+        formula = parse(text)
+        wrong, fixed = differences(written, formula, {}) if pointed else (_NONE, _NONE)
         given.append(equation(entry, written, Marks("wrong", wrong)))
         corrected.append(equation(entry, formula, Marks("fixed", fixed)))
     return replace(found, source=file.path, given=tuple(given), corrected=tuple(corrected))
@@ -187,10 +186,6 @@ def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
             label = f"{plain}[{','.join(map(str, place))}]" if place else plain
             right[label] = str(derived.collected(poly))
     return right
-
-
-def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:
-    return in_robot_names(sym(name), file, robot, entry)
 
 
 def _entries(found: Diagnosis, file: FormulaFile, robot: Robot) -> Iterator[tuple[str, str]]:

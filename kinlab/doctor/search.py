@@ -120,7 +120,7 @@ def double(case: Study) -> list[Repair]:
     """As :func:`single` with two edits whose effects add up."""
     if not len(case.effects):
         return []
-    pairs = _pairs(case.effects, case.wanted, TOLERANCES.effect_matches * case.scale)
+    pairs = pairs_adding_up(case.effects, case.wanted, TOLERANCES.effect_matches * case.scale)
     return _together(case, [(case.found[one], case.found[two]) for one, two in pairs])
 
 
@@ -145,7 +145,7 @@ def double_in_term(case: Study) -> list[Repair]:
         chosen = [inside[k] for k in np.flatnonzero(usable)]
         if not chosen or not np.isfinite(goal).all():
             continue
-        pairs = _pairs(logs[usable], goal, 1e-8)
+        pairs = pairs_adding_up(logs[usable], goal, 1e-8)
         both = [(case.found[chosen[one]], case.found[chosen[two]]) for one, two in pairs]
         repairs += _together(case, both)
     return _best(repairs)
@@ -163,7 +163,7 @@ def _best(repairs: Iterable[Repair]) -> list[Repair]:
     return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
 
 
-def _pairs(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
+def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
     """Pairs of rows that add up to the goal, by sorting one projection."""
     weights = np.random.default_rng(5).uniform(0.5, 1.5, rows.shape[1])
     line = rows @ weights

@@ -12,11 +12,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import regression, search
+from kinlab.doctor import pen, regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.edits import Edit, Names
+from kinlab.doctor.pen import Mended
 from kinlab.doctor.search import Repair
+from kinlab.doctor.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.symbolic.trig import Poly
@@ -103,6 +105,10 @@ def _label(name: str, index: tuple[int, ...]) -> str:
 
 _POINTS = 24
 _CLOSE = 1e-9
+_WRITTEN_OUT = 60
+"""Terms of an entry up to which a function may have been written out by hand."""
+_SHORT = 30
+"""Terms of an entry up to which two slips of a function are looked for."""
 
 _TURNED = {
     "extra term": "missing term",
@@ -152,7 +158,7 @@ def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
 
 def in_text(
     label: str,
-    written: Node,
+    written: Written,
     derived: Derivation,
     poly: Poly,
     arguments: tuple[str, ...],
@@ -162,7 +168,7 @@ def in_text(
 
     Args:
         label: the entry's name.
-        written: the user's text, with the names of the derivation.
+        written: the user's text.
         derived, poly: the derivation and the entry's polynomial.
         arguments: the quantity's arguments.
         states: the comparison's states.
@@ -173,39 +179,39 @@ def in_text(
     here = environment(derived, states)
     right = derived.tree(poly)
     extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
-    repairs: list[Repair] = []
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    for at in (_anywhere(names), {name: values[:_POINTS] for name, values in here.items()}):
+    found: list[Mended] = []
+    own = {name: values[:_POINTS] for name, values in here.items()}
+    for at in (as_rods(anywhere(names), written, derived), own):
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        case = search.study(written, target, at, names, extra)
-        repairs = search.single(case) or [*search.double(case), *search.double_in_term(case)]
-        if repairs:
+        line = pen.Line(written, names, at, np.array(target), extra, numeric=at is own)
+        found = pen.mended(line)
+        if found:
             break
-    slips = []
-    for repair in sorted(repairs, key=lambda r: r.cost):
-        told = "; ".join(_told_text(label, written, e) for e in repair.edits)
-        values = tree.evaluate(repair.result, here)
-        kinds = tuple(e.kind for e in repair.edits)
-        slips.append(Slip(label, kinds, told, str(repair.result), repair.cost, values, True))
-    return slips
+    return [_mended(written, one, here) for one in found]
 
 
-def hidden_gap(written: Node, derived: Derivation, poly: Poly, arguments: tuple[str, ...]) -> float:
-    """How far a text is off with other numbers for the parameters, relative.
+def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:
+    """The numbers with I = m l²/12 where the robot's links are rods and the text has no I."""
+    values, out = derived.arm.values, dict(at)
+    for name in values:
+        found = re.fullmatch(r"I(\d+)", name)
+        if found is None or name in tree.names(written.node):
+            continue
+        m, length = f"m{found.group(1)}", f"l{found.group(1)}"
+        if m not in values or length not in values:
+            continue
+        rod = float(values[m]) * float(values[length]) ** 2 / 12
+        if abs(float(values[name]) - rod) <= TOLERANCES.same_length * rod:
+            out[name] = out[m] * out[length] ** 2 / 12
+    return out
 
-    Zero where the text has numbers in place of parameters: it is meant for one robot only.
-    """
-    if not searchable(poly):
-        return 0.0
-    names = names_for(derived, arguments)
-    right = derived.tree(poly)
-    plain = all(n.value.denominator <= 12 for _, n in tree.nodes(written) if n.op == "num")
-    if not plain or not tree.names(written) >= tree.names(right) & set(names.parameters):
-        return 0.0
-    at = _anywhere(names)
-    target = tree.evaluate(right, at)
-    scale = float(np.max(np.abs(target))) or 1.0
-    return float(np.max(np.abs(tree.evaluate(written, at) - target))) / scale
+
+def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
+    told = "; ".join(f"{written.entry}: {c.told} ({c.kind})" for c in found.changes)
+    kinds = tuple(c.kind for c in found.changes)
+    values = replace(written, text=found.text).values(here)
+    return Slip(written.entry, kinds, told, found.text, found.cost, values, True)
 
 
 def in_function(
@@ -228,8 +234,8 @@ def in_function(
         states: the comparison's states.
         others: derived entries whose joint functions may be met.
     """
-    if not searchable(poly):
-        return []
+    if len(poly) > _WRITTEN_OUT:
+        return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
     everywhere = environment(derived, states)
     at = {name: values[:_POINTS] for name, values in everywhere.items()}
@@ -243,8 +249,9 @@ def in_function(
     circles = regression.dictionaries([right, *others], names)
     sums = (regression.explain(hand - engine, words, everywhere) for words in circles)
     alone = [found for found in sums if len(found) == 1][:1]
-    repairs = [(c.root, r) for c in cases for r in search.double(c)]
-    repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
+    if len(poly) <= _SHORT:
+        repairs = [(c.root, r) for c in cases for r in search.double(c)]
+        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
     slips += [_as_terms(label, right, found, names, everywhere) for found in alone]
     if not slips:
@@ -298,18 +305,6 @@ def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[st
     return f"{size:.10g}"
 
 
-def _told_text(label: str, written: Node, edit: Edit) -> str:
-    if edit.kind == "missing term":
-        return f"{label}: the term {edit.new} is missing"
-    old = tree.at_path(written, edit.path)
-    where = _context(written, edit.path, old)
-    if edit.kind == "extra term":
-        return f"{label}: the term {old} does not belong there"
-    if edit.kind == "extra factor":
-        return f"{label}: the factor {old} does not belong{where}"
-    return f"{label}: {old} should be {edit.new}{where} ({edit.kind})"
-
-
 def _told_function(label: str, form: Node, edit: Edit) -> str:
     old = tree.at_path(form, edit.path)
     where = _context(form, edit.path, old)
@@ -343,9 +338,9 @@ def _split(entry: Node) -> list[Node]:
     return list(entry.args) if entry.op == "add" else [entry]
 
 
-def _anywhere(names: Names) -> dict[str, Array]:
+def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:
     """Random values for every name: positive parameters, any states."""
-    rng = np.random.default_rng(11)
+    rng = np.random.default_rng(seed)
     at = {name: rng.uniform(0.4, 2.0, _POINTS) for name in names.parameters}
     for letter in ("q", "qd", "qdd"):
         for i in range(names.n):

@@ -45,20 +45,28 @@ def plain_values(text: str, meaning: Callable[[str], Array], count: int) -> Arra
     known: dict[str, Array] = {}
 
     def value(name: str) -> Any:
-        if name == "pi":
-            return np.float64(math.pi)
         if name not in known:
             known[name] = meaning(name)
         return known[name]
 
-    parts: Meaning[Any] = Meaning(
-        number=np.float64,
-        name=value,
-        negative=operator.neg,
-        binary=lambda op, left, right: _BINARY[type(op)](left, right),
-        call=lambda name, args: tree.FUNCTIONS[tree.SYNONYMS.get(name, name)](*args),
-        admit=lambda node, depth: None,
-    )
+    parts = combined(np.float64, value)
     with np.errstate(all="ignore"):
         result = read(ast.parse(text, mode="eval").body, parts)
     return np.array(np.broadcast_to(result, (count,)), dtype=float)
+
+
+def combined(number: Callable[[int | float], Any], name: Callable[[str], Any]) -> Meaning[Any]:
+    """Plain arithmetic of numbers and names.
+
+    Args:
+        number: the value of a literal.
+        name: the values of a name; ``pi`` is the number.
+    """
+    return Meaning(
+        number=number,
+        name=lambda word: np.float64(math.pi) if word == "pi" else name(word),
+        negative=operator.neg,
+        binary=lambda op, left, right: _BINARY[type(op)](left, right),
+        call=lambda word, args: tree.FUNCTIONS[tree.SYNONYMS.get(word, word)](*args),
+        admit=lambda node, depth: None,
+    )

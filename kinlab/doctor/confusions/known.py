@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor import otherwise
+from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
-from kinlab.doctor.robot_readings import gravity_readings, inertia_readings, table_readings
+from kinlab.doctor.confusions import otherwise
+from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
 from kinlab.model.link import Convention
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
@@ -39,6 +40,8 @@ _WEIGHED = {
 
 def readings(case: Case) -> list[Confusion]:
     """Every reading for the case's quantity and robot."""
+    if case.quantity.domain is not SERIAL:
+        return [*_answers(case)]
     name = case.quantity.name
     found = [*table_readings(case.robot)]
     if name not in _KINEMATIC:
@@ -125,6 +128,15 @@ def _engines(case: Case) -> Iterator[Confusion]:
             otherwise.pseudo_inverse,
             1.3,
         )
+        yield _other(
+            "transposed", "uses J for J^T (not transposed)", otherwise.jacobian_itself, 1.1
+        )
+    if name in ("newton_step", "gradient_step"):
+        yield _other("sign", "has the step with the opposite sign", otherwise.step_back)
+    if name == "mass_matrix" and case.robot.n > 1:
+        said = "is M for absolute angles (each counted from the base), not for the joint angles"
+        for q_too in (False, True):
+            yield _other("absolute angles", said, otherwise.in_absolute_angles(q_too), 1.1)
     if name == "coriolis_matrix":
         yield _other(
             "symmetric Coriolis",

@@ -175,3 +175,37 @@ def in_link_axes(name: str, axes: Tensors) -> Callable[[Engine], Engine]:
         )
 
     return apply
+
+
+def in_absolute_angles(q_too: bool) -> Callable[[Engine], Engine]:
+    """M for angles that are counted from the base: S^T M S, with S their differences."""
+
+    def apply(engine: Engine) -> Engine:
+        def changed(robot: Robot, x: Arguments) -> Array:
+            n = robot.n
+            steps = np.eye(n) - np.eye(n, k=-1)
+            q = x["q"] @ steps.T if q_too else x["q"]
+            out: Array = steps.T @ engine(robot, {**x, "q": q}) @ steps
+            return out
+
+        return changed
+
+    return apply
+
+
+def jacobian_itself(engine: Engine) -> Engine:
+    """J F for J^T F; of an arm with six joints only."""
+
+    def changed(robot: Robot, x: Arguments) -> Array:
+        jac = jacobian(robot, x["q"])
+        if jac.shape[1] != jac.shape[2]:
+            return np.full_like(x["q"], np.nan)
+        out: Array = np.einsum("nij,nj->ni", jac, x["wrench"])
+        return out
+
+    return changed
+
+
+def step_back(engine: Engine) -> Engine:
+    """q - step for q + step."""
+    return lambda robot, x: 2 * x["q"] - engine(robot, x)

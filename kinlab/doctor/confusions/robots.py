@@ -300,6 +300,12 @@ def _linked(i: int, **columns: Any) -> Callable[[DHTable], DHTable]:
     return change
 
 
+def with_gravity(robot: Robot, value: Array) -> Robot:
+    """The robot under another gravity, (3,) m/s² in the base."""
+    changed: Robot = _model("gravity", "", _gravity(value)).apply(robot)
+    return changed
+
+
 def _model(
     kind: str, sentence: str, change: Callable[[Any], None], cost: float = 1.0, place: str = ""
 ) -> Confusion:

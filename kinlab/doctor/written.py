@@ -1,0 +1,204 @@
+"""A formula as its writer wrote it: names, literals with their digits, and values at any numbers.
+
+The tree of a formula gathers numbers and opens brackets; here the text stands as it is, so that
+one can ask how many digits a number was written with, and change one place and nothing else.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.formulas import tree
+from kinlab.formulas.arithmetic import read
+from kinlab.formulas.evaluate import combined
+from kinlab.formulas.text import canonical
+from kinlab.formulas.tree import Node
+
+_DECIMAL = re.compile(r"(\d*)\.?(\d*)(?:[eE]([+-]?\d+))?")
+_WEIGHT, _PLACES = (9.7, 9.9), 0.012
+"""Values of g in the textbooks (9.8, 9.80665, 9.807, 9.81, 9.82), and how far they are apart."""
+_LEAST_WHOLE = 10
+"""Whole numbers below this are exact: 2 is two, but 10 may be a rounded 9.81."""
+
+
+@dataclass(frozen=True)
+class Literal:
+    """A number in a text.
+
+    Attributes:
+        text: its digits.
+        value: what they say.
+        half: half a unit of the last digit; 0 for a number that is exact (an exponent, a 2).
+        exponent: whether it is one.
+    """
+
+    text: str
+    value: float
+    half: float
+    exponent: bool = False
+
+    @property
+    def whole(self) -> bool:
+        """Whether it has no decimal point."""
+        return "." not in self.text and "e" not in self.text.lower()
+
+    @property
+    def digits(self) -> int:
+        """Significant digits."""
+        found = _DECIMAL.fullmatch(self.text)
+        shown = "".join(found.group(1, 2)) if found else self.text
+        return len(shown.lstrip("0"))
+
+
+def literal(text: str) -> Literal:
+    """A number with its digits: ``"9.8"`` may be anything from 9.75 to 9.85."""
+    found = _DECIMAL.fullmatch(text)
+    value = float(text)
+    if found is None:
+        return Literal(text, value, 0.0)
+    if "." not in text and found.group(3) is None:
+        return Literal(text, value, 0.5 if value >= _LEAST_WHOLE else 0.0)
+    half = 0.5 * 10.0 ** (int(found.group(3) or 0) - len(found.group(2)))
+    return Literal(text, value, max(half, _PLACES * (_WEIGHT[0] < value < _WEIGHT[1])))
+
+
+@dataclass(frozen=True, eq=False)
+class Written:
+    """One formula as it was given.
+
+    Attributes:
+        entry: what the writer calls it: ``tau1``.
+        text: the formula, with the writer's names.
+        node: the same in the robot's names, as a tree.
+        symbols: what the writer's own names stand for: text over other names, or digits.
+        known: the writer's names that stand for a number of the robot: ``L`` is ``l1``.
+        rounded: what is to be said of names whose number is one of the robot's, rounded.
+    """
+
+    entry: str
+    text: str
+    node: Node
+    symbols: Mapping[str, str] = field(default_factory=dict)
+    known: Mapping[str, Node] = field(default_factory=dict)
+    rounded: tuple[str, ...] = ()
+
+    @cached_property
+    def _trees(self) -> dict[str, ast.expr]:
+        return {
+            name: ast.parse(text, mode="eval").body
+            for name, text in {"": self.text, **self.symbols}.items()
+        }
+
+    @cached_property
+    def literals(self) -> tuple[Literal, ...]:
+        """Every number of the text and of the symbols in it, in the order of reading."""
+        found: list[Literal] = []
+        for place in self._used:
+            source = self.symbols.get(place, self.text) if place else self.text
+            for constant, exact in _constants(self._trees[place]):
+                piece = source.encode()[constant.col_offset : constant.end_col_offset]
+                shown = piece.decode()
+                one = literal(shown)
+                found.append(Literal(shown, one.value, 0.0, True) if exact else one)
+        return tuple(found)
+
+    @cached_property
+    def _used(self) -> list[str]:
+        """The symbols with numbers of their own that the text reaches, the text itself first."""
+        found, waiting = [""], [""]
+        while waiting:
+            for node in ast.walk(self._trees[waiting.pop()]):
+                name = node.id if isinstance(node, ast.Name) else ""
+                if name in self.symbols and name not in self.known and name not in found:
+                    found.append(name)
+                    waiting.append(name)
+        return found
+
+    def foreign(self, names: set[str]) -> list[str]:
+        """Names in the text that have no value, where the robot's are ``names``."""
+        met = {
+            node.id
+            for place in self._used
+            for node in ast.walk(self._trees[place])
+            if isinstance(node, ast.Name) and node.id not in self.known
+        }
+        met -= {"pi", *self.symbols, *_called(self._trees.values())}
+        return sorted(name for name in met if not tree.names(canonical(name)) <= names)
+
+    @property
+    def spelled(self) -> dict[str, str]:
+        """How the writer spells the robot's names, where otherwise: ``l1`` is ``L``."""
+        return {str(n.value): name for name, n in self.known.items() if n.op == "sym"}
+
+    def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """The values of the text, nothing opened, gathered or cancelled.
+
+        Args:
+            at: values of the robot's names, (N,) each.
+            numbers: what the literals stand for instead of what they say, in their order.
+
+        Returns:
+            (N,); NaN or infinite where the text has no real value.
+        """
+        count = len(next(iter(at.values())))
+        start = dict(zip(self._used, self._starts, strict=True))
+        known: dict[str, Array] = {}
+
+        def name_value(name: str) -> Any:
+            if name not in known:
+                known[name] = self._name(name, at, lambda: walk(name))
+            return known[name]
+
+        def walk(place: str) -> Any:
+            position = start[place]
+
+            def number(value: float) -> Any:
+                nonlocal position
+                position += 1
+                return np.float64(value) if numbers is None else numbers[position - 1]
+
+            return read(self._trees[place], combined(number, name_value))
+
+        with np.errstate(all="ignore"):
+            result = walk("")
+        return np.array(np.broadcast_to(result, (count,)), dtype=float)
+
+    def _name(self, name: str, at: Mapping[str, Array], walk: Any) -> Any:
+        if name in self.known:
+            return tree.evaluate(self.known[name], dict(at))
+        if name in self.symbols:
+            return walk()
+        return at[name] if name in at else tree.evaluate(canonical(name), dict(at))
+
+    @cached_property
+    def _starts(self) -> list[int]:
+        counts = [sum(1 for _ in _constants(self._trees[place])) for place in self._used]
+        return [int(k) for k in np.concatenate([[0], np.cumsum(counts)[:-1]])]
+
+
+def _called(trees: Iterable[ast.expr]) -> set[str]:
+    calls = (node.func for part in trees for node in ast.walk(part) if isinstance(node, ast.Call))
+    return {name.id for name in calls if isinstance(name, ast.Name)}
+
+
+def _constants(node: ast.expr, exact: bool = False) -> Iterator[tuple[ast.Constant, bool]]:
+    """The numbers in the order in which they are read, and whether each is an exponent."""
+    match node:
+        case ast.Constant():
+            yield node, exact
+        case ast.UnaryOp(operand=operand):
+            yield from _constants(operand, exact)
+        case ast.BinOp(left=left, op=op, right=right):
+            yield from _constants(left, exact)
+            yield from _constants(right, exact or isinstance(op, ast.Pow))
+        case ast.Call(args=args):
+            for part in args:
+                yield from _constants(part, exact)

@@ -1,0 +1,125 @@
+"""Right formulas are never called wrong: rounded numbers, numbers for names, other valid forms."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.doctor.file import examine_file
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts" / "bench"
+ARM = kl.load("planar2r")
+
+
+def judge(tmp_path: Path, robot: str = "planar2r", symbols: str = "", **formulas: str):
+    file = tmp_path / "f.toml"
+    lines = [f'"{name}" = "{text}"' for name, text in formulas.items()]
+    head = [f'robot = "{robot}"', "[symbols]", symbols, "[formulas]"]
+    file.write_text("\n".join([*head, *lines]) + "\n")
+    return examine_file(file, samples=40)[0]
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "said"),
+    [
+        ("g2", "m2*9.8*l2*c12", "9.8 stands for g = 9.81"),
+        ("g2", "m2*10*l2*c12", "10 stands for g = 9.81"),
+        ("g2", "m2*9.80665*l2*c12", "9.80665 stands for g = 9.81"),
+        ("g2", "5.89*cos(q1+q2)", "5.89 stands for 5.886"),
+        ("g2", "m2*g*l2*sin(1.5708 - q1 - q2)", "1.5708 stands for pi/2"),
+        ("g2", "m2*g*l2*sin(3.1416/2 - q1 - q2)", "3.1416 stands for pi"),
+    ],
+)
+def test_rounded_numbers_are_named(tmp_path: Path, entry: str, text: str, said: str) -> None:
+    found = judge(tmp_path, **{entry: text})
+    assert found.grade == "right with rounded numbers"
+    assert any(said in remark for remark in found.remarks)
+
+
+def test_a_third_is_not_a_quarter(tmp_path: Path) -> None:
+    assert judge(tmp_path, "planar2r_rods", M22="0.333*m2*l2**2").form == "rounded"
+    assert not judge(tmp_path, "planar2r_rods", M22="0.3*m2*l2**2 + 0.1*m2*l2**2").agrees
+    assert not judge(tmp_path, "planar2r_rods", M22="0.34*m2*l2**2").agrees
+    assert not judge(tmp_path, "planar2r_rods", M22="0.25*m2*l2**2").agrees
+
+
+@pytest.mark.parametrize("text", ["m2*9.7*l2*c12", "5.87*c12", "5.8861*c12", "m2*9.8*l2*c1",
+                                  "m2*9.8*l2*s12", "1.4*9.81*0.4*c12", "2*9.8*l2*c12"])  # fmt: skip
+def test_a_slip_does_not_hide_behind_rounding(tmp_path: Path, text: str) -> None:
+    assert judge(tmp_path, g2=text).grade == "wrong"
+
+
+def test_numbers_for_names_hold_for_one_robot_only(tmp_path: Path) -> None:
+    found = judge(tmp_path, M11="(m1+m2)*0.25 + m2*l2**2 + 2*m2*l1*l2*c2")
+    assert found.grade == "right"
+    assert found.remarks == ("but it holds only for l1 = 0.5",)
+    assert not judge(tmp_path, M11="(m1+m2)*l1/2 + m2*l2**2 + 2*m2*l1*l2*c2").agrees
+
+
+def test_symbols_with_rounded_numbers(tmp_path: Path) -> None:
+    found = judge(tmp_path, symbols="g = 9.8", g2="m2*g*l2*c12")
+    assert found.form == "rounded"
+    assert "g = 9.8 in [symbols] stands for 9.81" in found.remarks
+    assert not judge(tmp_path, symbols="g = 9.8", g2="m2*g*l2*s12").agrees
+
+
+def test_rounded_angles_in_the_robots_data() -> None:
+    links = [replace(link, alpha=1.5708 if k == 2 else link.alpha)
+             for k, link in enumerate(kl.load("spatial3r").table.links)]  # fmt: skip
+    exact = kl.load("spatial3r")
+    typed = kl.Robot.from_dh(replace(kl.load("spatial3r").table, links=links))
+    found = kl.diagnose(typed, "fk", lambda q: kl.fk(exact, q), samples=20)
+    assert found.grade == "right with rounded numbers"
+    assert "alpha of link 3" in found.remarks[0]
+
+
+def test_another_valid_c(tmp_path: Path) -> None:
+    h = "m2*l1*l2*s2"
+    rows = {"C11": f"-2*{h}*qd2", "C12": f"-{h}*qd2", "C21": f"{h}*qd1", "C22": "0"}
+    found = judge(tmp_path, **rows)
+    assert found.grade == "right but written unusually"
+    assert "Mdot - 2C is not skew-symmetric" in found.remarks[0]
+    assert not judge(tmp_path, **{**rows, "C12": f"-2*{h}*qd2"}).agrees
+
+    def split(q, v):
+        other = np.outer(np.cos(q), [-v[1], v[0]])
+        return kl.coriolis_matrix(ARM, q, v) + other
+
+    assert kl.diagnose(ARM, "coriolis_matrix", split).form == "unusual"
+
+
+def test_a_potential_with_another_zero(tmp_path: Path) -> None:
+    found = judge(tmp_path, V="m1*g*l1*(1 + s1) + m2*g*(l1*s1 + l2*s12 + 3)")
+    assert found.form == "unusual"
+    assert "another zero" in found.remarks[0]
+    assert not judge(tmp_path, V="m1*g*l1*(1 - s1) + m2*g*(l1*s1 + l2*s12)").agrees
+    energy = kl.diagnose(ARM, "kinetic_energy", lambda q, v: kl.kinetic_energy(ARM, q, v) + 2)
+    assert not energy.agrees
+
+
+def test_functions_with_rounded_numbers() -> None:
+    puma = kl.load("puma560")
+    weight = kl.diagnose(
+        puma, "gravity_torques", lambda q: kl.gravity_torques(puma, q) * 9.8 / 9.81
+    )
+    assert weight.remarks == ("g = 9.8 stands for 9.81",)
+    mass = kl.diagnose("planar2r_rods", "mass_matrix[0,0]", lambda q: 0.6217 + 0.3 * np.cos(q[1]))
+    assert mass.grade == "right with rounded numbers"
+    much = kl.diagnose(ARM, "gravity_torques", lambda q: kl.gravity_torques(ARM, q) * 9.5 / 9.81)
+    assert not much.agrees
+
+
+def test_no_false_alarm_in_a_sample_of_the_campaign(tmp_path: Path) -> None:
+    sys.path.insert(0, str(SCRIPTS))
+    try:
+        import correct_forms
+    finally:
+        sys.path.remove(str(SCRIPTS))
+    done, alarms = correct_forms.run(40, 5, tmp_path)
+    assert alarms == []
+    assert len(done) >= 8
