@@ -64,6 +64,8 @@ from .fast.stacks import inverse_dynamics as inverse_dynamics
 from .fast.stacks import jacobian as jacobian
 from .fast.stacks import statics as statics
 from .fivebar import FiveBar as FiveBar
+from .fivebar.design.front import fivebar_front as fivebar_front
+from .fivebar.design.synthesis import design_fivebar as design_fivebar
 from .formulas.record import hand_formula as hand_formula
 from .inverse.branches import ik_branches as ik_branches
 from .inverse.search import ik as ik

@@ -10,7 +10,7 @@ module                 what it holds
 ``analysis_tables``    What the commands about dexterity print
 ``check``              The command check: hand formulas beside the engine
 ``derive``             The command derive: an arm's formulas, derived from its DH table
-``fivebar``            Commands about five-bars: list, analyse, size, export
+``fivebar/``           Commands about five-bars: list, analyse, size, design, export
 ``ik``                 Command ``ik``: one pose from the command line
 ``mark``               Command ``mark``: a class's submissions, judged
 ``motion``             Command ``motion``: a motion of an arm, checked, drawn, saved

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 import sys
 import unicodedata
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 from rich.cells import cell_len
@@ -18,6 +18,9 @@ from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Column, Table
 from rich.text import Text
+
+if TYPE_CHECKING:
+    from rich.table import Table
 
 LONGEST = 900
 """Characters of an error message that are shown."""
@@ -142,3 +145,14 @@ def complain(problem: BaseException | str) -> None:
     if len(text) > LONGEST:
         text = f"{text[:LONGEST]} ..."
     print(f"kinlab: {text}", file=sys.stderr)
+
+
+def fine_table(*columns: str, left: tuple[int, ...]) -> Table:
+    """A table of numbers; the columns of ``left`` are text."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for k, column in enumerate(columns):
+        table.add_column(column, justify="left" if k in left else "right", no_wrap=k in left)
+    return table

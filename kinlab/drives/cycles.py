@@ -21,8 +21,8 @@ from kinlab.errors import OptionError
 LIFT, TRAVEL = 0.025, 0.305
 """The Adept cycle, m."""
 
-_PEAK_SPEED = 1.875
-_PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)
+PEAK_SPEED = 1.875
+PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)
 """Peaks of the fifth-degree law over 1 m in 1 s."""
 
 
@@ -35,12 +35,14 @@ class Path:
         points: positions, (K, d), m; d is 2 in the plane and 3 in space.
         v: velocities, (K, d), m/s.
         a: accelerations, (K, d), m/s².
+        carried: mass at the tool beside the machine's own, (K,), kg; none: nothing.
     """
 
     t: Array
     points: Array
     v: Array
     a: Array
+    carried: Array | None = None
 
     @property
     def duration(self) -> float:
@@ -50,11 +52,13 @@ class Path:
     @property
     def held(self) -> Path:
         """The same places with the tool at rest in each of them."""
-        return Path(self.t, self.points, np.zeros_like(self.v), np.zeros_like(self.a))
+        still = np.zeros_like(self.v)
+        return Path(self.t, self.points, still, still, self.carried)
 
     def stretched(self, factor: float) -> Path:
         """The same way in ``factor`` times the time."""
-        return Path(self.t * factor, self.points, self.v / factor, self.a / factor**2)
+        v, a = self.v / factor, self.a / factor**2
+        return Path(self.t * factor, self.points, v, a, self.carried)
 
 
 def pick_and_place(
@@ -99,14 +103,14 @@ def pick_and_place(
     if samples < 101:
         raise OptionError(f"cycle: samples is {samples}; it must be at least 101")
     lengths = np.array([lift, travel, lift])
-    spans = np.maximum(_PEAK_SPEED * lengths / v_max, np.sqrt(_PEAK_ACCELERATION * lengths / a_max))
+    spans = np.maximum(PEAK_SPEED * lengths / v_max, np.sqrt(PEAK_ACCELERATION * lengths / a_max))
     starts = np.concatenate(
         [[0.0], np.cumsum(spans[:-1] - blend * np.minimum(spans[:-1], spans[1:]))]
     )
     half = float((starts + spans).max())
     moves = np.array([lift * rise, travel * way, -lift * rise] * 2)
     moves[4] = -moves[1]
-    path = _superpose(
+    path = superpose(
         middle - 0.5 * travel * way,
         moves,
         np.concatenate([starts, starts + half]),
@@ -118,7 +122,8 @@ def pick_and_place(
     return path.stretched(float(max(fastest, hardest)))
 
 
-def _superpose(start: Array, moves: Array, begins: Array, spans: Array, t: Array) -> Path:
+def superpose(start: Array, moves: Array, begins: Array, spans: Array, t: Array) -> Path:
+    """The sum of moves (M, d), each by the fifth-degree law from its begin over its span."""
     tau = np.clip((t[:, None] - begins) / spans, 0.0, 1.0)
     s = tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
     s1 = 30.0 * tau**2 * (1.0 - tau) ** 2 / spans

@@ -97,7 +97,7 @@ class Limit:
         return self.allowed / self.asked if self.asked > 0.0 else np.inf
 
     def __str__(self) -> str:
-        return f"{self.name} {self.asked:.3g} of {self.allowed:.3g} {self.unit}"
+        return f"{self.name} {self.asked:.4g} of {self.allowed:.4g} {self.unit}"
 
 
 @dataclass(frozen=True)

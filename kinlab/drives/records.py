@@ -11,7 +11,7 @@ from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from kinlab.errors import ExpressionError, MotorError, near
+from kinlab.errors import ExpressionError, KinlabError, MotorError, near
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml
 
@@ -98,7 +98,7 @@ def read_records(
     """
     text = read_text(path)
     is_csv = Path(path).suffix.lower() == ".csv"
-    rows = _csv_rows(text, str(path)) if is_csv else _toml_rows(text, str(path), table)
+    rows = csv_rows(text, str(path)) if is_csv else _toml_rows(text, str(path), table)
     kind = table.removesuffix("s")
     out: dict[str, T] = {}
     for i, row in enumerate(rows, 1):
@@ -121,24 +121,31 @@ def _toml_rows(text: str, path: str, table: str) -> list[Mapping[str, Any]]:
     return rows
 
 
-def _csv_rows(text: str, path: str) -> list[Mapping[str, Any]]:
+def csv_rows(
+    text: str, path: str, error: type[KinlabError] = MotorError
+) -> list[Mapping[str, Any]]:
+    """The rows of a CSV file by the names in its first line; empty cells are left out.
+
+    Raises:
+        KinlabError: (the class given) not CSV, no rows, a row of another length, a column twice.
+    """
     head = text.partition("\n")[0]
     mark = ";" if head.count(";") > head.count(",") else ","
     try:
         lines = list(csv.reader(io.StringIO(text), delimiter=mark, strict=True))
     except csv.Error as problem:
-        raise MotorError(f"{path}: not CSV: {problem}") from None
+        raise error(f"{path}: not CSV: {problem}") from None
     filled = [(i, line) for i, line in enumerate(lines, 1) if any(cell.strip() for cell in line)]
     if len(filled) < 2:
-        raise MotorError(f"{path}: no rows in it; the first line names the columns")
+        raise error(f"{path}: no rows in it; the first line names the columns")
     keys = [cell.strip() for cell in filled[0][1]]
     if len(set(keys)) < len(keys):
         twice = next(key for key in keys if keys.count(key) > 1)
-        raise MotorError(f"{path}: the column {twice!r} stands twice in the first line")
+        raise error(f"{path}: the column {twice!r} stands twice in the first line")
     rows: list[Mapping[str, Any]] = []
     for i, line in filled[1:]:
         if len(line) != len(keys):
-            raise MotorError(f"{path}, line {i}: {len(line)} cells; the first line has {len(keys)}")
+            raise error(f"{path}, line {i}: {len(line)} cells; the first line has {len(keys)}")
         cells = dict(zip(keys, (cell.strip() for cell in line), strict=True))
         rows.append({key: cell for key, cell in cells.items() if cell})
     return rows

@@ -5,7 +5,11 @@ module            what it holds
 ================  ================================================================================
 ``arguments``     What the functions of a five-bar are given: points of the plane, modes, how to
                   refuse
+``bounds/``       The worst case over a rectangle, with a proved bound
 ``closed_chain``  The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint
+``cycle``         Drives of a five-bar for a cycle of one's own: motors for a time, and the time for
+                  a motor
+``design/``       Dimensional synthesis: the lengths of a five-bar for a rectangle
 ``dynamics``      Dynamics of a five-bar in closed form: rods of mass, torque, mass matrix, energy
                   and power
 ``export``        A five-bar as files for other programs: MJCF with its loop, or URDF with a loop

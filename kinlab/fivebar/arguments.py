@@ -76,6 +76,18 @@ def read_mode(mode: Mode) -> Array:
     return signs.astype(np.float64)
 
 
+def read_signs(mode: str) -> tuple[int, int]:
+    """Reads ``-+`` and the like.
+
+    Raises:
+        OptionError: anything but two signs.
+    """
+    if len(mode) != 2 or set(mode) - {"+", "-"}:
+        raise OptionError(f"mode {mode!r} does not exist; choose one of ++, +-, -+, --")
+    first, second = (1 if sign == "+" else -1 for sign in mode)
+    return first, second
+
+
 def read_on_unreachable(choice: str) -> bool:
     """True for ``"mask"``, false for ``"raise"``.
 

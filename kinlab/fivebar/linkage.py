@@ -14,7 +14,7 @@ Source: note 003; Huang et al. 2005, doi 10.1115/1.1898343.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from pathlib import Path
 from typing import Any, Generic, TypeVar, overload
@@ -26,6 +26,7 @@ from kinlab.arrays import Array, frozen, real_array, shaped, shown
 from kinlab.errors import MechanismError
 from kinlab.fivebar import closed_chain as chain
 from kinlab.fivebar import (
+    cycle,
     dynamics,
     export,
     files,
@@ -197,6 +198,8 @@ class FiveBar:
     # drives, Pinocchio's closed chain, files
     follow = servo.follow
     size_servo = servo.size_servo
+    size_cycle = cycle.size_cycle
+    fastest_cycle = cycle.fastest_cycle
     fit_to_motor = servo.fit_to_motor
     closed_chain = chain.build
     export = export.export
@@ -213,6 +216,31 @@ class FiveBar:
                 an impossible linkage.
         """
         return FiveBar(**files.read(name_or_path, [f.name for f in fields(FiveBar)]))
+
+    def with_masses(
+        self,
+        crank: ArrayLike | None = None,
+        rod: ArrayLike | None = None,
+        payload: float | None = None,
+    ) -> FiveBar:
+        """The same linkage with uniform bars of these masses; ``None`` leaves what is there.
+
+        Args:
+            crank, rod: kg, one number or a pair; centre in the middle, inertia m l²/12.
+            payload: kg.
+
+        Raises:
+            MechanismError: a mass that is negative or no number.
+        """
+        values: dict[str, Any] = {}
+        for name, mass, length in (("crank", crank, self.l1), ("rod", rod, self.l2)):
+            if mass is not None:
+                each = _pair(mass, f"{self.name}: {name}_mass")
+                bar = {"mass": each, "com": 0.5 * length, "inertia": each * length**2 / 12.0}
+                values |= {f"{name}_{key}": value for key, value in bar.items()}
+        if payload is not None:
+            values["payload"] = payload
+        return replace(self, **values)
 
     @property
     def base_x(self) -> Array:

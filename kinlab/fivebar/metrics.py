@@ -56,14 +56,16 @@ def singular_values(
         SingularError: type I.
     """
     pose = solve_pose(linkage, xy, mode, on_unreachable, regular="I")
-    return pose.restore(_sigma(linkage, pose))
+    return pose.restore(sigma(linkage, pose))
 
 
-def _sigma(linkage: FiveBar, pose: Pose) -> Array:
+def sigma(linkage: FiveBar, pose: Pose) -> Array:
+    """The formula of :func:`singular_values` for solved poses, (N, 2)."""
     jac = rate_matrix(linkage, pose)
     a, b, c, d = jac[:, 0, 0], jac[:, 0, 1], jac[:, 1, 0], jac[:, 1, 1]
     rotation, mirror = np.hypot(a + d, b - c), np.hypot(a - d, b + c)
-    return 0.5 * np.stack([rotation + mirror, np.abs(rotation - mirror)], axis=1)
+    both: Array = 0.5 * np.stack([rotation + mirror, np.abs(rotation - mirror)], axis=1)
+    return both
 
 
 def condition_number(
@@ -82,8 +84,8 @@ def condition_number(
         SingularError: type I or type II.
     """
     pose = solve_pose(linkage, xy, mode, on_unreachable, regular="I II")
-    sigma = _sigma(linkage, pose)
-    return pose.restore(sigma[:, 0] / sigma[:, 1])
+    both = sigma(linkage, pose)
+    return pose.restore(both[:, 0] / both[:, 1])
 
 
 def passive_angles(linkage: FiveBar, xy: ArrayLike, mode: Mode = HANGING) -> Array:

@@ -1,9 +1,5 @@
 """Servo sizing of a five-bar: the worst case over a workspace, and the motors that meet it.
 
-At one place the torque of a crank is linear in the tool's acceleration and quadratic in its
-velocity: tau_i = G_i a + v^T Q_i v + g_i. So the worst direction of each is exact: |G_i| a_max,
-and an eigenvalue of Q_i times v_max². Only the place has to be searched for.
-
 Source: note 003 (003.speed, 003.IM, 003.Tmax, 003.G); Huang et al. 2005, doi 10.1115/1.1898343.
 The note's T_max keeps |G_1| a_max of massless rods alone; the full one adds f(v), gravity, the
 rods, the rotor and the gear's efficiency.
@@ -11,31 +7,45 @@ rods, the rotor and the gear's efficiency.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path as File
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number
-from kinlab.drives.cycles import LIFT, TRAVEL, Path, pick_and_place
+from kinlab.drives.cycles import LIFT, TRAVEL, Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_motors, stretch_to_motor
-from kinlab.drives.gears import Drive
-from kinlab.drives.motors import Motor, catalogue, find_motor
+from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors, stretch_to_motor
+from kinlab.drives.gears import Drive, Gearbox, gears_of
+from kinlab.drives.motors import Motor, find_motor, motors_of
+from kinlab.drives.waypoints import Cycle, adept
 from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
 from kinlab.fivebar.arguments import HANGING, Mode
+from kinlab.fivebar.bounds.worst import (
+    MotionForms,
+    Worst,
+    acceleration_forms,
+    bound_over,
+    grid_of,
+    require_regular,
+    row_norms,
+    torque_forms,
+    worst,
+)
 from kinlab.fivebar.dynamics import (
-    RodModel,
     bars_without_mass,
     crank_inertia,
     joint_mass,
     rod_model,
+    tool_force,
     torques,
 )
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
-from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
+from kinlab.fivebar.metrics import sigma
+from kinlab.fivebar.workspace import Rectangle, read_rectangle
 from kinlab.host.introductions import Introduction, Rows, shown_cells, vector
 from kinlab.tolerances import TOLERANCES
 
@@ -70,6 +80,9 @@ def follow(
     rate = np.einsum("nij,nj->ni", jac, path.v)
     theta_ddot = np.einsum("nij,nj->ni", jac, path.a) + bias
     tau = torques(linkage, pose, path.v, path.a, rod_model(linkage, model))
+    if path.carried is not None:
+        force = path.carried[:, None] * (path.a - linkage.gravity)
+        tau = tau + tool_force(linkage, pose, force)
     theta = np.unwrap(ik(linkage, path.points, mode), axis=0)
     return Demand(path.t, theta, rate, theta_ddot, tau, linkage.reflected_inertia)
 
@@ -132,149 +145,41 @@ def fit_to_motor(
     )
 
 
-# -------- The worst case over a rectangle
-
-_GRID, _ZOOM, _ZOOMS = 33, 9, 14
-"""Points a side of the first grid and of each zoom, and how often the best cell is zoomed in."""
-
-
-@dataclass(frozen=True)
-class Worst:
-    """Largest value over the workspace for each crank, and where.
-
-    Attributes:
-        value: (2,). place: (2 cranks, 2), m.
-    """
-
-    value: Array
-    place: Array
-
-    @property
-    def largest(self) -> float:
-        """Over both cranks."""
-        return float(self.value.max())
-
-
-@dataclass(frozen=True)
-class MotionForms:
-    """A pair of quantities as functions of the tool's motion.
-
-    Their value is linear·a + v^T quadratic v + constant.
-
-    Attributes:
-        linear: (N, 2, 2). quadratic: (N, 2, 2, 2). constant: (N, 2).
-    """
-
-    linear: Array
-    quadratic: Array
-    constant: Array
-
-    def plus(self, other: MotionForms, share: float, other_share: float) -> MotionForms:
-        """share · self + other_share · other."""
-        return MotionForms(
-            share * self.linear + other_share * other.linear,
-            share * self.quadratic + other_share * other.quadratic,
-            share * self.constant + other_share * other.constant,
-        )
-
-    def peak(self, v_max: float, a_max: float) -> Array:
-        """Largest absolute value over |a| <= a_max and |v| <= v_max, (N, 2), exact."""
-        xx, xy, yy = (self.quadratic[..., i, j] for i, j in ((0, 0), (0, 1), (1, 1)))
-        middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)  # eigenvalues' circle
-        up = np.maximum(middle + radius, 0.0) * v_max**2 + self.constant
-        down = np.maximum(radius - middle, 0.0) * v_max**2 - self.constant
-        return np.asarray(row_norms(self.linear) * a_max + np.maximum(up, down))
-
-
-def torque_forms(linkage: FiveBar, pose: Pose, rods: RodModel) -> MotionForms:
-    """The crank torques, N m."""
-
-    def at(v: Array, a: Array) -> Array:
-        shape = pose.xy.shape
-        return torques(linkage, pose, np.broadcast_to(v, shape), np.broadcast_to(a, shape), rods)
-
-    none, (x, y) = np.zeros(2), np.eye(2)
-    still = at(none, none)
-    linear = np.stack([at(none, x) - still, at(none, y) - still], axis=2)
-    return MotionForms(linear, _quadratic(lambda v: at(v, none) - still), still)
-
-
-def acceleration_forms(linkage: FiveBar, pose: Pose) -> MotionForms:
-    """The crank accelerations theta_ddot = J a + f(v), rad/s²."""
-    bias = _quadratic(lambda v: rate_bias(linkage, pose, np.broadcast_to(v, pose.xy.shape)))
-    return MotionForms(rate_matrix(linkage, pose), bias, np.zeros_like(pose.xy))
-
-
-def _quadratic(form: Callable[[Array], Array]) -> Array:
-    """Matrices of the quadratic forms v -> (N, 2), by polarisation, (N, 2, 2, 2)."""
-    x, y = np.eye(2)
-    xx, yy = form(x), form(y)
-    xy = 0.5 * (form(x + y) - xx - yy)
-    return np.stack([np.stack([xx, xy], axis=2), np.stack([xy, yy], axis=2)], axis=3)
-
-
-def row_norms(matrix: Array) -> Array:
-    """Lengths of the rows, (N, 2) from (N, 2, 2)."""
-    return np.asarray(np.linalg.norm(matrix, axis=2))
-
-
-def worst(linkage: FiveBar, box: Rectangle, mode: Mode, quantity: Callable[[Pose], Array]) -> Worst:
-    """Largest (2,) of a quantity (N, 2) over a rectangle, edges included, by zooming grids."""
-    low, high = np.array([box.x_min, box.y_min]), np.array([box.x_max, box.y_max])
-    values, places = np.empty(2), np.empty((2, 2))
-    first = lattice(low, high, _GRID)
-    found = quantity(solve_pose(linkage, first, mode))
-    for crank in range(2):
-        place, best = first[found[:, crank].argmax()], found[:, crank].max()
-        reach = (high - low) / (_GRID - 1)
-        for _ in range(_ZOOMS):
-            near = lattice(np.maximum(place - reach, low), np.minimum(place + reach, high), _ZOOM)
-            value = quantity(solve_pose(linkage, near, mode))[:, crank]
-            if value.max() > best:
-                place, best = near[value.argmax()], value.max()
-            reach = reach * 0.4
-        values[crank], places[crank] = best, place
-    return Worst(values, places)
-
-
-def lattice(low: Array, high: Array, count: int) -> Array:
-    """count x count points of a rectangle, edges included, (count², 2)."""
-    axes = [np.linspace(a, b, count) for a, b in zip(low, high, strict=True)]
-    return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-
-
-def grid_of(box: Rectangle) -> Array:
-    """The first grid over a rectangle, (N, 2)."""
-    return lattice(np.array([box.x_min, box.y_min]), np.array([box.x_max, box.y_max]), _GRID)
-
-
-def require_regular(linkage: FiveBar, box: Rectangle, mode: Mode) -> None:
-    """Refuses a rectangle that is not free of singularities in one working mode.
-
-    Raises:
-        UnreachableError, SingularError: with a place.
-    """
-    points = grid_of(box)
-    pose = solve_pose(linkage, points, mode, regular="I II")  # names an unreachable place
-    middle = solve_pose(linkage, [0.5 * (box[0] + box[1]), 0.5 * (box[2] + box[3])], mode)
-    sign = np.sign(middle.rods[0])
-    if sign == 0.0 or np.any(pose.rods * sign <= 0.0):
-        at = points[int(np.argmin(pose.rods * sign))]
-    else:
-        free = free_region(linkage, mode, int(sign))
-        if free.contains_rectangle(box):
-            return
-        at = points[int(np.argmin(free.clearance(points)))]
-    raise SingularError(
-        f"{linkage.name}: the workspace {tuple(box)} is not free of singularities in mode "
-        f"{tuple(mode)}; the rods get in line, or a leg's reach ends, near ({at[0]:.6g}, "
-        f"{at[1]:.6g}) m; largest_rectangle() gives one that is free"
-    )
-
-
 # -------- Sizing
 
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
+
+
+def require_masses(linkage: FiveBar, massless: bool) -> tuple[str, ...]:
+    """Refuses a linkage whose bars have no mass where that was not said to be meant.
+
+    Args:
+        linkage: the five-bar.
+        massless: bars without mass are meant.
+
+    Returns:
+        What the figures leave out: a sentence where bars have no mass.
+
+    Raises:
+        InertiaError: nothing at all to move, or bars without mass; says what to give.
+
+    Warns:
+        KinlabWarning: bars without mass, where they are meant.
+    """
+    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
+        raise InertiaError(
+            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
+            "can be sized"
+        )
+    missing = bars_without_mass(linkage)
+    if missing and not massless:
+        raise InertiaError(
+            f"{linkage.name}: {missing}; with_masses() and --crank-mass, --rod-mass take uniform "
+            "bars; if bars without mass are meant, say so: massless=True, --massless"
+        )
+    if missing:
+        warn(f"{linkage.name}: {missing}")
+    return (missing,) if missing else ()
 
 
 @dataclass(frozen=True, repr=False)
@@ -378,6 +283,11 @@ def size_servo(
     gear_ratio: float | None = None,
     mode: Mode = HANGING,
     efficiency: float = 0.9,
+    *,
+    motors: str | File | Sequence[Motor] | None = None,
+    gears: str | File | Gearbox | Sequence[Gearbox] | None = None,
+    cycle: Cycle | None = None,
+    massless: bool = False,
 ) -> ServoSizing:
     """Sizes the drives for a rectangle, a speed and an acceleration of the tool in any direction.
 
@@ -391,19 +301,25 @@ def size_servo(
         mode: signs of u_i x w_i.
         efficiency: of the gears, 0 to 1. The load is taken to pay the losses or to be held by
             them, whichever asks more of the motor: an upper bound of the peak.
+        motors: a catalogue of one's own: a .toml or .csv file, or motors; none: the shipped one.
+        gears: gearboxes likewise, for pairs that can be bought; gear_ratio and efficiency are then
+            the gearboxes'.
+        cycle: what the RMS torques are taken over; none: the 25/305/25 mm one at the bottom of
+            the workspace, shrunk in proportion where the workspace is smaller.
+        massless: the bars are meant to have no mass.
 
     Returns:
-        The demands and the motors that meet them. The cycle is the 25/305/25 mm one at the
-        bottom of the workspace, shrunk in proportion where the workspace is smaller.
+        The demands, by their proved bounds, and the motors or pairs that meet them.
 
     Raises:
         OptionError: a limit that is not positive, an empty rectangle, an impossible efficiency.
         UnreachableError, SingularError: the rectangle is not free of singularities; says where.
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
-        InertiaError: the linkage has neither masses nor a payload.
+        InertiaError: the linkage has neither masses nor a payload, or bars without mass where
+            ``massless`` does not say so.
 
     Warns:
-        KinlabWarning: cranks or rods have no mass.
+        KinlabWarning: cranks or rods have no mass, and are meant to.
     """
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
@@ -421,51 +337,60 @@ def size_servo(
             raise OptionError(f"{linkage.name}: {name} is {value!r}; it must be positive")
     if not TOLERANCES.no_motion < efficiency <= 1.0:
         raise OptionError(f"{linkage.name}: efficiency is {efficiency!r}; it must lie in (0, 1]")
-    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
-        raise InertiaError(
-            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
-            "can be sized"
-        )
+    remarks = require_masses(linkage, massless)
     require_regular(linkage, box, mode)
-    missing = bars_without_mass(linkage)
-    if missing:
-        warn(f"{linkage.name}: {missing}")
-    exact, massless = rod_model(linkage, "exact"), rod_model(linkage, "massless")
+    exact, none = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)
 
-    def search(quantity: Callable[[Pose], Array]) -> Worst:
-        return worst(linkage, box, mode, quantity)
+    def measure(pose: Pose) -> dict[str, Any]:
+        load, turn = torque_forms(bare, pose, exact), acceleration_forms(linkage, pose)
+        return {
+            "rate": row_norms(turn.linear) * v_max,
+            "load_inertia_note": _diagonal(joint_mass(bare, pose, none)),
+            "load_inertia": _diagonal(joint_mass(bare, pose, exact)),
+            "torque_note": row_norms(torque_forms(bare, pose, none).linear) * a_max,
+            "torque": load.with_rotors(turn, linkage.reflected_inertia).peak(v_max, a_max),
+            "load": load.peak(v_max, a_max),
+            "sigma": sigma(linkage, pose) * np.array([1.0, -1.0]),
+        }
 
-    rate = search(lambda pose: row_norms(rate_matrix(linkage, pose)) * v_max)
-    inertia = search(lambda pose: _diagonal(joint_mass(bare, pose, exact)))
-    path = _cycle_in(box, v_max, a_max)
-    cycle = follow(linkage, path, mode)
+    found = worst(linkage, box, mode, measure)
+    path = (adept_in(box, v_max, a_max) if cycle is None else cycle).path()
+    demand = follow(linkage, path, mode)
 
-    def shaft(pose: Pose) -> Callable[[Drive], Array]:
-        """Worst torque at the motors' shafts at some poses, (N, 2), by drive."""
-        load = torque_forms(bare, pose, exact)
-        acceleration = acceleration_forms(linkage, pose)
+    def forms(pose: Pose) -> tuple[MotionForms, MotionForms]:
+        return torque_forms(bare, pose, exact), acceleration_forms(linkage, pose)
 
-        def at(drive: Drive) -> Array:
-            rotor = drive.inertia * drive.gear.ratio
-            shares = [c / drive.gear.ratio for c in dict.fromkeys(drive.gear.shares)]
-            peaks = [load.plus(acceleration, c, rotor).peak(v_max, a_max) for c in shares]
-            return np.asarray(np.max(peaks, axis=0))
-
-        return at
+    def shaft(both: tuple[MotionForms, MotionForms], drives: Sequence[Drive]) -> Any:
+        """Worst torque at the motors' shafts, (N, D · 2 directions of power · 2 cranks)."""
+        load, turn = both
+        share = np.array([c / drive.gear.ratio for drive in drives for c in drive.gear.shares])
+        rotor = np.array([drive.inertia * drive.gear.ratio for drive in drives for _ in range(2)])
+        peaks = load.behind_gears(turn, share, rotor).peak(v_max, a_max)
+        return peaks.reshape(peaks.shape[0], 4 * len(drives))
 
     def peak(drives: Sequence[Drive]) -> Array:
-        return np.array([search(lambda pose, d=d: shaft(pose)(d)).largest for d in drives])  # type: ignore[misc]
+        bound = bound_over(linkage, box, mode, lambda pose: shaft(forms(pose), drives))[2]
+        return np.asarray(bound.reshape(len(drives), 4).max(axis=1))
 
-    on_grid = shaft(solve_pose(linkage, grid_of(box), mode))
+    on_grid = forms(solve_pose(linkage, grid_of(box), mode))
 
     def estimate(drives: Sequence[Drive]) -> Array:
-        return np.array([on_grid(drive).max() for drive in drives])
+        at = np.asarray(shaft(on_grid, drives)).max(axis=0)
+        return np.asarray(at.reshape(len(drives), 4).max(axis=1))
 
-    load = search(lambda pose: torque_forms(bare, pose, exact).peak(v_max, a_max)).largest
-    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate, load)
-    motors = list(catalogue().values()) if motor is None else [find_motor(motor)]
-    arm = crank_inertia(bare, massless)
+    rate, inertia = found["rate"], found["load_inertia"]
+    load = found["load"].largest
+    duty = Duty(rate.largest, inertia.largest, demand, efficiency, peak, estimate, load)
+    among = motors_of(motors)
+    if motor is not None:
+        among = [find_motor(motor, None if motors is None else {m.name: m for m in among})]
+    fits = (
+        fit_motors(duty, among, gear_ratio)
+        if gears is None
+        else fit_drives(duty, among, gears_of(gears))
+    )
+    arm = crank_inertia(bare, none)
     return ServoSizing(
         workspace=box,
         v_max=float(v_max),
@@ -473,35 +398,27 @@ def size_servo(
         mode=(int(mode[0]), int(mode[1])),
         efficiency=float(efficiency),
         rate=rate,
-        load_inertia_note=search(lambda pose: _diagonal(joint_mass(bare, pose, massless))),
+        load_inertia_note=found["load_inertia_note"],
         load_inertia=inertia,
-        torque_note=search(
-            lambda pose: row_norms(torque_forms(bare, pose, massless).linear) * a_max
-        ),
-        torque=search(lambda pose: torque_forms(linkage, pose, exact).peak(v_max, a_max)),
+        torque_note=found["torque_note"],
+        torque=found["torque"],
         eta=np.divide(linkage.payload, arm, out=np.full(2, np.inf), where=arm > 0.0),
-        sigma=(
-            -search(lambda pose: -_sigma(linkage, pose)).largest,
-            search(lambda pose: _sigma(linkage, pose)).largest,
-        ),
+        sigma=(-float(found["sigma"].bound[1]), float(found["sigma"].bound[0])),
         path=path,
-        cycle=cycle,
-        fits=fit_motors(duty, motors, gear_ratio),
-        remarks=(missing,) if missing else (),
+        cycle=demand,
+        fits=fits,
+        remarks=remarks,
     )
 
 
-def _diagonal(matrix: Array) -> Array:
-    return np.asarray(np.einsum("nii->ni", matrix))
+def _diagonal(matrix: Any) -> Any:
+    return np.einsum("nii->ni", matrix)
 
 
-def _sigma(linkage: FiveBar, pose: Pose) -> Array:
-    return np.asarray(np.linalg.svd(rate_matrix(linkage, pose), compute_uv=False))
-
-
-def _cycle_in(box: Rectangle, v_max: float, a_max: float) -> Path:
+def adept_in(box: Rectangle, v_max: float, a_max: float) -> Cycle:
+    """The 25/305/25 mm cycle at the bottom of a rectangle, shrunk where that is smaller."""
     shrink = min(1.0, (box.x_max - box.x_min) / TRAVEL, (box.y_max - box.y_min) / LIFT)
     if shrink <= 0.0:
         raise OptionError("workspace: a cycle needs a rectangle with both sides longer than zero")
-    centre = np.array([0.5 * (box.x_min + box.x_max), box.y_min])
-    return pick_and_place(centre, v_max, a_max, LIFT * shrink, TRAVEL * shrink)
+    centre = (0.5 * (box.x_min + box.x_max), box.y_min)
+    return adept(centre, v_max, a_max, LIFT * shrink, TRAVEL * shrink)

@@ -7,6 +7,7 @@ module          what it holds
 ``canvas``      Figures and files, and the one place that imports matplotlib
 ``counts``      The number of solutions over a section of the workspace
 ``curves``      Curves in joint space and along paths
+``designs``     Pictures of designed five-bars: one design over its rectangle, and a Pareto front
 ``drives``      Torque over speed of the drives of an arm, with the limits of each motor
 ``maps``        Workspace maps: filled for planar arms, a section or a cloud for spatial ones
 ``mechanisms``  Pictures of a five-bar: its workspace in one mode, a cycle, and what sizing rests

@@ -9,6 +9,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import HANGING, Mode
+from kinlab.fivebar.cycle import CycleSizing
 from kinlab.fivebar.dynamics import crank_inertia, rod_model
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.servo import ServoSizing
@@ -65,11 +66,11 @@ def fivebar(
         *ring.T, color="black", lw=1.6, label=f"largest free circle, r = {circle.radius:.3g} m"
     )
     box = linkage.largest_rectangle(mode, assembly)
-    _box(axes, box, f"largest free rectangle, {box.area:.3g} m²")
+    box_of(axes, box, f"largest free rectangle, {box.area:.3g} m²")
     for k, pose in enumerate(linkage.isotropic_poses(mode)):
         label = "isotropic pose" if k == 0 else None
         axes.plot(*pose.xy, marker="*", ms=12, color="gold", mec="black", ls="none", label=label)
-    _bars(axes, linkage, np.array(circle.centre), mode)
+    bars(axes, linkage, np.array(circle.centre), mode)
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
     signs = ", ".join("+" if s > 0 else "−" for s in mode)
     axes.set_title(f"{figure_text(linkage.name)}: working mode ({signs})")
@@ -97,7 +98,8 @@ def _loci(axes: Any, linkage: FiveBar, mode: Mode) -> None:
         axes.plot(*line.T, color="black", lw=0.9, ls=(0, (1, 4)), label=label)
 
 
-def _bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
+def bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
+    """Draws the linkage with its tool at a place (2,)."""
     pose = solve_pose(linkage, xy, mode)
     for leg in range(2):
         base = np.array([linkage.base_x[leg], 0.0])
@@ -107,12 +109,12 @@ def _bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
         axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
 
 
-def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
+def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing | CycleSizing, ax: Any = None) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
 
     Args:
         linkage: the five-bar.
-        sizing: of :meth:`kinlab.FiveBar.size_servo`.
+        sizing: of :meth:`kinlab.FiveBar.size_servo` or ``size_cycle``.
         ax: four axes of one figure; a new figure if left out.
 
     Returns:
@@ -124,10 +126,15 @@ def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
     four = new_figure((9.6, 6.4)).subplots(2, 2) if ax is None else ax
     where, rate, torque, power = np.ravel(four)
     figure = where.figure
-    path, cycle, box = sizing.path, sizing.cycle, sizing.workspace
+    path = sizing.path
+    if isinstance(sizing, CycleSizing):
+        cycle, mode, limits = sizing.demand, sizing.mode, f"cycle {figure_text(sizing.cycle.name)}"
+    else:
+        cycle, mode = sizing.cycle, sizing.mode
+        limits = f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
+        box_of(where, sizing.workspace, None, colour="tab:green")
     where.plot(*path.points.T, color="black", lw=1.5)
-    _box(where, box, None, colour="tab:green")
-    _bars(where, linkage, path.points[len(path.t) // 4], sizing.mode)
+    bars(where, linkage, path.points[len(path.t) // 4], mode)
     where.set(aspect="equal", xlabel="x, m", ylabel="y, m", title="path in the workspace")
     curves = (
         (rate, cycle.v, "crank rate, rad/s"),
@@ -144,8 +151,7 @@ def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
     torque.axhline(-rms, color="0.4", lw=1.0, ls=":", label=f"± RMS, {rms:.3g} N m")
     figure.legend(*torque.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
-        f"{figure_text(linkage.name)}: {60 / path.duration:.0f} cycles a minute, "
-        f"v ≤ {sizing.v_max:g} m/s, a ≤ {sizing.a_max:g} m/s²"
+        f"{figure_text(linkage.name)}: {60 / path.duration:.0f} cycles a minute, {limits}"
     )
     return where
 
@@ -155,7 +161,7 @@ def fivebar_gains(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
 
     Args:
         linkage: the five-bar.
-        sizing: of :meth:`kinlab.FiveBar.size_servo`.
+        sizing: of :meth:`kinlab.FiveBar.size_servo` or ``size_cycle``.
         ax: where to draw; a new figure if left out.
 
     Returns:
@@ -194,7 +200,8 @@ def _circle(centre: tuple[float, float], radius: float) -> Array:
     return np.array(centre) + radius * np.stack([np.cos(phi), np.sin(phi)], axis=1)
 
 
-def _box(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
+def box_of(axes: Any, box: Rectangle, label: str | None, colour: str = "black") -> None:
+    """Draws the outline of a rectangle."""
     x, y = box[:2], box[2:]
     corners = np.array([[x[0], x[1], x[1], x[0], x[0]], [y[0], y[0], y[1], y[1], y[0]]])
     axes.plot(*corners, color=colour, lw=1.8, ls="-.", label=label)

@@ -84,7 +84,7 @@ def test_a_pair_that_fails_says_by_which_limit():
     failed = {(f.motor.name, f.gear.name): [c.name for c in f.failed] for f in fits}
     assert failed["M", "weak"] == ["gear max speed", "gear peak torque"]
     assert failed["slow", "G"] == ["max speed"]
-    assert "gear peak torque 11.1 of 8 N m" in [str(c) for c in fits[-1].failed + fits[1].failed]
+    assert "gear peak torque 11.06 of 8 N m" in [str(c) for c in fits[-1].failed + fits[1].failed]
     assert fits[1].unstated == ("nominal_torque", "rated_speed")
 
 

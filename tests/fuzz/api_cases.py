@@ -113,6 +113,12 @@ CALLS: Calls = {
     "sweep": ("sweep", _arm(
         measure=("word", "min_singular"), samples=("count", 50), seed=_seed, lower=("array", [-1.0, -1.0]),
         upper=("array", [1.0, 1.0]), workers=("count", 1), chunk=("count", 16))),
+    "design_fivebar": ("design_fivebar", {
+        "workspace": ("array", [-0.1, 0.1, -0.55, -0.45]), "goal": ("word", "condition"),
+        "payload": ("positive", 1.0), "mode": ("mode", (-1, 1)), "seed": _seed}),
+    "fivebar_front": ("fivebar_front", {
+        "workspace": ("array", [-0.1, 0.1, -0.55, -0.45]), "count": ("count", 3),
+        "payload": ("positive", 1.0), "mode": ("mode", (-1, 1)), "seed": _seed}),
     "design_isotropic": ("design_isotropic", {
         "table": ("table", "planar2r"), "free": ("names", ["a2", "tool.x"]), "task": _task,
         "length": _length, "seeds": ("count", 3), "seed": _seed, "keep": ("count", 2)}),
@@ -197,7 +203,7 @@ CALLS: Calls = {
     "chain.energy": ("chain.energy", {"q": ("chain q", None), "qd": ("chain qd", None)}),
 }  # fmt: skip
 
-HEAVY = ("design_isotropic", "find_singularities", "find_isotropic", "factored_determinant",
+HEAVY = ("design_isotropic", "design_fivebar", "fivebar_front", "find_singularities", "find_isotropic", "factored_determinant",
          "diagnose", "singular_loci", "five.size_servo", "describe_singularity",
          "workspace_section")  # fmt: skip
 

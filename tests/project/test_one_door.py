@@ -16,8 +16,9 @@ from kinlab.model.library import as_robot, shipped
 ARM_NAMES = ("robot", "table")
 """What the first parameter of a function is called where it is an arm."""
 
-NOT_ARMS = {"load", "diagnose_table", "hand_formula", "mark"}
-"""load makes the robot; diagnose_table judges a table; hand_formula and mark are of formulas."""
+NOT_ARMS = {"design_fivebar", "fivebar_front", "load", "diagnose_table", "hand_formula", "mark"}
+"""load makes the robot; diagnose_table judges a table; hand_formula marks a function; mark reads a
+sheet that names its robot; the designs make a five-bar."""
 
 SMALL: dict[str, dict[str, object]] = {
     "compare": {"quantity": "gravity_torques", "samples": 3},

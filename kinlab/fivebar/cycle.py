@@ -1,0 +1,239 @@
+"""Drives of a five-bar for a cycle of one's own: motors for a time, and the time for a motor."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path as File
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from kinlab.arrays import Array, number
+from kinlab.drives.cycles import Path
+from kinlab.drives.demand import Demand
+from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors
+from kinlab.drives.gears import Gearbox, gears_of
+from kinlab.drives.motors import Motor, motors_of
+from kinlab.drives.waypoints import Cycle
+from kinlab.errors import MotorError, OptionError, SingularError, UnreachableError
+from kinlab.fivebar.arguments import HANGING, Mode
+from kinlab.fivebar.dynamics import joint_mass, rod_model
+from kinlab.fivebar.geometry import solve_pose
+from kinlab.fivebar.servo import follow, require_masses
+
+if TYPE_CHECKING:
+    from kinlab.fivebar.linkage import FiveBar
+
+_SLOWEST = 64.0
+"""How many times slower than its limits a cycle is tried."""
+
+_STEPS = 30
+"""Halvings of the range in which the fastest cycle lies: to 1e-9 of it."""
+
+
+@dataclass(frozen=True)
+class CycleSizing:
+    """What a cycle asks of the drives, and which meet it.
+
+    Attributes:
+        cycle: the cycle.
+        mode: working mode.
+        slower: by how much its limits of speed were divided.
+        path: the tool's motion.
+        demand: what the cranks do.
+        load_inertia: worst inertia at a crank along the cycle, without rotor, kg m².
+        fits: those that fit first.
+    """
+
+    cycle: Cycle
+    mode: tuple[int, int]
+    slower: float
+    path: Path
+    demand: Demand
+    load_inertia: float
+    fits: tuple[MotorFit, ...]
+
+    @property
+    def time(self) -> float:
+        """Of one cycle, s."""
+        return self.path.duration
+
+    @property
+    def short_list(self) -> tuple[MotorFit, ...]:
+        """Those that meet every limit."""
+        return tuple(fit for fit in self.fits if fit.fits)
+
+
+def size_cycle(
+    linkage: FiveBar,
+    cycle: Cycle,
+    time: float | None = None,
+    *,
+    motors: str | File | Motor | Sequence[Motor] | None = None,
+    gears: str | File | Gearbox | Sequence[Gearbox] | None = None,
+    gear_ratio: float | None = None,
+    mode: Mode = HANGING,
+    efficiency: float = 0.9,
+    massless: bool = False,
+) -> CycleSizing:
+    """The motors, or pairs of motor and gearbox, that can do a cycle in a given time.
+
+    Args:
+        linkage: the five-bar; its rotors are left out in favour of the motors'.
+        cycle: way points in the plane.
+        time: of one cycle, s; none: as fast as the cycle's own limits allow.
+        motors: a file, a motor or several; none: the shipped ones.
+        gears: gearboxes likewise; none: for each motor the ratio of most margin, or gear_ratio.
+        gear_ratio: j, where no gearboxes are given.
+        mode: signs of u_i x w_i.
+        efficiency: of the gears, where no gearboxes are given.
+        massless: the linkage's bars are meant to have no mass.
+
+    Raises:
+        OptionError: a time that the cycle's limits do not allow; says which they do.
+        UnreachableError, SingularError: the cycle leaves the workspace or meets a singularity;
+            says where and when, and how far it must be moved.
+        InertiaError: bars without mass, and ``massless`` not said. MotorError: a figure is missing.
+    """
+    require_masses(linkage, massless)
+    return _sized(
+        linkage, cycle, _slower(cycle, time), motors_of(motors), gears, gear_ratio, mode, efficiency
+    )
+
+
+def fastest_cycle(
+    linkage: FiveBar,
+    cycle: Cycle,
+    motor: Motor,
+    gear: Gearbox | float,
+    *,
+    mode: Mode = HANGING,
+    efficiency: float = 0.9,
+    massless: bool = False,
+) -> CycleSizing:
+    """The shortest time in which a motor with a gear can do a cycle.
+
+    The limits of speed are divided by one factor and those of acceleration by its square until
+    every limit of motor and gearbox is met; the dwells stay. The cycle's own limits are kept.
+
+    Args:
+        linkage, cycle, mode, massless: as :func:`size_cycle`.
+        motor: needs max_speed, peak_torque, rated_torque and rotor_inertia.
+        gear: a gearbox, or a ratio with ``efficiency``.
+        efficiency: of the gear where only its ratio is given.
+
+    Raises:
+        MotorError: the pair cannot do the cycle at any speed; says which limit fails.
+        As :func:`size_cycle`.
+    """
+    require_masses(linkage, massless)
+    gears = gear if isinstance(gear, Gearbox) else None
+    ratio = None if isinstance(gear, Gearbox) else number(gear, "gear ratio", above=0.0)
+
+    def at(slower: float) -> CycleSizing:
+        return _sized(linkage, cycle, slower, [motor], gears, ratio, mode, efficiency)
+
+    low, high = 1.0, 1.0
+    found = at(high)
+    while not found.short_list:
+        if high >= _SLOWEST:
+            why = ", ".join(str(check) for check in found.fits[0].failed)
+            raise MotorError(
+                f"{linkage.name}: motor {motor.name!r} with gear {found.fits[0].gear.name} cannot "
+                f"do cycle {cycle.name!r} even {_SLOWEST:g} times slower: {why}"
+            )
+        low, high = high, 2.0 * high
+        found = at(high)
+    for _ in range(_STEPS if high > 1.0 else 0):
+        middle = 0.5 * (low + high)
+        trial = at(middle)
+        if trial.short_list:
+            high, found = middle, trial
+        else:
+            low = middle
+    return found
+
+
+def _slower(cycle: Cycle, time: float | None) -> float:
+    if time is None:
+        return 1.0
+    asked = number(time, f"cycle {cycle.name!r}: time", above=0.0)
+    fastest = cycle.path().duration
+    slower = (asked - cycle.dwell) / (fastest - cycle.dwell)
+    if slower < 1.0 - 1e-12:
+        raise OptionError(
+            f"cycle {cycle.name!r} takes at least {fastest:.4g} s within its limits of speed and "
+            f"acceleration ({cycle.dwell:.4g} s of it at rest); {asked:g} s are asked"
+            + (f", which takes {1 / slower:.3g} times the speed" if slower > 0.0 else "")
+        )
+    return max(slower, 1.0)
+
+
+def _sized(
+    linkage: FiveBar,
+    cycle: Cycle,
+    slower: float,
+    motors: list[Motor],
+    gears: str | File | Gearbox | Sequence[Gearbox] | None,
+    gear_ratio: float | None,
+    mode: Mode,
+    efficiency: float,
+) -> CycleSizing:
+    if len(cycle.points[0].at) != 2:
+        raise OptionError(f"cycle {cycle.name!r} has points in space; a five-bar moves in a plane")
+    path = cycle.path(slower)
+    bare = replace(linkage, rotor_inertia=0.0)
+    try:
+        demand = follow(bare, path, mode)
+    except (UnreachableError, SingularError) as problem:
+        raise type(problem)(f"{problem}; {_shift(bare, path, mode)}") from None
+    inertia = _load_inertia(bare, path, mode)
+    duty = Duty.of_cycle(demand, inertia, efficiency)
+    fits = (
+        fit_motors(duty, motors, gear_ratio)
+        if gears is None
+        else fit_drives(duty, motors, gears_of(gears))
+    )
+    signs = int(mode[0]), int(mode[1])
+    return CycleSizing(cycle, signs, slower, path, demand, inertia, fits)
+
+
+def _load_inertia(linkage: FiveBar, path: Path, mode: Mode) -> float:
+    """The worst diagonal entry of the mass matrix, with what is carried as payload."""
+    pose = solve_pose(linkage, path.points, mode)
+    carried = np.zeros(len(path.t)) if path.carried is None else path.carried
+    worst = 0.0
+    for mass in np.unique(carried):
+        loaded = replace(linkage, payload=linkage.payload + float(mass))
+        matrix = joint_mass(loaded, pose, rod_model(loaded, "exact"))
+        at = np.einsum("nii->ni", matrix)[carried == mass]
+        worst = max(worst, float(at.max()))
+    return worst
+
+
+def _shift(linkage: FiveBar, path: Path, mode: Mode) -> str:
+    """The nearest place to which the cycle can be moved as a whole, in words."""
+    few = slice(None, None, max(1, len(path.t) // 200))
+    points, still = path.points[few], np.zeros_like(path.points[few])
+    angles = np.linspace(-np.pi, np.pi, 48, endpoint=False)
+    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+    def works(shift: Array) -> bool:
+        try:
+            follow(linkage, Path(path.t[few], points + shift, still, still), mode)
+        except (UnreachableError, SingularError):
+            return False
+        return True
+
+    size = float(np.sum(linkage.l1) + np.sum(linkage.l2))
+    for distance in np.geomspace(1e-3, 1.0, 40) * size:
+        for way in ways:
+            if works(distance * way):
+                x, y = (round(float(value), 9) + 0.0 for value in distance * way)
+                return f"moved as a whole by ({x:.3g}, {y:.3g}) m it can be done"
+    wide = np.ptp(path.points, axis=0)
+    return (
+        f"there is no place for a cycle of {wide[0]:.3g} x {wide[1]:.3g} m in mode {tuple(mode)}; "
+        "largest_rectangle() gives the room that there is"
+    )

@@ -1,0 +1,375 @@
+"""``kl.design_fivebar``: the lengths of a five-bar for a rectangle, with the proof of its worst."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from kinlab.arrays import Array, number, seed_of, shown, word
+from kinlab.errors import OptionError, UnreachableError
+from kinlab.fivebar.arguments import HANGING, Mode, read_mode
+from kinlab.fivebar.design.goals import GOALS
+from kinlab.fivebar.design.problem import SLACK, Problem
+from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
+from kinlab.fivebar.linkage import FiveBar
+from kinlab.fivebar.workspace import Rectangle, read_rectangle
+
+_AT_LIMIT = 1e-4
+"""Part of a range within which a length counts as lying at its end."""
+
+_SIZES = (0.02, 2.5)
+"""Range of lengths where none is given, in parts of the farthest corner's distance."""
+
+_SPAN = (1e-6, 1e6)
+"""m. Shortest side and farthest corner of a rectangle that is designed for."""
+
+Range = tuple[float, float] | float | None
+
+
+@dataclass(frozen=True)
+class Proved:
+    """One goal of a design, over the whole rectangle.
+
+    Attributes:
+        value: the worst that is reached. bound: the worst that can be, at most.
+        unit: of both.
+    """
+
+    value: float
+    bound: float
+    unit: str
+
+
+@dataclass(frozen=True)
+class FiveBarDesign:
+    """A five-bar for a rectangle.
+
+    Attributes:
+        fivebar: the linkage; without masses.
+        workspace: the rectangle, at the height that was found where it is free, m.
+        mode: working mode.
+        goals: all goals by name, weighed or not, with value and bound over the whole rectangle.
+        weights: what was made least.
+        limits: what was asked.
+        at_limit: lengths and limits at which the design lies; the goal would gain beyond them.
+        seed: of the search.
+    """
+
+    fivebar: FiveBar
+    workspace: Rectangle
+    mode: tuple[int, int]
+    goals: dict[str, Proved]
+    weights: dict[str, float]
+    limits: dict[str, float]
+    at_limit: tuple[str, ...]
+    seed: int
+
+    @property
+    def lengths(self) -> tuple[float, float, float]:
+        """l1, l2, e, m."""
+        return float(self.fivebar.l1[0]), float(self.fivebar.l2[0]), self.fivebar.e
+
+    @property
+    def gap(self) -> float:
+        """Largest of bound less value over the goals, in parts of the value."""
+        return max(abs(g.bound - g.value) / max(abs(g.value), 1e-300) for g in self.goals.values())
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in a line."""
+        l1, l2, e = self.lengths
+        aims = ", ".join(
+            f"{GOALS[goal].words} {self.goals[goal].value:.5g} {GOALS[goal].unit}".rstrip()
+            for goal in self.weights
+        )
+        return f"l1 {l1:.6g}, l2 {l2:.6g}, e {e:.6g} m: {aims}"
+
+    def __str__(self) -> str:
+        box = self.workspace
+        lines = [
+            self.sentence,
+            f"over x {box.x_min:.6g} to {box.x_max:.6g}, y {box.y_min:.6g} to {box.y_max:.6g} m, "
+            f"working mode ({self.mode[0]:+d}, {self.mode[1]:+d})",
+            *(
+                f"  {GOALS[name].words}: {goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}"
+                for name, goal in self.goals.items()
+            ),
+        ]
+        if self.at_limit:
+            lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(str(self))}</pre>"
+
+
+def design_fivebar(
+    workspace: ArrayLike,
+    goal: str | Mapping[str, float] = "condition",
+    *,
+    l1: Range = None,
+    l2: Range = None,
+    e: Range = None,
+    height: Range = None,
+    limits: Mapping[str, float] | None = None,
+    payload: float | None = None,
+    mode: Mode | None = None,
+    seed: int = 0,
+    progress: Progress | None = None,
+    resume: str | Path | None = None,
+) -> FiveBarDesign:
+    """Finds l1, l2 and e of a symmetric five-bar that suit a rectangle best.
+
+    The worst over the rectangle is what counts, and it is proved: a bound by branch and bound, no
+    maximum over grid points. The base pins lie on y = 0 at (±e, 0). Where the rectangle's height is
+    free, a larger machine is better conditioned without end: give the lengths a range, a limit of
+    size, or a mix of goals.
+
+    Args:
+        workspace: (x_min, x_max, y_min, y_max), m.
+        goal: ``"condition"``, ``"size"``, ``"torque"``, ``"clearance"`` or ``"transmission"``, or
+            several with weights: the sum of weight · value is made least, lengths in parts of the
+            rectangle's diagonal and torque of the payload's weight times the diagonal; clearance
+            counts negative, and transmission as the cosine of its angle.
+        l1, l2, e: (least, largest) of each, m, or one number that is kept; none: 0.02 to 2.5
+            times the farthest corner's distance (of the rectangle's diagonal where it may move;
+            e from 0).
+        height: (least, largest) of the rectangle's lower edge, m: y_max - y_min is kept and y is
+            found. None leaves the rectangle where it is.
+        limits: what a goal may not exceed, or for clearance (m) and transmission (degrees) fall
+            below, as in ``{"transmission": 40, "size": 1.2}``.
+        payload: kg; the goal torque is the worst crank torque that holds its weight, its force
+            taken in any direction.
+        mode: signs of u_i x w_i; none: elbows outward, the tool on the side of the rectangle.
+        seed: the same seed gives the same answer.
+        progress: called with generation, generations and the best cost so far.
+        resume: a file that holds the state of the search: it is kept up to date, and a search that
+            was stopped goes on from it to the same answer.
+
+    Returns:
+        The design with every goal's value and bound.
+
+    Raises:
+        UnreachableError: no linkage within the limits; names the nearest and what it misses.
+        OptionError: an impossible rectangle, range, goal, limit or weight.
+        FileError: ``resume`` is the state of another search.
+    """
+    problem = read_problem(workspace, goal, l1, l2, e, height, limits, payload, mode)
+    file = None if resume is None else Path(resume)
+    return solve(problem, seed_of(seed, "design_fivebar: seed"), None, progress, file)
+
+
+def solve(
+    problem: Problem,
+    seed: int,
+    starts: Array | None = None,
+    progress: Progress | None = None,
+    file: Path | None = None,
+    generations: int | None = None,
+) -> FiveBarDesign:
+    """The search of one problem; as :func:`design_fivebar`."""
+    some = {} if generations is None else {"generations": generations}
+    x = evolve(problem, seed, starts, progress, file, **some)
+    require_feasible(problem, x)
+    return finish(problem, exchange(problem, x), seed)
+
+
+def finish(problem: Problem, x: Array, seed: int) -> FiveBarDesign:
+    """The design of one candidate, with the proof of its goals.
+
+    Raises:
+        UnreachableError: it breaks a limit.
+    """
+    require_feasible(problem, x)
+    proof, _ = problem.proved(x)
+    goals = {}
+    for name, one in GOALS.items():
+        value, bound = (one.shown(worst) for worst in proof[name])
+        goals[name] = Proved(value, bound, one.unit)
+    return FiveBarDesign(
+        fivebar=problem.linkage(x),
+        workspace=problem.box_of(x),
+        mode=problem.mode,
+        goals=goals,
+        weights=dict(problem.weights),
+        limits=dict(problem.limits),
+        at_limit=_at_limit(problem, x, proof),
+        seed=seed,
+    )
+
+
+def _at_limit(problem: Problem, x: Array, proof: dict[str, tuple[float, float]]) -> tuple[str, ...]:
+    out = []
+    for name, value, low, high in zip(problem.names, x, problem.low, problem.high, strict=True):
+        near = _AT_LIMIT * (high - low)
+        if high > low and value > high - near:
+            out.append(f"{name} ≤ {high:.4g} m")
+        if high > low and value < low + near and low > 0.0:
+            out.append(f"{name} ≥ {low:.4g} m")
+    for name, limit in problem.limits.items():
+        allowed = GOALS[name].inner(limit)
+        if name not in problem.weights and proof[name][0] > allowed - 1e-3 * abs(allowed):
+            sign = "≤" if GOALS[name].most else "≥"
+            out.append(f"{name} {sign} {limit:g} {GOALS[name].unit}".rstrip())
+    return tuple(out)
+
+
+def require_feasible(problem: Problem, x: Array) -> None:
+    """Refuses the best candidate of a search if it breaks a limit.
+
+    Raises:
+        UnreachableError: names the nearest linkage and what it misses.
+    """
+    points = lattice()
+    pieces = problem.pieces(x[None], points)
+    breaks = {
+        name: float(np.nan_to_num(values, nan=1.0).max())
+        for name, values in problem.excess(x[None], pieces).items()
+    }
+    box = problem.box_of(x)
+    place = f"the rectangle x {box.x_min:g} to {box.x_max:g}, y {box.y_min:g} to {box.y_max:g} m"
+    near = ", ".join(f"{n} {v:.4g}" for n, v in zip(problem.names, x, strict=True))
+    missed = []
+    for name, limit in problem.limits.items():
+        if breaks[name] > 1e-6:
+            values = pieces[name] if name in pieces else np.array([x[:3].sum()])
+            worst = float(np.nanmax(values))
+            asked = f"{limit:g} {GOALS[name].unit}".rstrip()
+            missed.append(f"{name} {GOALS[name].shown(worst):.4g} where {asked} is asked")
+    if missed:
+        raise UnreachableError(
+            f"no linkage meets all limits over {place}; the nearest, {near} m, has "
+            f"{', '.join(missed)}"
+        )
+    if breaks["reach"] > SLACK:
+        far = np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max)))
+        longest = float(problem.high[0] + problem.high[1])
+        why = (
+            f"l1 + l2 is at most {longest:.4g} m, and the farthest corner is {far:.4g} m from the "
+            f"origin; with e = 0, l1 + l2 above {far:.4g} m would reach it"
+            if longest < far
+            else "no leg spans its nearest and farthest places from a base pin; move the rectangle "
+            "from the pins, or widen the lengths"
+        )
+        raise UnreachableError(f"{place} is out of reach of every linkage within the limits: {why}")
+    if breaks["rods"] > SLACK:
+        raise UnreachableError(
+            f"{place} holds a singularity for every linkage within the limits (the rods get in "
+            f"line); the nearest is {near} m; widen the lengths, or move the rectangle from the "
+            "base pins"
+        )
+
+
+def read_problem(
+    workspace: ArrayLike,
+    goal: str | Mapping[str, float],
+    l1: Range,
+    l2: Range,
+    e: Range,
+    height: Range,
+    limits: Mapping[str, float] | None,
+    payload: float | None,
+    mode: Mode | None,
+) -> Problem:
+    """Reads the arguments of :func:`design_fivebar`.
+
+    Raises:
+        OptionError: as there.
+    """
+    what = "design_fivebar"
+    box = read_rectangle(workspace, what)
+    if not (box.x_max > box.x_min and box.y_max > box.y_min):
+        raise OptionError(f"{what}: workspace {tuple(box)} has no area; give it two sides")
+    shortest = min(box.x_max - box.x_min, box.y_max - box.y_min)
+    if shortest < _SPAN[0] or np.max(np.abs(box)) > _SPAN[1]:
+        raise OptionError(
+            f"{what}: workspace {tuple(box)} is no machine's, its shorter side being {shortest:g} "
+            f"m; metres between {_SPAN[0]:g} and {_SPAN[1]:g} are taken"
+        )
+    weights = _weights(goal)
+    asked = _limits(limits)
+    needs = [name for name in ("torque",) if name in weights or name in asked]
+    if needs and payload is None:
+        raise OptionError(f"{what}: the goal torque needs the payload, kg; give payload=")
+    mass = 0.0 if payload is None else number(payload, f"{what}: payload", above=0.0)
+    tall = box.y_max - box.y_min
+    far = float(np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max))))
+    far = far if height is None else float(np.hypot(box.x_max - box.x_min, tall))
+    least, most = (part * far for part in _SIZES)
+    ranges = [
+        _range(value, f"{what}: {name}", (0.0 if name == "e" else least, most))
+        for name, value in (("l1", l1), ("l2", l2), ("e", e))
+    ]
+    for name, (low, _) in zip(("l1", "l2", "e"), ranges, strict=True):
+        if low < 0.0 or (low == 0.0 and name != "e"):
+            raise OptionError(f"{what}: {name} starts at {low:g} m; lengths are positive")
+    if height is not None:
+        ranges.append(_range(height, f"{what}: height", (-2.0 * most, 0.0)))
+    side = -1.0 if height is None and 0.5 * (box.y_min + box.y_max) > 0.0 else 1.0
+    if height is not None and sum(ranges[3]) + tall > 0.0:
+        side = -1.0
+    signs = read_mode(mode if mode is not None else np.asarray(HANGING) * side)
+    return Problem(
+        box=box,
+        free_height=height is not None,
+        mode=(int(signs[0]), int(signs[1])),
+        lengths=tuple(ranges),
+        weights=weights,
+        limits=asked,
+        payload=mass,
+    )
+
+
+def _weights(goal: Any) -> dict[str, float]:
+    if isinstance(goal, str):
+        return {word(goal, GOALS, "design_fivebar: goal"): 1.0}
+    if not isinstance(goal, Mapping) or not goal:
+        raise OptionError(
+            f"design_fivebar: goal is {shown(goal)}; give a name, or names with weights"
+        )
+    out = {}
+    for name, weight in goal.items():
+        word(name, GOALS, "design_fivebar: goal")
+        out[name] = number(weight, f"design_fivebar: weight of {name}", above=0.0)
+    return out
+
+
+def _limits(limits: Any) -> dict[str, float]:
+    if limits is None:
+        return {}
+    if not isinstance(limits, Mapping):
+        raise OptionError(f"design_fivebar: limits is {shown(limits)}; give names with numbers")
+    out = {}
+    for name, limit in limits.items():
+        word(name, GOALS, "design_fivebar: limit")
+        value = number(limit, f"design_fivebar: limit of {name}", above=0.0)
+        if name == "transmission" and not value < 90.0:
+            raise OptionError(
+                f"design_fivebar: limit of transmission is {value:g}°; it is an angle below 90°"
+            )
+        if name == "condition" and not value > 1.0:
+            raise OptionError(f"design_fivebar: limit of condition is {value:g}; above 1")
+        out[name] = value
+    return out
+
+
+def _range(value: Any, what: str, default: tuple[float, float]) -> tuple[float, float]:
+    if value is None:
+        return default
+    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) == 2:
+        low, high = (number(each, what) for each in value)
+        if max(abs(low), abs(high)) > _SPAN[1]:
+            raise OptionError(f"{what} is ({low:g}, {high:g}); at most {_SPAN[1]:g} m")
+        if low > high:
+            raise OptionError(f"{what} is ({low:g}, {high:g}); give the least first")
+        return low, high
+    one = number(value, what)
+    if abs(one) > _SPAN[1]:
+        raise OptionError(f"{what} is {one:g}; at most {_SPAN[1]:g} m")
+    return one, one
