@@ -5,6 +5,8 @@ from . import arrays as arrays
 from . import check as check
 from . import errors as errors
 from . import fivebar as fivebar
+from . import motion as motion
+from . import plots as plots
 from . import tolerances as tolerances
 from . import viewer as viewer
 from .analysis.boundary import planar_boundary as planar_boundary
@@ -25,6 +27,7 @@ from .check.compare import Comparison as Comparison
 from .check.compare import compare as compare
 from .doctor.examine import diagnose as diagnose
 from .doctor.tables.diagnosis import diagnose_table as diagnose_table
+from .drives.arm import size_servos as size_servos
 from .engine.dynamics import coriolis_matrix as coriolis_matrix
 from .engine.dynamics import friction_torques as friction_torques
 from .engine.dynamics import kinetic_energy as kinetic_energy
@@ -65,6 +68,7 @@ from .formulas.record import hand_formula as hand_formula
 from .inverse.branches import ik_branches as ik_branches
 from .inverse.search import ik as ik
 from .inverse.search import ik_batch as ik_batch
+from .marking.run import mark as mark
 from .model.dh import DHLink as DHLink
 from .model.dh import DHTable as DHTable
 from .model.extract import to_dh as to_dh
@@ -73,6 +77,7 @@ from .model.library import load as load
 from .model.link import Convention as Convention
 from .model.payload import with_payload as with_payload
 from .model.robot import Robot as Robot
+from .motion.simulation import simulate as simulate
 from .postures.aspects import aspects as aspects
 from .postures.cuspidality import is_cuspidal as is_cuspidal
 from .postures.cuspidality import posture_path as posture_path

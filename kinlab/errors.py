@@ -53,12 +53,16 @@ class UnreachableError(StateError):
     """A point or joint vector at which the mechanism cannot be assembled."""
 
 
+class LimitError(StateError):
+    """A motion, or a point of one, breaks a limit of a joint: of position, velocity, ..."""
+
+
 class SingularError(StateError):
     """The quantity asked for does not exist at a singular pose."""
 
 
 class MotorError(KinlabError, ValueError):
-    """A motor lacks a figure that sizing needs, or has an impossible one."""
+    """A motor or gearbox lacks a figure that sizing needs, or has an impossible one."""
 
 
 class NameUnknownError(KinlabError, KeyError):

@@ -10,6 +10,7 @@ J J^T = a 1 as a system of smooth equations.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -21,6 +22,7 @@ from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choic
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, seed_of, whole
 from kinlab.fast.stacks import jacobian
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 
@@ -57,8 +59,8 @@ class IsotropicConfiguration:
     jacobian: Array = field(repr=False)
 
 
-@dataclass(frozen=True)
-class IsotropySearch:
+@dataclass(frozen=True, repr=False)
+class IsotropySearch(Rows):
     """Answer of :func:`find_isotropic`.
 
     Attributes:
@@ -88,6 +90,40 @@ class IsotropySearch:
     converged: int
     spread: tuple[float, float, float] | None
     evidence: Evidence = field(repr=False)
+
+    def columns(self) -> dict[str, Any]:
+        """Isotropic configuration by configuration."""
+        found = self.configurations
+        return {
+            **(numbered("q", [one.q for one in found]) if found else {}),
+            "condition": [one.condition for one in found],
+            "length": [math.nan if one.length is None else one.length for one in found],
+            "free": [" ".join(one.free) for one in found],
+            "freedom": [one.freedom for one in found],
+        }
+
+    def introduction(self) -> Introduction:
+        """Whether the arm is isotropic somewhere, where it is best, and how sure that is."""
+        chosen = " (chosen for this arm)" if self.suggested else ""
+        length = "" if self.best_length is None else f", length {self.best_length:.6g} m"
+        if self.found:
+            count = counted(len(self.configurations), "isotropic configuration")
+            told = f"{count} (families count once)"
+        else:
+            told = f"no isotropic configuration found; best condition {self.best_condition:.6g}"
+        cells = self.columns()
+        return Introduction(
+            f"{self.robot}, task {self.task}{chosen}: {told}",
+            (
+                f"best: q = {vector(self.best_q)}, condition {self.best_condition:.8g}{length} "
+                f"({self.length})",
+                str(self.evidence),
+            ),
+            tuple(cells) if self.found else (),
+            shown_cells(cells) if self.found else (),
+            len(self.configurations),
+            "good" if self.found else "unsure",
+        )
 
     @property
     def found(self) -> bool:

@@ -64,7 +64,13 @@ class NearestSingularity:
 
 
 def nearest_singularity(
-    robot: ArmLike, q: ArrayLike, task: Any = "auto", *, boxes: int = 12_000, seed: int = 0
+    robot: ArmLike,
+    q: ArrayLike,
+    task: Any = "auto",
+    *,
+    boxes: int = 12_000,
+    points: int = 8,
+    seed: int = 0,
 ) -> NearestSingularity:
     """The singular configuration nearest to q in joint space, within the limits.
 
@@ -74,13 +80,15 @@ def nearest_singularity(
         task: as in :func:`kinlab.find_singularities`.
         boxes: most boxes of joint space that the proof may look at; more only narrow what is
             between ``bound`` and ``distance``.
-        seed: of the starts, where there are starts (see the top of the module).
+        points: base points of the search from many starts, which is the way where no factors of
+            det J are known; elsewhere there is none.
+        seed: of those starts (see the top of the module).
 
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.
     """
     robot = as_robot(robot)
-    boxes, seed = whole(boxes, "boxes"), seed_of(seed)
+    boxes, points, seed = whole(boxes, "boxes"), whole(points, "points"), seed_of(seed)
     space = read_reachable_task(robot, task)
     here = joint_vector(robot, q, "q")
     if here.ndim != 1:
@@ -88,7 +96,7 @@ def nearest_singularity(
     sigma = singular_values(space.jacobian(here, space.scale))
     parts = factors(space)
     if parts is None:
-        state, bound, searched = _from_many_starts(space, here, seed)
+        state, bound, searched = _from_many_starts(space, here, points, seed)
     else:
         state, bound, searched = _factor_by_factor(space, parts, here, boxes)
     distance = np.inf if state is None else float(np.linalg.norm(state - here))
@@ -163,12 +171,14 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
     return None
 
 
-def _from_many_starts(space: TaskSpace, here: Array, seed: int) -> tuple[Array | None, float, str]:
+def _from_many_starts(
+    space: TaskSpace, here: Array, points: int, seed: int
+) -> tuple[Array | None, float, str]:
     """The nearest of many local solutions, and Weyl's bound."""
     robot = space.robot
     system = sets.whole(space)
     rng = np.random.default_rng(seed)
-    starts = np.concatenate([here[np.newaxis], sets.seeds(system, rng, 8)])
+    starts = np.concatenate([here[np.newaxis], sets.seeds(system, rng, points)])
     x, good = sets.project(system, starts)
     x = x[good]
     x[:, : robot.n] = _turned(robot, x[:, : robot.n], here)

@@ -18,6 +18,7 @@ from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import name_singularity, structure
@@ -124,8 +125,8 @@ class Effort:
     seed: int
 
 
-@dataclass(frozen=True)
-class SingularitySearch(Sequence[Singularity]):
+@dataclass(frozen=True, repr=False)
+class SingularitySearch(Rows, Sequence[Singularity]):
     """Answer of :func:`find_singularities`: a sequence of configurations, grouped in families.
 
     Attributes:
@@ -141,6 +142,39 @@ class SingularitySearch(Sequence[Singularity]):
     families: tuple[SingularFamily, ...]
     effort: Effort
     evidence: Evidence = field(repr=False)
+
+    def columns(self) -> dict[str, Any]:
+        """Configuration by configuration, with the family it belongs to."""
+        members = [(k, s) for k, family in enumerate(self.families, 1) for s in family.members]
+        return {
+            "family": [k for k, _ in members],
+            "kind": [s.kind for _, s in members],
+            **(numbered("q", [s.q for _, s in members]) if members else {}),
+            "ratio": [s.ratio for _, s in members],
+            "rank": [s.rank for _, s in members],
+            "deciding": [" ".join(s.deciding) for _, s in members],
+            "lost": [s.lost_direction for _, s in members],
+        }
+
+    def introduction(self) -> Introduction:
+        """How many families there are, what decides each, and what the search rests on."""
+        kinds = counted(len(self.families), "family") + " of singular configurations"
+        chosen = " (chosen for this arm)" if self.suggested else ""
+        rows = tuple(
+            (
+                family.kind,
+                ", ".join(family.deciding),
+                vector(family.pinned, 6) if family.pinned else "together",
+                family.representative.lost_direction,
+            )
+            for family in self.families
+        )
+        return Introduction(
+            f"{self.robot}, task {self.task}{chosen}: {kinds} within the joint limits",
+            (str(self.evidence),),
+            ("kind", "decided by", "at, rad or m", "lost direction") if rows else (),
+            rows,
+        )
 
     @property
     def configurations(self) -> tuple[Singularity, ...]:

@@ -21,11 +21,12 @@ from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
+from kinlab.host.introductions import Introduction, Rows, numbered
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Rows):
     """A hand formula beside the engine.
 
     Attributes:
@@ -63,18 +64,27 @@ class Comparison:
         """Whether the two are the same formula, to rounding."""
         return self.max_error <= TOLERANCES.formula_agrees
 
-    def __str__(self) -> str:
+    def columns(self) -> dict[str, Any]:
+        """State by state: the arguments, both answers and the relative error."""
+        out: dict[str, Any] = {}
+        for name, values in (*self.arguments.items(), ("hand", self.hand), ("engine", self.engine)):
+            out |= numbered(name, values)
+        return out | {"error": self.errors}
+
+    def introduction(self) -> Introduction:
+        """Whether they are the same formula, and where they are furthest apart."""
         verdict = "agrees" if self.agrees else "DIFFERS"
         text = (
             f"{self.function} {verdict} with {self.quantity} of {self.robot}: largest relative "
             f"error {self.max_error:.2g} over {self.samples} states"
         )
         if self.agrees:
-            return text
+            return Introduction(text, mood="good")
         k = self.worst
         with np.printoptions(precision=6, suppress=True, linewidth=100):
             state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
-            return f"{text}\nworst at {state}\nhand   {self.hand[k]}\nengine {self.engine[k]}"
+            hand, engine = f"hand   {self.hand[k]}", f"engine {self.engine[k]}"
+        return Introduction(text, (f"worst at {state}", hand, engine), mood="bad")
 
 
 def compare(
@@ -168,6 +178,17 @@ def error_sizes(engine: Array, scale: float = 0.0) -> Array:
     return sizes
 
 
+def some_rows(has: tuple[int, ...], wants: tuple[int, ...], name: str) -> str:
+    """What to ask for instead, where answers (N, ...) hold some rows of a quantity."""
+    if len(has) != len(wants) or len(has) < 2 or has[2:] != wants[2:] or "[" in name:
+        return ""
+    rows, of = has[1], wants[1]
+    if not 0 < rows < of:
+        return ""
+    first, last = f"{name}[:{rows}]", f"{name}[{of - rows}:]"
+    return f"the first {rows} of its {of} rows are the quantity {first!r}, the last {last!r}"
+
+
 def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
     values = np.asarray(answer)
     if values.dtype.kind not in "iuf":
@@ -176,9 +197,10 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
             "numbers"
         )
     if values.shape != engine.shape:
+        meant = some_rows(values.shape, engine.shape, quantity.name)
         raise AnswerShapeError(
             f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
-            f"shape {engine.shape[1:]} ({quantity.about})"
+            f"shape {engine.shape[1:]} ({quantity.about}){meant and '; '}{meant}"
         )
     result: Array = values.astype(float)
     return result

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.host.introductions import Answer, Introduction
 
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""
@@ -47,8 +48,8 @@ class Cause:
     corrected: dict[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, eq=False)
-class Diagnosis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis(Answer):
     """A hand formula, judged.
 
     Attributes:
@@ -136,24 +137,23 @@ class Diagnosis:
             return self.causes[0].sentence
         return f"{self.function} is not {self.quantity} of {self.robot}; no known slip explains it"
 
-    def __str__(self) -> str:
-        lines = [f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"]
+    def introduction(self) -> Introduction:
+        """The verdict, what is wrong, and what is right."""
+        verdict = f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"
         if self.agrees:
-            lines[0] += f", largest relative error {self.error_before:.2g}"
-            return "\n".join((*lines, *(f"  {remark}" for remark in self.remarks)))
+            text = f"{verdict}, largest relative error {self.error_before:.2g}"
+            return Introduction(text, self.remarks, mood="good")
         if self.causes:
             best = self.causes[0]
-            lines.append(f"  {best.sentence}")
-            lines.append(
-                f"  relative error before {self.error_before:.3g}, after {best.error_after:.2g}"
-            )
-            lines += [f"  correct: {name} = {text}" for name, text in best.corrected.items()]
-            lines += [f"  or: {text}" for text in self.others]
-            return "\n".join(lines)
-        lines += [f"  explained: {text}" for text in self.partial]
+            errors = f"before {self.error_before:.3g}, after {best.error_after:.2g}"
+            lines = [best.sentence, f"relative error {errors}"]
+            lines += [f"correct: {name} = {text}" for name, text in best.corrected.items()]
+            lines += [f"or: {text}" for text in self.others]
+            return Introduction(verdict, tuple(lines), mood="bad")
+        lines = [f"explained: {text}" for text in self.partial]
         error = f"relative error {self.error_before:.3g}"
-        lines.append(f"  {error}; worst entry {self.worst_entry} at {self._at_worst(100)}")
-        return "\n".join(lines)
+        lines.append(f"{error}; worst entry {self.worst_entry} at {self._at_worst(100)}")
+        return Introduction(verdict, tuple(lines), mood="unsure")
 
     def _at_worst(self, width: int) -> str:
         """The worst state and both answers there."""

@@ -12,6 +12,8 @@ module                 what it holds
 ``derive``             The command derive: an arm's formulas, derived from its DH table
 ``fivebar``            Commands about five-bars: list, analyse, size, export
 ``ik``                 Command ``ik``: one pose from the command line
+``mark``               Command ``mark``: a class's submissions, judged
+``motion``             Command ``motion``: a motion of an arm, checked, drawn, saved
 ``robots``             Commands about robots: list, info, urdf, dh
 ``screen``             The one door to the terminal: what comes from a file is shown, never obeyed
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
@@ -28,24 +30,31 @@ import os
 import signal
 import sys
 import threading
+import warnings
+from collections.abc import Callable
 from types import FrameType
 from typing import Any
 
 import typer
 
-from kinlab.cli import analysis, check, derive, fivebar, ik, robots, view
+from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
 from kinlab.cli.screen import complain
-from kinlab.errors import KinlabError
+from kinlab.errors import KinlabError, KinlabWarning
 
 _GROUPS = (
     robots,
     check,
+    mark,
     derive,
     ik,
+    motion,
     analysis,
     fivebar,
     view,
 )
+
+_OLDER = {"tip": "tool"}
+"""What options were called before, which is still understood."""
 
 _IMPORTING = "<frozen importlib._bootstrap>"
 """The file of the frames in which Python imports a module."""
@@ -55,7 +64,10 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={
+        "help_option_names": ["-h", "--help"],
+        "token_normalize_func": lambda word: _OLDER.get(word, word),
+    },
 )
 
 
@@ -77,6 +89,9 @@ def main() -> None:
     before = signal.signal(signal.SIGTERM, _stop) if in_front else None
     if in_front and signal.getsignal(signal.SIGINT) is signal.default_int_handler:
         signal.signal(signal.SIGINT, _interrupt)
+    warnings.showwarning = _once(set())
+    if not sys.warnoptions:
+        warnings.simplefilter("always", KinlabWarning)
     try:
         app()
     except KinlabError as problem:
@@ -96,6 +111,17 @@ def main() -> None:
             signal.signal(signal.SIGTERM, before)
         if in_front and signal.getsignal(signal.SIGINT) is _interrupt:
             signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def _once(said: set[str]) -> Callable[..., None]:
+    """Shows each warning as one line on stderr, whatever line of code it points to."""
+
+    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            complain(f"warning: {message}")
+
+    return show
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:

@@ -11,7 +11,7 @@ import typer
 def check_against(
     tables: Sequence[str],
     against: str,
-    tip: str | None,
+    tool: str | None,
     report: Sequence[Path],
     json: bool,
     seed: int,
@@ -30,7 +30,7 @@ def check_against(
         raise OptionError("check --against: name the table to judge, a .toml or .csv file")
     for file in report:
         check_report_path(file)
-    found = [diagnose_table(one, against, tool=tip, seed=seed) for one in tables]
+    found = [diagnose_table(one, against, tool=tool, seed=seed) for one in tables]
     if json:
         _print_json(
             [{"file": file, **one.as_dict()} for file, one in zip(tables, found, strict=True)]

@@ -9,7 +9,7 @@ import typer
 
 from kinlab.cli import analysis_pictures as pictures
 from kinlab.cli import analysis_tables as tables
-from kinlab.cli.robots import NAME, TIP
+from kinlab.cli.robots import NAME, TOOL
 from kinlab.cli.screen import screen
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ def register(app: typer.Typer) -> None:
 
 def singular(
     name: NAME,
-    tip: TIP = None,
+    tool: TOOL = None,
     task: TASK = "auto",
     at: Annotated[
         str | None,
@@ -54,7 +54,7 @@ def singular(
     from kinlab.analysis.singularity import find_singularities
     from kinlab.model.library import load
 
-    robot, console = load(name, tip), screen()
+    robot, console = load(name, tool), screen()
     chosen = _task(task)
     search = find_singularities(robot, chosen, seed=seed)
     console.print(tables.headline(robot, search.task, search.suggested), highlight=False)
@@ -79,7 +79,7 @@ def singular(
 
 def isotropy(
     name: NAME,
-    tip: TIP = None,
+    tool: TOOL = None,
     task: TASK = "auto",
     length: Annotated[
         str, typer.Option("--length", help="Characteristic length in metres, or optimal.")
@@ -96,7 +96,7 @@ def isotropy(
     from kinlab.analysis.isotropy import find_isotropic
     from kinlab.model.library import load
 
-    robot, console = load(name, tip), screen()
+    robot, console = load(name, tool), screen()
     chosen, size = _task(task), _length(length)
     if free is not None:
         robot = tables.print_designs(console, robot, free, chosen, size, seeds, seed) or robot
@@ -110,7 +110,7 @@ def isotropy(
 
 def workspace(
     name: NAME,
-    tip: TIP = None,
+    tool: TOOL = None,
     task: TASK = "auto",
     metric: Annotated[
         str,
@@ -142,7 +142,7 @@ def workspace(
     from kinlab.model.library import load
     from kinlab.sweeps.workspace import sample_workspace
 
-    robot, console = load(name, tip), screen()
+    robot, console = load(name, tool), screen()
     if metric == "solutions":
         _solutions(robot, output)
         return

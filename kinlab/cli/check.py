@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from kinlab.check.together import ENOUGH, Helpers
-from kinlab.cli.robots import TIP
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
-from kinlab.errors import KinlabError, OptionError
+from kinlab.errors import KinlabError
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -67,7 +67,7 @@ def check(
     samples: SAMPLES = 200,
     seed: SEED = 0,
     against: AGAINST = None,
-    tip: TIP = None,
+    tool: TOOL = None,
 ) -> None:
     """Put hand formulas beside the engine, or a DH table beside another description of the arm.
 
@@ -80,10 +80,8 @@ def check(
     if against is not None:
         from kinlab.cli.against import check_against
 
-        check_against(what or [], against, tip, report or [], json, seed)
+        check_against(what or [], against, tool, report or [], json, seed)
         return
-    if tip is not None:
-        raise OptionError(f"check: --tip {tip!r} names the tool of a URDF given by --against")
     if quantities:
         _list_quantities()
         return
@@ -99,7 +97,7 @@ def check(
         todo: Sequence[Task] = ()
         rest = _formula_files(what or [], samples, seed, found)
         if rest or not what:
-            todo, unread = read_tasks(rest)
+            todo, unread = read_tasks(rest, tool)
             found.unread += unread
             if helpers is None and sum(task.ships for task in todo) >= ENOUGH:
                 helpers = stack.enter_context(Helpers())

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
 
 ROBOT = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv file.")]
@@ -27,12 +28,13 @@ def derive(
     format: FORMAT = "text",
     numbers: NUMBERS = False,
     output: OUTPUT = None,
+    tool: TOOL = None,
 ) -> None:
     """Derive FK, J, det J, M, C, g or tau of an arm from its DH table."""
     from kinlab.host.files import write_text
     from kinlab.symbolic.derive import derived_text
 
-    text = derived_text(robot, what, format, numbers)
+    text = derived_text(robot, what, format, numbers, tool)
     if output is None:
         echo(text)
     else:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinlab.cli.screen import Screen, screen, styled
-from kinlab.errors import OptionError
+from kinlab.errors import OptionError, already_said
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -83,8 +83,8 @@ def analyse(
     """Workspace, singularities and isotropic poses; with --at, everything at one place."""
     from kinlab.fivebar import FiveBar
     from kinlab.fivebar.arguments import MODES
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import workspace_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
@@ -120,7 +120,7 @@ def analyse(
     if at is not None:
         _print_place(fivebar, at, signs)
     if picture is not None:
-        save(workspace_picture(fivebar, signs, assembly), picture)
+        save(mechanisms.fivebar(fivebar, signs, assembly), picture)
         console.print(f"wrote {picture}")
 
 
@@ -160,20 +160,21 @@ def size(
 ) -> None:
     """Size the servos for a workspace, a speed and an acceleration in any direction."""
     from kinlab.fivebar import FiveBar
+    from kinlab.plots import mechanisms
     from kinlab.plots.canvas import save
-    from kinlab.plots.fivebar import cycle_picture, gain_picture
 
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     console = screen(highlight=False)
     box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
     if workspace is None:
         console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
-    sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
+    with already_said():  # it is printed with the figures
+        sizing = fivebar.size_servo(box, v_max, a_max, motor, gear_ratio, signs, efficiency)
     _print_sizing(sizing, console)
     if picture is not None:
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
-        save(cycle_picture(fivebar, sizing), picture)
-        save(gain_picture(fivebar, sizing), gains)
+        save(mechanisms.fivebar_cycle(fivebar, sizing), picture)
+        save(mechanisms.fivebar_gains(fivebar, sizing), gains)
         console.print(f"wrote {picture} and {gains}")
 
 
@@ -185,6 +186,8 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
         f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
         f"v {sizing.v_max:g} m/s, a {sizing.a_max:g} m/s²"
     )
+    for remark in sizing.remarks:
+        console.print(remark, style="bold yellow", soft_wrap=True)
     table = _table("worst over the workspace", "crank 1", "crank 2", left=(0,))
     rows = {
         "crank rate, rad/s": sizing.rate,

@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from kinlab.cli.robots import NAME, TIP
+from kinlab.cli.robots import NAME, TOOL
 from kinlab.cli.screen import echo
 
 
@@ -28,7 +28,12 @@ def ik(
         typer.Option(help="Roll, pitch, yaw of the tool; radians, or 'pi/2', or '90 deg'."),
     ] = ("0", "0", "0"),
     method: Annotated[str, typer.Option(help="lm, newton or gradient.")] = "lm",
-    task: Annotated[str, typer.Option(help="pose, position, orientation, xy or xytheta.")] = "pose",
+    task: Annotated[
+        str,
+        typer.Option(
+            help="pose, position, orientation, xy, xytheta, or auto: what the arm can do."
+        ),
+    ] = "auto",
     q0: Annotated[
         str | None, typer.Option(help="Where to start: angles with commas, as '0, pi/2, 0'.")
     ] = None,
@@ -39,7 +44,7 @@ def ik(
     history: Annotated[
         Path | None, typer.Option(help="Draw the error over the iterations into this file.")
     ] = None,
-    tip: TIP = None,
+    tool: TOOL = None,
 ) -> None:
     """Find joint positions that bring the tool to a pose.
 
@@ -53,7 +58,7 @@ def ik(
     from kinlab.model.rotations import rpy_matrix
 
     _announce_compilation()
-    robot = load(name, tip)
+    robot = load(name, tool)
     pose = np.eye(4)
     pose[:3, :3] = rpy_matrix(*(parse_angle(text) for text in rpy))
     pose[:3, 3] = xyz
@@ -81,7 +86,8 @@ def ik(
         shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
         echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
     echo(
-        f"{answer.status}: position error {1e3 * answer.position_error:.3g} mm, rotation error "
+        f"{answer.status}, task {answer.task}: "
+        f"position error {1e3 * answer.position_error:.3g} mm, rotation error "
         f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
         f"{answer.restarts} restarts"
     )
@@ -89,9 +95,9 @@ def ik(
         echo(f"note: {remark}")
     if history is not None and answer.history is not None:
         from kinlab.plots.canvas import save
-        from kinlab.plots.searches import plot_searches
+        from kinlab.plots.searches import ik_history
 
-        save(plot_searches({method: answer.history}, f"{robot.name}: {answer.status}"), history)
+        save(ik_history({method: answer.history}, f"{robot.name}: {answer.status}"), history)
         echo(f"wrote {history}")
     broken = [
         f"{joint} ({low:g} to {high:g})"

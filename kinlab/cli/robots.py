@@ -17,7 +17,10 @@ if TYPE_CHECKING:
     from kinlab.model.robot import Robot
 
 NAME = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv/.urdf file.")]
-TIP = Annotated[str | None, typer.Option("--tip", help="Link that is the tool (URDF only).")]
+TOOL = Annotated[
+    str | None,
+    typer.Option("--tool", help="Link that is the tool (URDF; a DH table has one of its own)."),
+]
 OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
 
 
@@ -56,13 +59,13 @@ def list_robots() -> None:
     screen().print(table)
 
 
-def info(name: NAME, tip: TIP = None) -> None:
+def info(name: NAME, tool: TOOL = None) -> None:
     """Print a robot's joints, limits, masses, frames and DH rows, after full validation."""
     from kinlab.model.extract import as_table
     from kinlab.model.library import load
     from kinlab.model.robot import remarks
 
-    robot = load(name, tip)
+    robot = load(name, tool)
     console = screen()
     gravity = " ".join(f"{g:g}" for g in robot.model.gravity.linear)
     mass = sum(inertia.mass for inertia in list(robot.model.inertias)[1:])
@@ -87,19 +90,19 @@ def info(name: NAME, tip: TIP = None) -> None:
     console.print("frames: " + ", ".join(dict.fromkeys(frames)), highlight=False, soft_wrap=False)
 
 
-def urdf(name: NAME, output: OUTPUT = None, tip: TIP = None) -> None:
+def urdf(name: NAME, output: OUTPUT = None, tool: TOOL = None) -> None:
     """Print the URDF of a robot, or write it to a file."""
     from kinlab.model.library import load
 
-    _give(load(name, tip).urdf, output)
+    _give(load(name, tool).urdf, output)
 
 
-def dh(name: NAME, tip: TIP = None, output: OUTPUT = None) -> None:
+def dh(name: NAME, tool: TOOL = None, output: OUTPUT = None) -> None:
     """Print the modified DH table of a robot, or write it as TOML with -o."""
     from kinlab.model.extract import to_dh
     from kinlab.model.library import load
 
-    table = to_dh(load(name, tip))
+    table = to_dh(load(name, tool))
     if output is not None:
         _give(table.to_toml(), output)
         return
@@ -140,11 +143,11 @@ def _joints(robot: Robot) -> Table:
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v
-        revolute = "P" not in model.joints[j].shortname().removeprefix("JointModel")
-        unit, factor = ("°", 180 / math.pi) if revolute else (" m", 1.0)
+        kind = robot.joint_kinds[j - 1]
+        unit, factor = ("°", 180 / math.pi) if kind == "revolute" else (" m", 1.0)
         table.add_row(
             name,
-            "revolute" if revolute else "prismatic",
+            kind,
             f"{robot.lower[k] * factor:.5g}{unit}",
             f"{robot.upper[k] * factor:.5g}{unit}",
             f"{model.upperVelocityLimit[k]:.4g}",
@@ -173,34 +176,13 @@ def _rows(dh_table: DHTable, remark: str) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    modified = dh_table.convention == "modified"
-    below = "i-1" if modified else "i"
+    from kinlab.model.dh import row_words
+
+    columns, rows = row_words(dh_table)
     title = f"DH table, {dh_table.convention} convention{remark}"
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in ("i", f"alpha_{below}", f"a_{below} [m]", "d_i [m]", "theta_i"):
+    for column in columns:
         table.add_column(column, justify="right")
-    for i, link in enumerate(dh_table.links, 1):
-        variable = f"-q{i}" if link.flip else f"q{i}"
-        revolute = link.joint == "revolute"
-        table.add_row(
-            str(i),
-            _degrees(link.alpha),
-            _metres(link.a),
-            _metres(link.d) if revolute else _plus(variable, _metres(link.d)),
-            _plus(variable, _degrees(link.theta)) if revolute else _degrees(link.theta),
-        )
+    for row in rows:
+        table.add_row(*row)
     return table
-
-
-def _degrees(angle: float) -> str:
-    return f"{round(math.degrees(angle), 7) + 0.0:.8g}°"
-
-
-def _metres(length: float) -> str:
-    return f"{round(length, 9) + 0.0:.8g}"
-
-
-def _plus(variable: str, constant: str) -> str:
-    if constant in ("0", "0°"):
-        return variable
-    return f"{variable} - {constant[1:]}" if constant[0] == "-" else f"{variable} + {constant}"

@@ -1,17 +1,22 @@
 """The one door to the terminal: what comes from a file is shown, never obeyed.
 
 Names, sources and messages may hold control codes or rich's markup; here the codes become
-visible and markup is plain text. Styles are given as styles.
+visible and markup is plain text. Styles are given as styles. A table that is too wide is broken
+into more lines, between words and in names after a mark such as ``_``; no name is cut short.
 """
 
 from __future__ import annotations
 
+import re
 import sys
 import unicodedata
 from typing import Any
 
 import typer
+from rich.cells import cell_len
 from rich.console import Console
+from rich.measure import Measurement
+from rich.table import Column, Table
 from rich.text import Text
 
 LONGEST = 900
@@ -37,11 +42,82 @@ def _shown(letter: str) -> str:
 
 
 class Screen(Console):
-    """A rich console that shows text as it is."""
+    """A rich console that shows text as it is, and all of it."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """As rich prints, but a table that does not fit is broken into more lines first."""
+        for one in objects:
+            if isinstance(one, Table):
+                _fit(one, self)
+        super().print(*objects, **options)
 
     def render_str(self, text: str, **options: Any) -> Text:
         """Every piece of text that is printed, and every cell of a table, passes here."""
         return super().render_str(visible(text), **{**options, "markup": False, "emoji": False})
+
+
+_PIECE = re.compile(r"[^\s_/,:]*[_/,:]+|[^\s_/,:]+|\s+")
+"""What is not broken where that can be helped: letters and the marks behind them, or blanks."""
+
+
+def _fit(table: Table, console: Console) -> None:
+    """Gives each column a width at which the table fits, and breaks the cells at it.
+
+    Lines are broken between words; where that does not do, in the names with the most marks; and
+    where nothing else is left, between letters. What room is left goes to the longest lines.
+    """
+    natural = [max(map(_width, _texts(column))) for column in table.columns]
+    whole = Measurement.get(console, console.options.update(width=10_000), table).maximum
+    room = console.width - (whole - sum(natural))
+    if whole <= console.width or room < len(natural):
+        return
+    widths = [_longest(column, re.compile(r"\S+")) for column in table.columns]
+    for least in ([_longest(column, _PIECE) for column in table.columns], [1] * len(natural)):
+        while sum(widths) > room and widths != least:
+            spare = _over(widths, least)
+            widths[spare.index(max(spare))] -= 1
+    while sum(widths) < room:
+        missing = _over(natural, widths)
+        widths[missing.index(max(missing))] += 1
+    for column, width in zip(table.columns, widths, strict=True):
+        column.width, column.no_wrap, column.overflow = width, False, "fold"
+        column.header = _broken(column.header, width)
+        column._cells = [_broken(cell, width) for cell in column._cells]
+
+
+def _over(these: list[int], those: list[int]) -> list[int]:
+    return [one - other for one, other in zip(these, those, strict=True)]
+
+
+def _longest(column: Column, piece: re.Pattern[str]) -> int:
+    """Width of a column's longest piece."""
+    pieces = (found for text in _texts(column) for found in piece.findall(text))
+    return max(map(_width, pieces), default=1)
+
+
+def _texts(column: Column) -> list[str]:
+    cells = (column.header, *column.cells)
+    return [visible(c.plain if isinstance(c, Text) else str(c)) for c in cells]
+
+
+def _width(text: str) -> int:
+    return max((cell_len(line) for line in text.splitlines()), default=0)
+
+
+def _broken(cell: Any, width: int) -> Any:
+    """A cell's text with its lines broken between pieces; styled text breaks between words."""
+    if not isinstance(cell, str) or _width(cell) <= width:
+        return cell
+    lines = []
+    for line in visible(cell).splitlines():
+        here = ""
+        for piece in _PIECE.findall(line):
+            if here and cell_len((here + piece).rstrip()) > width:
+                lines.append(here.rstrip())
+                here = ""
+            here += piece if here else piece.lstrip()
+        lines.append(here.rstrip())
+    return "\n".join(lines)
 
 
 def screen(**options: Any) -> Screen:
@@ -60,8 +136,8 @@ def echo(text: str, *, err: bool = False, nl: bool = True) -> None:
     typer.echo(visible(text), err=err, nl=nl)
 
 
-def complain(problem: BaseException) -> None:
-    """An error as one line on stderr."""
+def complain(problem: BaseException | str) -> None:
+    """An error or a warning as one line on stderr."""
     text = visible(" ".join(str(problem).split()))
     if len(text) > LONGEST:
         text = f"{text[:LONGEST]} ..."

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.robots import TIP
+from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
 
 if TYPE_CHECKING:
@@ -30,17 +30,20 @@ def register(app: typer.Typer) -> None:
 
 def view(
     name: NAME,
-    tip: TIP = None,
+    tool: TOOL = None,
     q: Annotated[
         str | None,
-        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, -0.5". Five-bar: cranks.'),
+        typer.Option("-q", help='Joint positions, rad and m: "0, pi/4, 30 deg". Five-bar: cranks.'),
     ] = None,
     save: Annotated[
         Path | None, typer.Option("--save", help="Write one HTML file instead of serving.")
     ] = None,
     animate: Annotated[
         str | None,
-        typer.Option("--animate", help="Give it a motion: sweep, line, pick, locus, posture."),
+        typer.Option(
+            "--animate",
+            help="Give it a motion: sweep, line, pick, locus, posture, or a .csv (t, q1, ...).",
+        ),
     ] = None,
     branches: Annotated[
         bool, typer.Option("--branches", help="Draw all solutions of the pose at q as ghosts.")
@@ -62,7 +65,7 @@ def view(
     browser: Annotated[bool, typer.Option(help="Open the browser.")] = True,
 ) -> None:
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
-    page = _open(name, tip, q, animate, meshes, against, branches)
+    page = _open(name, tool, q, animate, meshes, against, branches)
     for note in page.notes:
         echo(f"note: {note}", err=True)
     if save is not None:
@@ -74,7 +77,7 @@ def view(
 
 def _open(
     name: str,
-    tip: str | None,
+    tool: str | None,
     q: str | None,
     animate: str | None,
     meshes: bool,
@@ -94,15 +97,15 @@ def _open(
 
         if animate is not None:
             raise OptionError("view --against: leave --animate out; the sliders move both arms")
-        return against_scene(name, against, start, tool=tip)
+        return against_scene(name, against, start, tool=tool)
     if holds_five_bar(name):
-        if tip is not None:
-            raise OptionError(f"{name}: a five-bar has one tool; leave --tip {tip!r} out")
+        if tool is not None:
+            raise OptionError(f"{name}: a five-bar has one tool; leave --tool {tool!r} out")
         return _open_five_bar(name, start, animate)
     try:
-        robot = load(name, tip)
+        robot = load(name, tool)
     except NameUnknownError as problem:
-        if tip is not None or "/" in name:
+        if tool is not None or "/" in name:
             raise
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
@@ -113,7 +116,11 @@ def _open(
         found = ik_branches(robot, fk(robot, scene.q))
         if len(found):
             scene.ghosts("branches", found.q)
-    if animate is not None:
+    if animate is not None and animate.lower().endswith(".csv"):
+        from kinlab.motion.record import read_motion
+
+        scene.play(read_motion(robot, animate))
+    elif animate is not None:
         from kinlab.viewer import motions
 
         shown = motions.motion(robot, animate, scene.q)
@@ -137,9 +144,9 @@ def _open_five_bar(name: str, theta: Array | None, animate: str | None) -> Page:
 def _numbers(text: str) -> Array:
     import numpy as np
 
-    from kinlab.formulas.numbers import parse_number
+    from kinlab.formulas.numbers import parse_angle
 
-    return np.array([parse_number(word.strip()) for word in text.split(",")])
+    return np.array([parse_angle(word.strip()) for word in text.split(",")])
 
 
 def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:

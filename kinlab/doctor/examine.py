@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors
+from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import terms, verdicts
@@ -133,6 +133,8 @@ def examine(
         # beside a list of slips only the likeliest reading: each costs a search of its own
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
+    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
+        partial = (meant,)
     ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())

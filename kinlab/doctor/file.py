@@ -339,8 +339,7 @@ def _resolved(
         if not tree.names(meant) <= known:
             choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
             raise ExpressionError(
-                f"{place}: {name[:40]!r} is unknown; {choices} Give other names a meaning in "
-                "[symbols]"
+                f"{place}: {name[:40]!r} is unknown; {choices}; or give it a meaning in [symbols]"
             )
         mapping[name] = meant
     return tree.renamed(text, mapping)

@@ -3,10 +3,16 @@
 ===========  =====================================================================================
 module       what it holds
 ===========  =====================================================================================
+``arm``      Drives of a serial arm: what a motion asks of each joint, and the motors and gears that
+             do it
 ``cycles``   The pick-and-place cycle: up, across, down, and back, with blended corners
 ``demand``   What a motion asks of the drives over time, at the joints and at the motors' shafts
-``fitting``  One motor against what its duty asks, and the gear ratio that suits it
+``fitting``  Motors and gears against what a duty asks: pairs that can be bought, or the ratio that
+             suits
+``gears``    Gearboxes as data, and a drive: one motor behind one gearbox
 ``motors``   Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
              one's own
+``records``  Catalogues of one's own: TOML or CSV files of motors and gearboxes, read with every
+             row named
 ===========  =====================================================================================
 """

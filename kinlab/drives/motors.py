@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from kinlab.errors import MotorError, NameUnknownError, near
-from kinlab.host.files import read_text, read_toml
+from kinlab.drives.records import check_figures, check_order, read_records
+from kinlab.errors import MotorError, NameUnknownError, OptionError, near
 from kinlab.model.library import robots_dir
 
-_TEXT = ("name", "maker", "data_sheet")
-"""What of a motor is no figure."""
+_HANG_TOGETHER = 2.0
+"""Rated power may differ from rated torque times rated speed by this factor. Makers' sheets agree
+to a few per cent; a torque in N cm or a speed in rad/s differs by ten or more."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,8 @@ class Motor:
         rotor_inertia: I_M, kg m².
 
     Raises:
-        MotorError: a figure that is not a positive number.
+        MotorError: a figure that is not a positive number, a peak below the rated figure, or a
+            rated power that is not that of rated torque and speed, even roughly.
     """
 
     name: str
@@ -47,13 +48,15 @@ class Motor:
     rotor_inertia: float | None = None
 
     def __post_init__(self) -> None:
-        for figure, value in vars(self).items():
-            if figure in _TEXT or value is None:
-                continue
-            sound = isinstance(value, (int, float)) and not isinstance(value, bool)
-            if not sound or not np.isfinite(value) or value <= 0:
+        check_figures(self, "motor")
+        check_order(self, "motor", "rated_torque", "peak_torque")
+        check_order(self, "motor", "rated_speed", "max_speed")
+        if self.rated_power and self.rated_torque and self.rated_speed:
+            power = self.rated_torque * self.rated_speed * np.pi / 30.0
+            if not 1.0 / _HANG_TOGETHER <= power / self.rated_power <= _HANG_TOGETHER:
                 raise MotorError(
-                    f"motor {self.name!r}: {figure} is {value!r}; it must be a positive number"
+                    f"motor {self.name!r}: rated_power is {self.rated_power:g} W, rated torque and "
+                    f"speed give {power:.4g} W; torques are in N m, speeds in r/min"
                 )
 
     def need(self, figure: str) -> float:
@@ -72,33 +75,17 @@ class Motor:
 
 
 def read_motors(path: str | Path) -> dict[str, Motor]:
-    """Reads a catalogue: a TOML file with one ``[[motors]]`` per motor.
+    """Reads a catalogue of motors.
+
+    TOML with one ``[[motors]]`` per motor, or CSV with the keys in its first line; keys and units
+    are the attributes of :class:`Motor`. Sizing needs ``max_speed``, ``rated_torque``,
+    ``peak_torque`` and ``rotor_inertia``.
 
     Raises:
         FileError: the file cannot be read.
-        MotorError: not TOML, an unknown key, no name, a name twice, an impossible figure.
+        MotorError: not TOML or CSV, an unknown key, no name, a name twice, an impossible figure.
     """
-    data = read_toml(read_text(path), str(path), MotorError)
-    rows = data.get("motors", [])
-    if not isinstance(rows, list) or not rows:
-        raise MotorError(f"{path}: no [[motors]] in it")
-    out: dict[str, Motor] = {}
-    for i, row in enumerate(rows, 1):
-        motor = _motor(row, f"{path}, motor {i}")
-        if motor.name in out:
-            raise MotorError(f"{path}, motor {i}: the name {motor.name!r} is used twice")
-        out[motor.name] = motor
-    return out
-
-
-def _motor(row: Mapping[str, Any], place: str) -> Motor:
-    keys = tuple(f.name for f in fields(Motor))
-    for key in row:
-        if key not in keys:
-            raise MotorError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
-    if not isinstance(row.get("name"), str):
-        raise MotorError(f"{place}: name is missing")
-    return Motor(**row)
+    return read_records(path, "motors", Motor)
 
 
 def catalogue() -> dict[str, Motor]:
@@ -106,15 +93,38 @@ def catalogue() -> dict[str, Motor]:
     return read_motors(robots_dir() / "fivebar" / "motors.toml")
 
 
-def find_motor(motor: str | Motor) -> Motor:
-    """A motor as given, or the shipped one of that name.
+def find_motor(motor: str | Motor, among: dict[str, Motor] | None = None) -> Motor:
+    """A motor as given, or the one of that name among some, or among the shipped ones.
 
     Raises:
         NameUnknownError: none of that name.
     """
     if isinstance(motor, Motor):
         return motor
-    known = catalogue()
+    known = catalogue() if among is None else among
     if motor not in known:
         raise NameUnknownError(f"no motor {motor!r}; {near(motor, known)}")
     return known[motor]
+
+
+def motors_of(motors: str | Path | Motor | Sequence[Motor] | None) -> list[Motor]:
+    """Reads motors in any of the forms that sizing takes.
+
+    Args:
+        motors: a file (see :func:`read_motors`), a motor, several, or none for the shipped ones.
+
+    Raises:
+        FileError, MotorError: as :func:`read_motors`.
+        OptionError: anything else, or an empty list.
+    """
+    if motors is None:
+        return list(catalogue().values())
+    if isinstance(motors, Motor):
+        return [motors]
+    if isinstance(motors, (str, Path)):
+        return list(read_motors(motors).values())
+    given = list(motors) if isinstance(motors, Sequence) else []
+    found = [one for one in given if isinstance(one, Motor)]
+    if not found or len(found) < len(given):
+        raise OptionError("motors: give a .toml or .csv file, a Motor, or a list of Motors")
+    return found

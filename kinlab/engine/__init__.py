@@ -5,6 +5,8 @@ module          what it holds
 ==============  ==================================================================================
 ``dynamics``    Dynamics by Pinocchio: M, C, g, inverse and forward dynamics, energies, of any
                 number of states
+``integrator``  Ordinary differential equations in time, by scipy's DOP853, with stops and
+                projections
 ``kinematics``  Forward kinematics, Jacobians and statics, by Pinocchio, for any number of states
 ``lagrange``    What Lagrange's equation is made of: exact derivatives of M, the energies and the
                 action

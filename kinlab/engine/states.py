@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import LARGEST, Array, real_array
-from kinlab.errors import StateError
+from kinlab.errors import StateError, warn
 from kinlab.model.robot import Robot
 
 _FLOAT = np.dtype(np.float64)
@@ -68,7 +68,42 @@ def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
             f"robot {robot.name!r}: {name} has shape {array.shape}; "
             f"expected ({robot.n},) or (N, {robot.n})"
         )
+    if name == "q" and isinstance(value, (list, tuple)):  # typed by somebody, not computed
+        warn_far(robot, array)
     return _packed(array)
+
+
+def warn_far(robot: Robot, q: Array, name: str = "q") -> None:
+    """Asks whether degrees or millimetres were meant where q lies far outside the limits.
+
+    Far is more than a turn beyond the limits of a revolute joint, and more than 1 m and ten times
+    its stroke beyond those of a prismatic one. It is asked at the doors where people type q.
+
+    Args:
+        robot: whose joints.
+        q: (n,) or (N, n), checked.
+        name: what to call it.
+
+    Warns:
+        KinlabWarning: naming the first joint that is far outside.
+    """
+    if np.vdot(q, q) <= robot.near_square:  # no entry can be far outside
+        return
+    rows = np.atleast_2d(q)
+    far = np.abs(rows - np.clip(rows, robot.lower, robot.upper)) > robot.slack
+    if not far.any():
+        return
+    row, joint = (int(k) for k in np.argwhere(far)[0])
+    value, kind = rows[row, joint], robot.joint_kinds[joint]
+    turns = kind == "revolute"
+    unit, meant = ("rad", "degrees") if turns else ("m", "millimetres")
+    inside = np.radians(value) if turns else 1e-3 * value
+    limits = f"{robot.lower[joint]:.4g} to {robot.upper[joint]:.4g}"
+    warn(
+        f"robot {robot.name!r}: {name} = {value:.6g} {unit} of joint {robot.joint_names[joint]!r} "
+        f"is far outside its limits, {limits}: {meant}? "
+        f"({value:.6g} {'deg' if turns else 'mm'} = {inside:.4g} {unit})"
+    )
 
 
 def joint_vectors(robot: Robot, **values: ArrayLike) -> tuple[Array, ...]:
@@ -96,5 +131,8 @@ def _packed(array: Array) -> Array:
 
     The engine's batches need the first; kernels would be compiled anew for read-only arrays.
     """
+    flags = array.flags
+    if flags.c_contiguous and flags.writeable:  # asked here, since np.require takes 1 µs to see it
+        return array
     packed: Array = np.require(array, requirements=["C", "W"])
     return packed

@@ -186,7 +186,7 @@ def _long(*values: Any) -> bool:
         try:
             if len(value) >= PARALLEL_FROM:
                 return True
-        except TypeError:  # a number, which the engine's function refuses by name
+        except Exception:  # noqa: BLE001  no sequence: the engine's function refuses it by name
             continue
     return False
 

@@ -112,6 +112,23 @@ def crank_inertia(linkage: FiveBar, rods: RodModel) -> Array:
     return total
 
 
+def bars_without_mass(linkage: FiveBar) -> str:
+    """Says which bars have neither mass nor inertia, or nothing where all have one."""
+    bare = [
+        bar
+        for bar in ("crank", "rod")
+        if not np.any(getattr(linkage, f"{bar}_mass"))
+        and not np.any(getattr(linkage, f"{bar}_inertia"))
+    ]
+    if not bare:
+        return ""
+    keys = ", ".join(f"{bar}_mass, {bar}_inertia" for bar in bare)
+    return (
+        f"the {' and '.join(f'{bar}s' for bar in bare)} have NO MASS: torques and power move the "
+        f"rest alone, and real bars can ask for several times as much; give {keys}"
+    )
+
+
 def inverse_dynamics(
     linkage: FiveBar,
     xy: ArrayLike,

@@ -11,23 +11,32 @@ rods, the rotor and the gear's efficiency.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import LIFT, TRAVEL, Path, pick_and_place
-from kinlab.drives.demand import Demand, gear_shares
+from kinlab.drives.demand import Demand
 from kinlab.drives.fitting import Duty, MotorFit, fit_motors, stretch_to_motor
+from kinlab.drives.gears import Drive
 from kinlab.drives.motors import Motor, catalogue, find_motor
-from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError
+from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
 from kinlab.fivebar.arguments import HANGING, Mode
-from kinlab.fivebar.dynamics import RodModel, crank_inertia, joint_mass, rod_model, torques
+from kinlab.fivebar.dynamics import (
+    RodModel,
+    bars_without_mass,
+    crank_inertia,
+    joint_mass,
+    rod_model,
+    torques,
+)
 from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region, read_rectangle
+from kinlab.host.introductions import Introduction, Rows, shown_cells, vector
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -268,8 +277,8 @@ def require_regular(linkage: FiveBar, box: Rectangle, mode: Mode) -> None:
 _MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
 
 
-@dataclass(frozen=True)
-class ServoSizing:
+@dataclass(frozen=True, repr=False)
+class ServoSizing(Rows):
     """What a workspace, a speed and an acceleration ask of the drives.
 
     Attributes:
@@ -289,6 +298,7 @@ class ServoSizing:
         cycle: what the cranks do along it.
         fits: the motors that fit first, the one of least peak torque first; then the others,
             the nearest to fitting first.
+        remarks: what the figures leave out, a sentence each: bars without mass.
     """
 
     workspace: Rectangle
@@ -306,6 +316,52 @@ class ServoSizing:
     path: Path
     cycle: Demand
     fits: tuple[MotorFit, ...]
+    remarks: tuple[str, ...] = ()
+
+    def columns(self) -> dict[str, Any]:
+        """Motor by motor: what it must give and what it has over that."""
+        return {
+            "motor": [fit.motor.name for fit in self.fits],
+            "gear_ratio": [fit.gear_ratio for fit in self.fits],
+            "peak_torque": [fit.peak for fit in self.fits],
+            "rms_torque": [fit.rms for fit in self.fits],
+            "speed": [fit.speed for fit in self.fits],
+            "inertia_ratio": [fit.inertia_ratio for fit in self.fits],
+            "margin": [fit.margin for fit in self.fits],
+            "fits": [fit.fits for fit in self.fits],
+            "limited_by": [" and ".join(fit.limits) for fit in self.fits],
+        }
+
+    def introduction(self) -> Introduction:
+        """The torque, speed and power asked for, the motor that meets them, what is left out."""
+        torque = f"{self.torque.largest:.4g} N m at the cranks"
+        fitting = self.short_list
+        if fitting:
+            first = f"{fitting[0].motor.name} at a gear of {fitting[0].gear_ratio:.4g} fits"
+            told = f"{torque}; {first}"
+            if len(self.fits) > 1:
+                told += f" ({len(fitting)} of {len(self.fits)} motors fit)"
+        else:
+            told = f"{torque}; NO motor of {len(self.fits)} fits"
+        light = " FOR THE PAYLOAD ALONE" if self.remarks else ""
+        cells, cycle = self.columns(), self.cycle
+        return Introduction(
+            f"servo sizing{light}: {told}",
+            (
+                *self.remarks,
+                f"at v {self.v_max:g} m/s, a {self.a_max:g} m/s² in any direction of workspace "
+                f"{vector(self.workspace)}; gear efficiency {self.efficiency:g}",
+                f"crank rate {self.rate.largest:.4g} rad/s, load inertia "
+                f"{self.load_inertia.largest:.4g} kg m²",
+                f"pick-and-place cycle of {self.path.duration:.4g} s: RMS "
+                f"{float(np.max(cycle.rms_torque)):.4g} N m, peak power "
+                f"{float(np.max(cycle.peak_power)):.4g} W",
+            ),
+            ("motor", "gear", "peak N m", "RMS N m", "r/min", *tuple(cells)[5:8], "limited by"),
+            shown_cells(cells, 4),
+            len(self.fits),
+            "unsure" if self.remarks else "good" if fitting else "bad",
+        )
 
     @property
     def short_list(self) -> tuple[MotorFit, ...]:
@@ -345,6 +401,9 @@ def size_servo(
         UnreachableError, SingularError: the rectangle is not free of singularities; says where.
         MotorError: the motor lacks a figure. NameUnknownError: no motor of that name.
         InertiaError: the linkage has neither masses nor a payload.
+
+    Warns:
+        KinlabWarning: cranks or rods have no mass.
     """
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
@@ -368,6 +427,9 @@ def size_servo(
             "can be sized"
         )
     require_regular(linkage, box, mode)
+    missing = bars_without_mass(linkage)
+    if missing:
+        warn(f"{linkage.name}: {missing}")
     exact, massless = rod_model(linkage, "exact"), rod_model(linkage, "massless")
     bare = replace(linkage, rotor_inertia=0.0)
 
@@ -379,28 +441,29 @@ def size_servo(
     path = _cycle_in(box, v_max, a_max)
     cycle = follow(linkage, path, mode)
 
-    def shaft(pose: Pose) -> Callable[[Motor, float], Array]:
-        """Worst torque at the motors' shafts at some poses, (N, 2), by motor and gear ratio."""
+    def shaft(pose: Pose) -> Callable[[Drive], Array]:
+        """Worst torque at the motors' shafts at some poses, (N, 2), by drive."""
         load = torque_forms(bare, pose, exact)
         acceleration = acceleration_forms(linkage, pose)
 
-        def at(motor: Motor, j: float) -> Array:
-            rotor = motor.need("rotor_inertia") * j
-            shares = [c / j for c in dict.fromkeys(gear_shares(efficiency))]
+        def at(drive: Drive) -> Array:
+            rotor = drive.inertia * drive.gear.ratio
+            shares = [c / drive.gear.ratio for c in dict.fromkeys(drive.gear.shares)]
             peaks = [load.plus(acceleration, c, rotor).peak(v_max, a_max) for c in shares]
             return np.asarray(np.max(peaks, axis=0))
 
         return at
 
-    def peak(motor: Motor, j: float) -> float:
-        return search(lambda pose: shaft(pose)(motor, j)).largest
+    def peak(drives: Sequence[Drive]) -> Array:
+        return np.array([search(lambda pose, d=d: shaft(pose)(d)).largest for d in drives])  # type: ignore[misc]
 
     on_grid = shaft(solve_pose(linkage, grid_of(box), mode))
 
-    def estimate(motor: Motor, j: float) -> float:
-        return float(on_grid(motor, j).max())
+    def estimate(drives: Sequence[Drive]) -> Array:
+        return np.array([on_grid(drive).max() for drive in drives])
 
-    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate)
+    load = search(lambda pose: torque_forms(bare, pose, exact).peak(v_max, a_max)).largest
+    duty = Duty(rate.largest, inertia.largest, cycle, efficiency, peak, estimate, load)
     motors = list(catalogue().values()) if motor is None else [find_motor(motor)]
     arm = crank_inertia(bare, massless)
     return ServoSizing(
@@ -424,6 +487,7 @@ def size_servo(
         path=path,
         cycle=cycle,
         fits=fit_motors(duty, motors, gear_ratio),
+        remarks=(missing,) if missing else (),
     )
 
 

@@ -17,6 +17,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped
+from kinlab.engine.integrator import integrate
 from kinlab.errors import InertiaError, OptionError, SingularError
 from kinlab.fivebar.closed_chain import CRANKS, ClosedChain
 from kinlab.tolerances import TOLERANCES
@@ -31,7 +32,8 @@ class Motion:
     Attributes:
         t: (K+1,), s.
         q: all four joints, (K+1, 4), rad.
-        qd: (K+1, 4), rad/s.
+        qd: (K+1, 4), rad/s. qdd: (K+1, 4), rad/s².
+        tau: at the cranks, (K+1, 2), N m. work: by them, (K+1,), J.
         energy: kinetic plus potential, (K+1,), J.
         gap: of the loop, (K+1,), m.
     """
@@ -39,6 +41,9 @@ class Motion:
     t: Array
     q: Array
     qd: Array
+    qdd: Array
+    tau: Array
+    work: Array
     energy: Array
     gap: Array
 
@@ -146,43 +151,64 @@ def simulate(
     step: float = 1e-3,
     torque: Torque | None = None,
 ) -> Motion:
-    """Integrates the loop by RK4, projecting position and velocity onto it after each step.
+    """Integrates the loop with adaptive steps, putting position and velocity back onto it.
 
     Args:
         chain: from ``FiveBar.closed_chain()``.
         q: a closed pose, (4,), rad. qd: rates that keep the loop, (4,), rad/s.
-        duration: s. step: s.
+        duration: s. step: between the answers, s.
         torque: crank torques (2,) from (t, q, qd); none lets it fall.
 
     Raises:
-        OptionError: a duration or step that is not positive.
+        OptionError: a duration or step that is not positive, or torques too stiff to integrate.
         StateError, InertiaError, SingularError: as :func:`forward_dynamics`.
     """
     name = chain.linkage.name
     if not (0.0 < step <= duration < np.inf):
         raise OptionError(f"{name}: need 0 < step <= duration; got {step!r} and {duration!r} s")
+    count = round(duration / step)
+    start = (shaped(q, (4,), f"{name}: q"), shaped(qd, (4,), f"{name}: qd"))
+
+    def driven(t: float, at: Array, rate: Array) -> Array:
+        asked = np.zeros(2) if torque is None else torque(t, at, rate)
+        return shaped(asked, (2,), f"{name}: tau")
+
+    return follow(chain, *start, np.linspace(0.0, count * step, count + 1), driven)
+
+
+def follow(
+    chain: ClosedChain,
+    q: Array,
+    qd: Array,
+    times: Array,
+    torque: Callable[[float, Array, Array], Array],
+) -> Motion:
+    """As :func:`simulate`, at times of one's own, (K+1,), with torques that are always given."""
     solver = ConstraintSolver(chain)
 
-    def slope(t: float, state: Array, accelerate: Callable[..., Array] = solver.solve) -> Array:
-        at, rate = state[:4], state[4:]
-        tau = np.zeros(2) if torque is None else shaped(torque(t, at, rate), (2,), f"{name}: tau")
-        return np.concatenate([rate, accelerate(at, rate, tau)])
+    def slope(t: float, state: Array) -> Array:
+        at, rate = state[:4], state[4:8]
+        tau = torque(t, at, rate)
+        power = float(tau @ rate[[*CRANKS]])
+        return np.concatenate([rate, solver.solve(at, rate, tau), [power]])
 
-    start = [shaped(q, (4,), f"{name}: q"), shaped(qd, (4,), f"{name}: qd")]
-    count = round(duration / step)
-    states = np.empty((count + 1, 8))
-    states[0] = _project(chain, np.concatenate(start))
-    for k in range(count):
-        t, now = k * step, states[k]
-        k1 = slope(t, now, solver.acceleration)
-        k2 = slope(t + 0.5 * step, now + 0.5 * step * k1)
-        k3 = slope(t + 0.5 * step, now + 0.5 * step * k2)
-        k4 = slope(t + step, now + step * k3)
-        states[k + 1] = _project(chain, now + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4))
-    energy = np.array([sum(chain.energy(s[:4], s[4:])) for s in states])
-    gap = np.array([np.linalg.norm(chain.closure(s[:4])[0]) for s in states])
+    def settle(state: Array) -> Array:
+        return np.append(_project(chain, state[:8]), state[8])
+
+    start = settle(np.concatenate([q, qd, [0.0]]))
+    solver.acceleration(start[:4], start[4:8], torque(float(times[0]), start[:4], start[4:8]))
+    rows = integrate(slope, start, times, settle=settle).rows
+    places, rates = rows[:, :4], rows[:, 4:8]
+    tau = np.array([torque(t, *x) for t, *x in zip(times, places, rates, strict=True)])
     return Motion(
-        np.linspace(0.0, count * step, count + 1), states[:, :4], states[:, 4:], energy, gap
+        t=times,
+        q=places,
+        qd=rates,
+        qdd=np.array([solver.acceleration(*x) for x in zip(places, rates, tau, strict=True)]),
+        tau=tau,
+        work=rows[:, 8],
+        energy=np.array([sum(chain.energy(*x)) for x in zip(places, rates, strict=True)]),
+        gap=np.array([np.linalg.norm(chain.closure(x)[0]) for x in places]),
     )
 
 

@@ -16,6 +16,8 @@ module          what it holds
                 evaluated
 ``tree``        Formulas as small trees that keep the writer's own form, so that a repair can
                 point at it
+``typed``       Formulas as people type them, made plain: LaTeX, MATLAB, Python, letters of
+                Unicode, matrices
 ``typeset``     Formulas as LaTeX and MathML: the records' own LaTeX, and trees in the order of
                 the writer
 ==============  ==================================================================================

@@ -13,12 +13,29 @@ from kinlab.errors import ExpressionError
 _LENGTH = 20_000
 _NESTING = 40
 
-_TOKEN = re.compile(r"\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+")
-_BLANKS = r"\, \; \: \! \quad \qquad ~ \left \right \big \Big \bigl \bigr \Bigl \Bigr \displaystyle"
+_WORD = (
+    r"\\(?:mathrm|mathit|mathsf|mathbf|boldsymbol|bm|text|textrm|textit|operatorname)(?![A-Za-z])\*?"
+    r"\s*\{[A-Za-z0-9_ ]*\}"
+)
+_TOKEN = re.compile(
+    rf"{_WORD}|\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])|[A-Za-z]"
+    r"|[-+*/^_{}()\[\]=,&|.~]|\s+",
+    re.ASCII,
+)
+_BLANKS = (
+    r"\, \; \: \! \quad \qquad ~ \left \right \big \Big \bigg \Bigg \bigl \bigr \Bigl \Bigr "
+    r"\biggl \biggr \displaystyle \textstyle \mathbf \boldsymbol \bm"
+)
 _SPACE = {"\\ ", *_BLANKS.split()}
+_CALLED = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _TIMES = {"*", r"\cdot", r"\times"}
 _FRACTIONS = {r"\frac", r"\dfrac", r"\tfrac"}
-_FUNCTIONS = {r"\sin": "sin", r"\cos": "cos", r"\tan": "tan"}
+_NAMED = "sin cos tan atan2 arcsin arccos arctan ln exp"
+_FUNCTIONS = {rf"\{name}": name for name in _NAMED.split()}
+_RAISED = {"sin", "cos", "tan"}
+_ANGLE = re.compile(r"(?:q|theta)[1-9]\d?")
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
+_PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
@@ -31,28 +48,34 @@ def expression(text: str, place: str = "expression") -> str:
     Args:
         text: sums, products (also by standing side by side), ``/``, powers, ``\\frac``, ``\\sqrt``,
             ``\\sin \\cos \\tan`` with parentheses or one name behind, names with subscripts,
-            ``\\dot`` and ``\\ddot`` over q or theta.
+            ``\\mathrm`` and its like, ``\\dot`` and ``\\ddot`` over q or theta.
         place: what to put in front of a message.
 
     Raises:
-        ExpressionError: too long, nested too deep, or a command that is none of these.
+        ExpressionError: too long, nested too deep, a command that is none of these, or what two
+            people would read differently (``\\cos^{-1}``, ``c_12``, ``a/b c``).
     """
     if len(text) > _LENGTH:
         raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
     tokens: list[str] = []
+    tight: list[bool] = []
     depth = at = 0
+    glued = False
     while at < len(text):
         found = _TOKEN.match(text, at)
         if found is None:
             raise ExpressionError(f"{place}: {text[at]!r} has no meaning in LaTeX of a formula")
         token, at = found.group(), found.end()
         if token in _SPACE or token.isspace():
+            glued = glued and token in (r"\left", r"\right")
             continue
         depth += (token in _PAIRS) - (token in _PAIRS.values())
         if depth > _NESTING:
             raise ExpressionError(f"{place}: nested deeper than {_NESTING}")
         tokens.append(token)
-    reader = _Reader(tokens, place)
+        tight.append(glued)
+        glued = True
+    reader = _Reader(tokens, tight, place)
     result = reader.sum()
     if reader.next:
         raise reader.unread()
@@ -62,15 +85,23 @@ def expression(text: str, place: str = "expression") -> str:
 class _Reader:
     """Walks the tokens from left to right, one method for each level of binding."""
 
-    def __init__(self, tokens: list[str], place: str) -> None:
+    def __init__(self, tokens: list[str], tight: list[bool], place: str) -> None:
         self.tokens = tokens
+        self.tight = tight
         self.place = place
         self.at = 0
         self.depth = 0
+        self.bare = -1
+        """Where the last function without parentheses ended."""
 
     @property
     def next(self) -> str:
         return self.tokens[self.at] if self.at < len(self.tokens) else ""
+
+    @property
+    def glued(self) -> bool:
+        """Whether the next token stands without a gap behind the one before."""
+        return self.at < len(self.tight) and self.tight[self.at]
 
     def take(self, wanted: str = "") -> str:
         token = self.next
@@ -87,25 +118,77 @@ class _Reader:
         behind = f" after {near}" if near else ""
         return ExpressionError(f"{self.place}: LaTeX: {found}{behind} cannot be read; {remedy}")
 
+    def unsure(self, what: str, remedy: str) -> ExpressionError:
+        """Of what two people would read differently."""
+        return ExpressionError(f"{self.place}: LaTeX: {what} can be read in two ways; {remedy}")
+
+    def split(self) -> None:
+        """Makes one token of each digit of the next: LaTeX takes one sign without braces."""
+        whole = list(self.next)
+        self.tokens[self.at : self.at + 1] = whole
+        self.tight[self.at : self.at + 1] = [self.tight[self.at]] + [True] * (len(whole) - 1)
+
     def sum(self) -> str:
         text = self.take() if self.next in ("+", "-") else ""
         text += self.product()
         while self.next in ("+", "-"):
-            text += f" {self.take()} {self.product()}"
+            bare = self.bare == self.at
+            sign, product = self.take(), self.product()
+            if bare and _ANGLE.fullmatch(product):
+                raise self.unsure(
+                    f"a function without parentheses before {sign} {product}",
+                    r"put them around its angle: \cos(q_1 + q_2)",
+                )
+            text += f" {sign} {product}"
         return text
 
     def product(self) -> str:
-        text = self.power()
-        while self.next and self.next not in ("+", "-", *_PAIRS.values()):
+        last = text = self.power()
+        while self.next and self.next not in ("+", "-", ",", *_PAIRS.values()):
             if self.next in _TIMES:
                 self.take()
-                text += f"*{self.power()}"
+                last = self.power()
+                text += f"*{last}"
             elif self.next == "/":
-                self.take()
-                text += f"/{self.power()}"
+                text += self.below(last)
+                last = "/"
             else:
-                text += f"*{self.power()}"
+                if _PLAIN.fullmatch(last) and self.next[:1].isdigit():
+                    raise self.unsure(f"{last} {self.next}", r"write \cdot between two numbers")
+                bare = self.bare == self.at
+                last = self.power()
+                if bare and _ANGLE.fullmatch(last):
+                    raise self.unsure(
+                        f"a function without parentheses before {last}",
+                        "put them around its angle",
+                    )
+                self.refuse_call(text, last)
+                text += f"*{last}"
         return text
+
+    def below(self, above: str) -> str:
+        """What stands behind a slash; refuses ``a/b c``, where c may stand above or below."""
+        if self.bare == self.at:
+            raise self.unsure(
+                r"a slash behind \cos q_1", r"write \frac{\cos q_1}{2} or \cos(q_1/2)"
+            )
+        self.take("/")
+        under = self.power()
+        ends = ("", "+", "-", "/", ",", *_TIMES, *_PAIRS.values())
+        number = _PLAIN.fullmatch(under)
+        sure = number and (_PLAIN.fullmatch(above) or not self.glued or self.next in _FUNCTIONS)
+        if self.next not in ends and not sure:
+            raise self.unsure(
+                f"{self.next} behind .../{under}", rf"write \frac{{a}}{{{under}}} or a/({under} b)"
+            )
+        return f"/{under}"
+
+    def refuse_call(self, name: str, last: str) -> None:
+        """``g(q_1)`` may be g times q_1, or a function of q_1."""
+        inside = last[1:-1]
+        name = name.rpartition("*")[2]
+        if last[:1] == "(" and _ANGLE.fullmatch(inside) and _NAME.fullmatch(name):
+            raise self.unsure(f"{name}({inside})", rf"write {name} \cdot {inside} for a product")
 
     def power(self) -> str:
         text = self.atom()
@@ -122,9 +205,7 @@ class _Reader:
         if self.next == "{":
             return self.group()
         if self.next[:1].isdigit() and len(self.next) > 1:  # \frac12 is one half
-            whole = self.take()
-            self.at -= 1
-            self.tokens[self.at : self.at + 1] = list(whole)
+            self.split()
             return self.take()
         return self.atom()
 
@@ -145,15 +226,20 @@ class _Reader:
     def _atom(self) -> str:
         token = self.next
         if token in _PAIRS:
-            return f"({self.group()})"
+            inside = self.group()
+            if token == "{" and self.next == "_" and _NAME.fullmatch(inside):  # {\dot q}_1
+                return f"{inside}{self.subscript()}"
+            return f"({inside})"
         if token in _FRACTIONS:
             self.take()
             above = self.argument()
             return f"(({above})/({self.argument()}))"
-        if token == r"\sqrt":
+        if token in (r"\sqrt", "sqrt"):
             self.take()
+            if self.next == "[":
+                raise ExpressionError(f"{self.place}: LaTeX: only square roots can be read")
             return f"sqrt({self.argument()})"
-        if token in _FUNCTIONS:
+        if self.called():
             return self.function()
         if token[:1].isdigit():
             return self.take()
@@ -161,16 +247,46 @@ class _Reader:
             return self.take()[1:]
         return self.name()
 
+    def called(self) -> str:
+        """The function that comes next, if one does."""
+        word = _word(self.next) or self.next.lstrip("\\")
+        word = _CALLED.get(word, word)
+        return word if rf"\{word}" in _FUNCTIONS else ""
+
     def function(self) -> str:
-        name = _FUNCTIONS[self.take()]
+        name = self.called()
+        self.take()
         exponent = self.argument() if self.raised() else ""
-        if self.next in _PAIRS:
-            inside = self.group()
+        if exponent and (name not in _RAISED or exponent.lstrip("(").startswith("-")):
+            raise self.unsure(
+                rf"\{name}^{{{exponent}}}", rf"write \arc{name} for the angle, or 1/\{name}"
+            )
+        inside = self.arguments() if self.next in _PAIRS else self.bare_argument(name)
+        text = f"{name}({inside})"
+        return f"{text}**({exponent})" if exponent else text
+
+    def arguments(self) -> str:
+        closing = _PAIRS[self.take()]
+        text = self.sum()
+        while self.next == ",":
+            self.take()
+            text += f", {self.sum()}"
+        self.take(closing)
+        return text
+
+    def bare_argument(self, name: str) -> str:
+        if self.next in _FRACTIONS:
+            inside = self.atom()
         else:
             number = f"{self.take()}*" if self.next[:1].isdigit() else ""
             inside = number + self.name()
-        text = f"{name}({inside})"
-        return f"{text}**({exponent})" if exponent else text
+        if "**" in inside or self.next == "^":
+            raise self.unsure(
+                rf"a power behind \{name} {inside.partition('*')[0]}",
+                rf"write \{name}^2(...), or parentheses around the angle",
+            )
+        self.bare = self.at
+        return inside
 
     def name(self) -> str:
         dots = ""
@@ -188,7 +304,6 @@ class _Reader:
             head, below = self.letter(), self.subscript()
         if dots and head not in ("q", "theta"):
             raise ExpressionError(f"{self.place}: LaTeX: a dot over {head}; only over q and theta")
-        head = "q" if dots else head
         if self.next == "^" and not below:  # l^2_1 is l_1^2
             mark = self.at
             self.take()
@@ -201,20 +316,34 @@ class _Reader:
 
     def letter(self) -> str:
         token = self.next
+        word = _word(token)
+        if word and not token.startswith(r"\operatorname"):
+            self.take()
+            return word
+        if token == r"\ell":
+            self.take()
+            return "l"
         if token in _GREEK or (len(token) == 1 and token.isalpha()):
             return _GREEK.get(self.take(), token)
         raise self.unread()
 
     def subscript(self) -> str:
+        if self.next.isdigit() and self.glued:  # m1 for m_1
+            return self.take()
         if self.next != "_":
             return ""
         self.take()
         if self.next != "{":
             token = self.take()
-            if len(token) > 1 and token.isdigit():  # q_12 is q_1 2
-                self.at -= 1
-                self.tokens[self.at : self.at + 1] = list(token)
-                token = self.take()
+            if len(token) > 1 and token.isdigit():
+                raise self.unsure(
+                    f"_{token}",
+                    rf"write _{{{token}}} for one index, _{token[0]} \cdot for a product",
+                )
+            if self.next.isdigit() and self.glued:
+                raise self.unsure(
+                    f"_{token}{self.next}", rf"write _{{{token}{self.next}}} for one index"
+                )
             return self.plain(token)
         self.take()
         text = ""
@@ -224,6 +353,14 @@ class _Reader:
         return text
 
     def plain(self, token: str) -> str:
+        token = _word(token) or token
         if token.isalnum():
             return token
         raise ExpressionError(f"{self.place}: LaTeX: {token!r} in a subscript; letters and digits")
+
+
+def _word(token: str) -> str:
+    r"""What stands in ``\mathrm{...}`` and its like."""
+    if token[:1] != "\\" or "{" not in token:
+        return ""
+    return re.sub(r"[\s_{}]", "", token.partition("{")[2])

@@ -27,9 +27,8 @@ from fractions import Fraction
 from typing import Any
 
 from kinlab.errors import ExpressionError, FileError, near
-from kinlab.formulas import tree
+from kinlab.formulas import tree, typed
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
-from kinlab.formulas.latex import expression
 from kinlab.formulas.tree import Node
 
 _LENGTH = 20_000
@@ -41,7 +40,7 @@ _DIGITS = 25
 _EXPONENT = 6
 _FORMULAS = 200
 
-SHORTHAND = re.compile(r"([cs])([1-9]+)")
+SHORTHAND = re.compile(r"([cs])_?([1-9]+)")
 """c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 
 _DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_dot_?|q_dot_?|qdot_?"
@@ -50,6 +49,10 @@ _JOINT = tuple(
     (re.compile(rf"(?:{heads})_?([1-9]\d?)"), letter)
     for heads, letter in (("theta|th|q", "q"), (_DOTTED, "qd"), (_TWICE_DOTTED, "qdd"))
 )
+_ABSOLUTE = re.compile(r"(?:theta|th)(d{0,2})_?((?=[1-9]{2})1?2?3?4?5?6?7?8?9?)")
+"""theta12 is q1 + q2, as c12 is its cosine: joints in ascending order."""
+_UNDERSCORED = re.compile(r"[A-Za-z]+(?:_[A-Za-z]+)?_?[0-9]+")
+_FIRST_RATE = re.compile(r"omega_?1")
 
 
 @dataclass(frozen=True)
@@ -73,16 +76,20 @@ class FormulaFile:
     symbol_texts: dict[str, str]
 
 
-def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
+def formula_file(
+    document: Mapping[str, Any], place: str, writing: typed.Hand | None = None
+) -> FormulaFile:
     """Reads the formulas of a TOML document.
 
     Args:
         document: as it was read. ``robot`` is required; ``[symbols]`` gives numbers or other
             names to the user's symbols; every entry of ``[formulas]`` (or of the top level) is a
             formula: its name says what it claims to be (``tau1``, ``g2``, ``M12``, ``C11``,
-            ``J11``, ``x``, or a quantity such as ``"fk[0,3]"``). Entries of ``[latex]`` are
-            LaTeX (:mod:`kinlab.formulas.latex`).
+            ``J11``, ``x``, or a quantity such as ``"fk[0,3]"``). A formula may be typed as
+            text, MATLAB, Python or LaTeX, with its left side, or be a matrix
+            (:mod:`kinlab.formulas.typed`). Entries of ``[latex]`` are LaTeX.
         place: the file, for messages.
+        writing: what more of the same writer's formulas say; None looks at these.
 
     Raises:
         FileError: the document holds no formulas, or what is none.
@@ -103,17 +110,18 @@ def formula_file(document: Mapping[str, Any], place: str) -> FormulaFile:
         entries[key] = value
     for key in typeset.keys() & entries.keys():
         raise FileError(f"{place}: {key!r} is given twice, as text and as LaTeX; keep one")
-    entries |= {key: _from_latex(value, f"{place}: {key}") for key, value in typeset.items()}
+    entries |= {key: f"${_text(value, f'{place}: {key}')}$" for key, value in typeset.items()}
     if not entries:
         raise FileError(f'{place}: no formulas; write [formulas] and lines such as tau1 = "..."')
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    entries, symbols = _plain(entries, symbols, place, writing)
     return FormulaFile(
         place,
         robot,
         {name: _symbol(value, f"{place}: symbol {name!r}") for name, value in symbols.items()},
-        {name: _formula(value, f"{place}: {name}") for name, value in entries.items()},
+        {name: parse(value, f"{place}: {name}") for name, value in entries.items()},
         {name: tidied(value) for name, value in entries.items()},
         {
             name: tidied(value if isinstance(value, str) else repr(float(value)))
@@ -182,6 +190,11 @@ def tidied(text: str) -> str:
 
 def canonical(name: str) -> Node:
     """What a name means by the field's habits: th1 is q1, c12 is cos(q1 + q2)."""
+    angles = _ABSOLUTE.fullmatch(name)
+    if angles:
+        return tree.add(*(tree.sym(f"q{angles.group(1)}{k}") for k in angles.group(2)))
+    if _FIRST_RATE.fullmatch(name):
+        return tree.sym("qd1")
     for pattern, letter in _JOINT:
         found = pattern.fullmatch(name)
         if found:
@@ -190,7 +203,7 @@ def canonical(name: str) -> Node:
     if found:
         angle = tree.add(*(tree.sym(f"q{digit}") for digit in found.group(2)))
         return tree.call("cos" if found.group(1) == "c" else "sin", angle)
-    return tree.sym(name)
+    return tree.sym(name.replace("_", "") if _UNDERSCORED.fullmatch(name) else name)
 
 
 class _Reader:
@@ -313,16 +326,30 @@ def _symbol(value: Any, place: str) -> Node:
     return tree.num(Fraction(repr(float(value))))
 
 
-def _formula(value: Any, place: str) -> Node:
+def _plain(
+    entries: dict[str, Any], symbols: dict[str, Any], place: str, writing: typed.Hand | None
+) -> tuple[dict[str, str], dict[str, Any]]:
+    """Formulas and symbols as typed, made plain; a matrix as its entries."""
+    given = {key: _text(value, f"{place}: {key}") for key, value in entries.items()}
+    meant = {name: value for name, value in symbols.items() if isinstance(value, str)}
+    writing = writing or typed.hand([*given.values(), *meant.values()], symbols)
+    formulas = {}
+    for name, value in typed.opened(given, place, writing).items():
+        formulas[name] = typed.plain_formula(value, f"{place}: {name}", writing)
+        typed.refuse_omega(formulas[name], f"{place}: {name}", symbols)
+    explained = {
+        name: typed.plain_formula(value, f"{place}: symbol {name!r}", writing)
+        for name, value in meant.items()
+    }
+    return formulas, symbols | explained
+
+
+def _text(value: Any, place: str) -> str:
     if not isinstance(value, str):
         raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
-    return parse(value, place)
-
-
-def _from_latex(value: Any, place: str) -> str:
-    if not isinstance(value, str):
-        raise ExpressionError(f"{place}: {type(value).__name__}; write the LaTeX as text")
-    return expression(value, place)
+    if len(value) > _LENGTH:
+        raise ExpressionError(f"{place}: {len(value)} characters; at most {_LENGTH}")
+    return value
 
 
 def _short(text: str) -> str:

@@ -19,6 +19,8 @@ _HOST = hashlib.sha256(socket.gethostname().encode("utf-8", "replace")).hexdiges
 _PREFIX = ".kinlab-"
 _SWEPT: set[Path] = set()
 _STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
+_INVALID = re.compile(r"Invalid value \((?:at line (\d+), column (\d+)|at end of document)\)")
+_KEY = re.compile(r"([\w.-]+)\s*=\s*$")
 _OPEN = re.compile(r"(?:/dev|/proc/self)/fd/([0-9]{1,6})")
 
 
@@ -65,11 +67,27 @@ def read_toml(text: str, place: str, error: type[KinlabError]) -> dict[str, Any]
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as problem:
-        raise error(f"{place}: not TOML: {str(problem)[:200]}") from None
+        raise error(f"{place}: not TOML: {_in_words(text, str(problem))}") from None
     except RecursionError:
         raise error(f"{place}: not TOML: nested too deep") from None
     except ValueError:  # Python's bound on the digits of a whole number
         raise error(f"{place}: not TOML: a number or date that cannot be held") from None
+
+
+def _in_words(text: str, problem: str) -> str:
+    """What the TOML reader found, with the key whose value it could not read."""
+    found = _INVALID.fullmatch(problem)
+    if found is None:
+        return problem[:200]
+    lines = text.splitlines() or [""]
+    line, column = int(found[1] or len(lines)), int(found[2] or len(lines[-1]) + 1)
+    row = lines[line - 1] if line <= len(lines) else ""
+    key = _KEY.search(row[: column - 1])
+    if key is None:
+        return problem[:200]
+    value = re.split(r"[,}#]", row[column - 1 :])[0].strip()
+    told = f"cannot be {value[:40]}; text stands in quotes" if value else "has no value"
+    return f'line {line}: {key[1]!r} {told}: {key[1]} = 0.5, or {key[1]} = "pi/2"'
 
 
 def write_bytes(path: str | Path, content: bytes) -> None:

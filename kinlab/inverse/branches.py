@@ -15,6 +15,7 @@ from kinlab.arrays import Array, number, real_array, whole
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.arrays import chain
 from kinlab.fast.compiled import kernel
+from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of
 from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
@@ -28,8 +29,8 @@ SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
 
 
-@dataclass(frozen=True, eq=False)
-class IKBranches:
+@dataclass(frozen=True, eq=False, repr=False)
+class IKBranches(Rows):
     """All solutions found for one pose.
 
     Attributes:
@@ -61,6 +62,33 @@ class IKBranches:
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
+
+    def columns(self) -> dict[str, Any]:
+        """Solution by solution: its name, the joints, limits and errors."""
+        return {
+            "name": list(self.names),
+            **numbered("q", self.q),
+            "within_limits": self.within_limits,
+            "position_error": self.position_error,
+            "rotation_error": self.rotation_error,
+        }
+
+    def introduction(self) -> Introduction:
+        """How many solutions there are, whether these are all, and what that rests on."""
+        sure = "these are all" if self.complete else "there may be MORE"
+        inside = f"{int(np.sum(self.within_limits))} within the limits"
+        lines = [self.evidence] if self.evidence else []
+        if self.families:
+            lines.append(f"{counted(len(self.families), 'infinite set')} of solutions among them")
+        shown = {key: x for key, x in self.columns().items() if not key.endswith("error")}
+        return Introduction(
+            f"{counted(len(self), 'solution')}, {inside}; {sure} ({self.method})",
+            tuple(lines),
+            tuple(key.replace("_", " ") for key in shown) if len(self) else (),
+            shown_cells(shown) if len(self) else (),
+            len(self),
+            "good" if self.complete and len(self) else "unsure",
+        )
 
 
 @dataclass(frozen=True, eq=False)

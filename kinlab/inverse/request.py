@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import LARGEST, Array, number, real_array, rigid_transform, seed_of, whole
+from kinlab.engine.states import warn_far
 from kinlab.errors import StateError
 from kinlab.fast.compiled import kernel
 from kinlab.model.robot import Robot
@@ -165,6 +166,7 @@ def read_guess(robot: Robot, guess: ArrayLike, rows: int | None = None) -> tuple
     outside = np.atleast_2d((q0 < robot.lower) | (q0 > robot.upper)).any(axis=0)
     if not outside.any():
         return q0, []
+    warn_far(robot, q0, "q0")
     names = ", ".join(repr(robot.joint_names[i]) for i in np.flatnonzero(outside))
     remark = f"q0 is outside the limits of {names}; started on the limit instead"
     return np.clip(q0, robot.lower, robot.upper), [remark]

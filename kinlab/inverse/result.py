@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+import numpy as np
+
 from kinlab.arrays import Array
+from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
 
 
 class IKStatus(StrEnum):
@@ -31,6 +36,15 @@ class IKStatus(StrEnum):
     """Still coming closer when the iterations ran out."""
 
 
+_WHY = {
+    IKStatus.CONVERGED: "within the tolerances and the limits",
+    IKStatus.OUTSIDE_LIMITS: "the pose can be had, but only outside the joint limits",
+    IKStatus.SINGULARITY: "the search came to rest at a singular posture",
+    IKStatus.LOCAL_MINIMUM: "no more progress; more restarts may find it",
+    IKStatus.UNREACHABLE: "the pose seems out of reach",
+    IKStatus.ITERATION_LIMIT: "still coming closer when the iterations ran out",
+}
+
 BRANCH = "branch"
 """The task where a branch was asked for: what :func:`kinlab.ik_branches` asks of such an arm."""
 
@@ -52,8 +66,8 @@ class IKHistory:
     search: Any
 
 
-@dataclass(frozen=True, eq=False)
-class IKResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class IKResult(Answer):
     """The answer for one pose.
 
     Attributes:
@@ -80,9 +94,25 @@ class IKResult:
     history: IKHistory | None = None
     task: str = "pose"
 
+    def introduction(self) -> Introduction:
+        """How it ended, how far off the tool is, and where the joints are."""
+        ended = "solved" if self.success else f"NOT solved: {_WHY[self.status]}"
+        searches = counted(1 + self.restarts, "search").replace("searchs", "searches")
+        return Introduction(
+            f"inverse kinematics, task {self.task}: {ended}",
+            (
+                f"q = {vector(self.q, 8)}",
+                f"position error {1e3 * self.position_error:.3g} mm, rotation error "
+                f"{math.degrees(self.rotation_error):.3g}°, measured by forward kinematics",
+                f"{counted(int(self.iterations), 'iteration')} of {searches}; status {self.status}",
+                *self.remarks,
+            ),
+            mood="good" if self.success else "bad",
+        )
 
-@dataclass(frozen=True, eq=False)
-class IKBatch:
+
+@dataclass(frozen=True, eq=False, repr=False)
+class IKBatch(Rows):
     """The answers for many poses; the attributes of :class:`IKResult` with a leading axis N.
 
     Attributes:
@@ -103,3 +133,40 @@ class IKBatch:
 
     def __len__(self) -> int:
         return len(self.q)
+
+    def columns(self) -> dict[str, Any]:
+        """Pose by pose: joints, how the search ended, and the errors."""
+        return {
+            **numbered("q", self.q),
+            "success": self.success,
+            "status": [str(status) for status in self.status],
+            "position_error": self.position_error,
+            "rotation_error": self.rotation_error,
+            "iterations": self.iterations,
+            "restarts": self.restarts,
+        }
+
+    def introduction(self) -> Introduction:
+        """How many poses were solved, and how the others ended."""
+        solved = int(np.sum(self.success))
+        ends = Counter(
+            str(s) for s, good in zip(self.status, self.success, strict=True) if not good
+        )
+        lines = [
+            f"{count} {status}: {_WHY[IKStatus(status)]}" for status, count in ends.most_common()
+        ]
+        if solved:
+            position, rotation = (
+                float(np.max(errors[self.success]))
+                for errors in (self.position_error, self.rotation_error)
+            )
+            lines.insert(
+                0,
+                f"largest errors of the solved: {1e3 * position:.3g} mm, "
+                f"{math.degrees(rotation):.3g}°",
+            )
+        return Introduction(
+            f"inverse kinematics, task {self.task}: {solved} of {len(self)} poses solved",
+            (*lines, *self.remarks),
+            mood="good" if solved == len(self) else "bad",
+        )

@@ -30,6 +30,7 @@ from kinlab.arrays import (
 )
 from kinlab.errors import StateError, TableError, already_said, warn
 from kinlab.host.files import write_text
+from kinlab.host.introductions import Introduction, Rows, brief, counted, vector
 from kinlab.model import table_files as table_io
 from kinlab.model.link import (
     Convention,
@@ -51,8 +52,8 @@ _WAY_OUT = (
 _LINK_NAME = re.compile(r"base_link|(link|dh)_\d+")
 
 
-@dataclass(frozen=True, eq=False)
-class DHTable:
+@dataclass(frozen=True, eq=False, repr=False)
+class DHTable(Rows):
     """A serial arm as a DH table.
 
     Attributes:
@@ -125,6 +126,44 @@ class DHTable:
             gravity=gravity,
             unphysical=unphysical,
             **ends,
+        )
+
+    def __repr__(self) -> str:
+        return f"<DHTable {self.name!r}: {self.convention}, {counted(self.n, 'joint')}>"
+
+    def columns(self) -> dict[str, Any]:
+        """Row by row, under the names that :meth:`load` reads from CSV, angles in radians.
+
+        Base, tool and gravity have no place there; :meth:`save` keeps them.
+        """
+        links = self.links
+        plain = [f.name for f in fields(DHLink) if f.name not in ("com", "inertia", "name")]
+        out = {name: [getattr(link, name) for link in links] for name in plain}
+        for k, name in enumerate(table_io.COM):
+            out[name] = [float(np.asarray(link.com)[k]) for link in links]
+        for name in table_io.TENSOR:
+            i, j = ("xyz".index(letter) for letter in name[1:])
+            out[name] = [float(np.asarray(link.inertia)[i, j]) for link in links]
+        whole = {"convention": str(self.convention), "unphysical": self.unphysical}
+        return {"name": list(self.joint_names)} | out | {k: [x] * self.n for k, x in whole.items()}
+
+    def introduction(self) -> Introduction:
+        """The rows, with the joints' q in them."""
+        slides = sum(link.joint == "prismatic" for link in self.links)
+        kinds = counted(self.n, "joint") + (f", {slides} prismatic" if slides else "")
+        parts = []
+        for which, given in (("base", self.base), ("tool", self.tool)):
+            pose = np.asarray(given)
+            turned = "" if np.allclose(pose[:3, :3], np.eye(3)) else ", turned"
+            if not np.array_equal(pose, np.eye(4)):
+                parts.append(f"{which} at {vector(pose[:3, 3])} m{turned}")
+        marks = ("unphysical: inertias that no body can have are meant",) if self.unphysical else ()
+        lines = (brief(self.source), "; ".join(parts), *marks)
+        return Introduction(
+            f"DH table {self.name}, {self.convention} convention: {kinds}",
+            tuple(line for line in lines if line),
+            *row_words(self),
+            mood="unsure" if self.unphysical else "",
         )
 
     def __eq__(self, other: object) -> bool:
@@ -256,6 +295,32 @@ class DHTable:
         return table_io.dumps({**document, "links": rows})
 
 
+def row_words(table: DHTable) -> tuple[tuple[str, ...], tuple[tuple[str, ...], ...]]:
+    """Heads and rows of a table as people read them: degrees, metres, q where it stands."""
+    below = "i-1" if table.convention is Convention.MODIFIED else "i"
+    rows = []
+    for i, link in enumerate(table.links, 1):
+        variable = f"-q{i}" if link.flip else f"q{i}"
+        a, alpha, d, theta = (
+            f"{round(link.a, 9) + 0.0:.8g}",
+            f"{round(math.degrees(link.alpha), 7) + 0.0:.8g}°",
+            f"{round(link.d, 9) + 0.0:.8g}",
+            f"{round(math.degrees(link.theta), 7) + 0.0:.8g}°",
+        )
+        if link.joint == "revolute":
+            theta = _plus(variable, theta)
+        else:
+            d = _plus(variable, d)
+        rows.append((str(i), alpha, a, d, theta))
+    return ("i", f"alpha_{below}", f"a_{below} [m]", "d_i [m]", "theta_i"), tuple(rows)
+
+
+def _plus(variable: str, constant: str) -> str:
+    if constant in ("0", "0°"):
+        return variable
+    return f"{variable} - {constant[1:]}" if constant[0] == "-" else f"{variable} + {constant}"
+
+
 def with_links(table: DHTable, links: Sequence[DHLink]) -> DHTable:
     """The table with links made out of its own: nothing about them is said or refused again.
 
@@ -284,7 +349,7 @@ def _check_link(link: DHLink, place: str, unphysical: bool) -> None:
             turns = abs(angle) / (2.0 * math.pi)
             warn(
                 f"{place}: {column} is {angle:g} rad, {turns:.3g} turns: degrees? "
-                f'(write "{angle:g} deg")'
+                f'({angle:g} deg = {math.radians(angle):.4g} rad; files take "{angle:g} deg")'
             )
 
 

@@ -148,6 +148,7 @@ def _unknown(text: str) -> FileError | NameUnknownError:
     suffix = Path(text).suffix
     kinds = f"a robot file ends in {', '.join(TABLES)} or {URDFS[0]}"
     if suffix or "/" in text or _exists(text):
+        kinds = kinds if suffix or _exists(text) else f"no such file; {kinds}"
         like = near(suffix.lower(), [*TABLES, *URDFS]) if suffix else ""
         if not like.startswith("did you mean"):
             return FileError(f"{shown(text)}: {kinds}")
@@ -155,7 +156,7 @@ def _unknown(text: str) -> FileError | NameUnknownError:
         return FileError(f"{shown(text)}: {kinds}; did you mean {shown(str(meant))}?")
     if text in presets():
         return NameUnknownError(
-            f"{text!r} is a five-bar, not a serial arm: kinlab fivebar {text}, or "
+            f"{text!r} is a five-bar, not a serial arm: kinlab fivebar analyse {text}, or "
             f"kl.FiveBar.load({text!r})"
         )
     names = [*shipped(), *example_robots()]

@@ -17,6 +17,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array, frozen, set_fields, shown
 from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
+from kinlab.host.introductions import Answer, Introduction, brief, counted, vector
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
 from kinlab.model.link import inertia_flaw
@@ -25,8 +26,8 @@ from kinlab.model.urdf_write import written
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True, eq=False)
-class Robot:
+@dataclass(frozen=True, eq=False, repr=False)
+class Robot(Answer):
     """A serial arm: a Pinocchio model and the frame that counts as its tool.
 
     Build one with :meth:`from_dh`, :meth:`from_urdf` or :func:`kinlab.load`.
@@ -41,6 +42,9 @@ class Robot:
         source: where the numbers come from.
         n: number of joints.
         lower, upper: limits of q, (n,), rad or m.
+        joint_kinds: ``"revolute"`` or ``"prismatic"``, joint by joint.
+        slack: how far beyond its limits each joint's q is hardly meant, (n,), rad or m.
+        near_square: |q|² up to which no entry of q lies beyond its limits by its slack.
     """
 
     name: str
@@ -56,6 +60,9 @@ class Robot:
     singular_mass: str = field(init=False, repr=False)
     """Why the mass matrix is singular, or an empty string."""
     shape: tuple[int] = field(init=False, repr=False)
+    joint_kinds: tuple[str, ...] = field(init=False, repr=False)
+    slack: Array = field(init=False, repr=False)
+    near_square: float = field(init=False, repr=False)
     _scratch: threading.local = field(init=False, repr=False, default_factory=threading.local)
 
     def __post_init__(self) -> None:
@@ -68,13 +75,47 @@ class Robot:
         n = int(self.model.nv)
         if not n:
             raise StructureError(f"robot {self.name!r}: the model has no joint; see kl.load")
+        lower, upper = (
+            frozen(limits)
+            for limits in (self.model.lowerPositionLimit, self.model.upperPositionLimit)
+        )
+        kinds = tuple(_kind(joint) for joint in list(self.model.joints)[1:])
+        with np.errstate(over="ignore"):  # limits of a model may be as wide as numbers are
+            stroke = np.maximum(10.0 * (upper - lower), 1.0)
+            slack = np.where([kind == "revolute" for kind in kinds], 2.0 * np.pi, stroke)
+            nearest = float(np.min(np.minimum(upper + slack, slack - lower)))
         set_fields(
             self,
             n=n,
             shape=(n,),
-            lower=frozen(self.model.lowerPositionLimit),
-            upper=frozen(self.model.upperPositionLimit),
+            lower=lower,
+            upper=upper,
+            joint_kinds=kinds,
+            slack=frozen(slack),
+            near_square=min(max(nearest, 0.0), 1e150) ** 2,
             singular_mass=_why_singular(self.model, self.name),
+        )
+
+    def __repr__(self) -> str:
+        return f"<Robot {self.name!r}: {counted(self.n, 'joint')}, tool {self.tool_name!r}>"
+
+    def introduction(self) -> Introduction:
+        """The joints, what moves, and what must be said of it."""
+        mass = sum(float(body.mass) for body in list(self.model.inertias)[1:])
+        gravity = vector(self.model.gravity.linear)
+        rows = tuple(
+            (name, kind, _reach(low, kind), _reach(high, kind))
+            for name, kind, low, high in zip(
+                self.joint_names, self.joint_kinds, self.lower, self.upper, strict=True
+            )
+        )
+        said = (self.singular_mass, *remarks(self))
+        lines = (brief(self.source), f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", *said)
+        return Introduction(
+            f"robot {self.name}: {counted(self.n, 'joint')}, tool frame {self.tool_name}",
+            tuple(line for line in lines if line),
+            ("joint", "kind", "from", "to"),
+            rows,
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -198,8 +239,8 @@ def remarks(robot: Robot) -> tuple[str, ...]:
     rough = [name for name, viscous, coulomb in losses if viscous or coulomb]
     if rough:
         said.append(
-            f"joint friction of {_listed(rough)}: it counts with friction=True in inverse_dynamics "
-            "and forward_dynamics, and in nothing else"
+            f"joint friction of {_listed(rough)}: counted in simulations, and in inverse_dynamics "
+            "and forward_dynamics with friction=True; left out otherwise"
         )
     bodies = list(_moving_bodies(robot))
     points = [name for name, mass, inertia in bodies if mass and not inertia.any()]
@@ -231,6 +272,15 @@ def _moving_bodies(robot: Robot) -> Iterator[tuple[str, float, Array]]:
 def _listed(names: list[str], most: int = 8) -> str:
     rest = len(names) - most
     return ", ".join(names[:most]) + (f" and {rest} more" if rest > 0 else "")
+
+
+def _reach(limit: float, kind: str) -> str:
+    return f"{np.degrees(limit):.5g}°" if kind == "revolute" else f"{limit:.5g} m"
+
+
+def _kind(joint: Any) -> str:
+    prismatic = "P" in joint.shortname().removeprefix("JointModel")
+    return "prismatic" if prismatic else "revolute"
 
 
 def frame_id(robot: Robot, name: str) -> int:

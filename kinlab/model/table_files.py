@@ -39,8 +39,8 @@ _FRICTION = ("viscous_friction", "coulomb_friction")
 _LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature", *_FRICTION)
 _ANGLES = ("alpha", "theta")
 _LIMITS = ("lower", "upper")
-_TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-_COM = ("com_x", "com_y", "com_z")
+TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+COM = ("com_x", "com_y", "com_z")
 _DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature", *_FRICTION)
 _LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, *_DYNAMICS, "name")
 _TABLE_KEYS = (
@@ -48,7 +48,7 @@ _TABLE_KEYS = (
     *("unphysical", "links"),
 )
 _PLAIN_KEYS = tuple(k for k in _LINK_KEYS if k not in ("com", "inertia"))
-_CSV_COLUMNS = (*_PLAIN_KEYS, *_COM, *_TENSOR, "convention", "unphysical")
+_CSV_COLUMNS = (*_PLAIN_KEYS, *COM, *TENSOR, "convention", "unphysical")
 
 
 def read(path: str | Path, convention: str | None = None) -> dict[str, Any]:
@@ -80,7 +80,7 @@ def loads(text: str, where: str = "text") -> dict[str, Any]:
     data = read_toml(text, where, TableError)
     place = f"table {data['name']!r}" if isinstance(data.get("name"), str) else where
     if "l1" in data:
-        raise TableError(f"{where}: a five-bar, not a serial arm: kinlab fivebar {where}")
+        raise TableError(f"{where}: a five-bar, not a serial arm: kinlab fivebar analyse {where}")
     for key in data:
         if key not in _TABLE_KEYS:
             raise _unknown_column(key, _TABLE_KEYS, place)
@@ -202,8 +202,8 @@ def _tensor(value: object, place: str) -> Array:
     if not isinstance(value, dict):
         return _matrix(value, place)
     for key in value:
-        if key not in _TENSOR:
-            raise _unknown_column(key, _TENSOR, place)
+        if key not in TENSOR:
+            raise _unknown_column(key, TENSOR, place)
     try:
         return _assemble({k: parse_number(v) for k, v in value.items()})
     except ExpressionError as problem:
@@ -211,7 +211,7 @@ def _tensor(value: object, place: str) -> Array:
 
 
 def _assemble(entries: Mapping[str, float]) -> Array:
-    ixx, iyy, izz, ixy, ixz, iyz = (entries.get(k, 0.0) for k in _TENSOR)
+    ixx, iyy, izz, ixy, ixz, iyz = (entries.get(k, 0.0) for k in TENSOR)
     return np.array([[ixx, ixy, ixz], [ixy, iyy, iyz], [ixz, iyz, izz]])
 
 
@@ -258,16 +258,16 @@ def _rows(reader: csv.DictReader[str], place: str) -> Iterator[dict[str, str]]:
 
 
 def _csv_link(cells: Mapping[str, str], place: str) -> dict[str, Any]:
-    row: dict[str, Any] = {k: v for k, v in cells.items() if k not in (*_COM, *_TENSOR)}
+    row: dict[str, Any] = {k: v for k, v in cells.items() if k not in (*COM, *TENSOR)}
     for column in _REQUIRED:
         if column not in row:
             raise TableError(f"{place}: column {column!r} is empty")
     if "flip" in row:
         row["flip"] = _csv_truth(row["flip"], f"{place}: flip")
-    if any(c in cells for c in _COM):
-        row["com"] = [cells.get(c, "0") for c in _COM]
-    if any(c in cells for c in _TENSOR):
-        row["inertia"] = {c: cells.get(c, "0") for c in _TENSOR}
+    if any(c in cells for c in COM):
+        row["com"] = [cells.get(c, "0") for c in COM]
+    if any(c in cells for c in TENSOR):
+        row["inertia"] = {c: cells.get(c, "0") for c in TENSOR}
     return row
 
 

@@ -194,6 +194,7 @@ def _default_tool(tree: UrdfTree, place: str) -> str:
                 f"{place}: a tree: after link {link!r} branch the joints "
                 f"{', '.join(repr(joint.name) for joint in moving[:6])}; name the tool, one of "
                 + ", ".join(repr(tip) for tip in _tips(below, tree.root)[:12])
+                + ", or a link on the way (tool=, --tool)"
             )
         link = moving[0].child
     rigid = tree.links_behind(link)

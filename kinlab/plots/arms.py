@@ -31,11 +31,11 @@ def arm_points(robot: Robot, q: Array) -> Array:
     return np.array([*joints, fk(robot, q)[:3, 3]])
 
 
-def plot_ellipse(
+def ellipses(
     robot: Robot,
     q: ArrayLike,
     kinds: tuple[str, ...] = ("velocity", "force"),
-    axes: Any = None,
+    ax: Any = None,
     size: float = 0.35,
 ) -> Any:
     """Draws a planar arm at q with its ellipses at the tool.
@@ -45,7 +45,7 @@ def plot_ellipse(
         q: joint positions, (n,).
         kinds: of :func:`kinlab.analysis.metrics.ellipsoid`. Each ellipse is drawn with its
             longest axis ``size`` of the arm's reach: units differ, shapes compare.
-        axes: where to draw; a new figure if left out.
+        ax: where to draw; a new figure if left out.
         size: share of the reach.
 
     Returns:
@@ -61,7 +61,7 @@ def plot_ellipse(
         )
     state = joint_vector(robot, q, "q")
     found = [ellipsoid(robot, state, kind, "xy") for kind in kinds]
-    axes = axes if axes is not None else new_axes(f"{robot.name}: ellipses at the tool")
+    axes = ax if ax is not None else new_axes(f"{robot.name}: ellipses at the tool")
     corners = arm_points(robot, state)[:, :2]
     axes.plot(*corners.T, color=BLUE, lw=4, solid_capstyle="round", zorder=2)
     axes.plot(

@@ -54,6 +54,45 @@ def new_axes(title: str = "", three_d: bool = False, size: tuple[float, float] =
     return axes
 
 
+def degree_ticks(axis: Any, reach: tuple[float, float], *, few: bool = False) -> None:
+    """Ticks at whole parts of a turn.
+
+    Args:
+        axis: ``axes.xaxis``, ...
+        reach: least and largest angle, degrees.
+        few: at most five and none in the corners, as the slanted axes of space have room for.
+    """
+    from matplotlib.ticker import FixedLocator, MultipleLocator
+
+    span, most = reach[1] - reach[0], 4 if few else 8
+    step = next((s for s in (5, 10, 15, 30, 45, 60, 90) if span / s <= most + 1e-6), 180)
+    if not few:
+        axis.set_major_locator(MultipleLocator(step))
+        return
+    first, last = (round(end / step) for end in reach)
+    ticks = [step * k for k in range(first, last + 1)]
+    clear = [x for x in ticks if reach[0] + 0.08 * span < x < reach[1] - 0.08 * span]
+    axis.set_major_locator(FixedLocator(clear or ticks))
+
+
+def whole_ticks(axis: Any) -> None:
+    """Ticks at whole numbers only, for what is counted."""
+    from matplotlib.ticker import MaxNLocator
+
+    axis.set_major_locator(MaxNLocator(integer=True))
+
+
+def spread_labels(axes: Any) -> None:
+    """Gives the ticks of axes in space room: few, small, and clear of the axes' names."""
+    from matplotlib.ticker import FixedLocator, MaxNLocator
+
+    for axis in (axes.xaxis, axes.yaxis, axes.zaxis):
+        if not isinstance(axis.get_major_locator(), FixedLocator):
+            axis.set_major_locator(MaxNLocator(4, prune="both"))
+        axis.set_tick_params(labelsize=8, pad=1)
+        axis.labelpad = 6
+
+
 def save(axes: Any, path: str | Path) -> Path:
     """Writes the figure of these axes as .png, .svg or .pdf.
 

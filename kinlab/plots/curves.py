@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis import metrics
 from kinlab.analysis.loci import Loci
-from kinlab.analysis.metrics import singular_values
+from kinlab.analysis.loci import singular_loci as traced
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.plots.canvas import BLUE, RED, figure_text, new_axes
+from kinlab.plots.canvas import BLUE, RED, degree_ticks, figure_text, new_axes, spread_labels
 from kinlab.structure.task_space import read_length, read_task
 
 
-def plot_singular_values(
-    robot: Robot, path: ArrayLike, task: Any = "auto", length: float = 1.0, axes: Any = None
+def singular_values(
+    robot: Robot, path: ArrayLike, task: Any = "auto", length: float = 1.0, ax: Any = None
 ) -> Any:
     """Singular values of J along a path of configurations, on a logarithmic scale.
 
@@ -25,7 +28,7 @@ def plot_singular_values(
         robot: the robot.
         path: configurations in order, (N, n), N >= 2.
         task, length: as in :func:`kinlab.manipulability`, or ``"auto"``.
-        axes: where to draw; a new figure if left out.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
@@ -37,10 +40,8 @@ def plot_singular_values(
     states = joint_vector(robot, path, "path")
     if states.ndim != 2 or len(states) < 2:
         raise OptionError(f"robot {robot.name!r}: path has shape {states.shape}; expected (N, n)")
-    sigma = singular_values(space.jacobian(states, size))
-    axes = (
-        axes if axes is not None else new_axes(f"{robot.name}: singular values, task {space.name}")
-    )
+    sigma = metrics.singular_values(space.jacobian(states, size))
+    axes = ax if ax is not None else new_axes(f"{robot.name}: singular values, task {space.name}")
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(states, axis=0), axis=1))])
     floor = 1e-16 * max(float(sigma.max()), 1e-300)
     for i, values in enumerate(sigma.T):
@@ -61,19 +62,41 @@ def plot_singular_values(
     return axes
 
 
-def plot_loci(robot: Robot, loci: Loci, axes: Any = None) -> Any:
+def singular_loci(
+    robot: ArmLike,
+    loci: Loci | None = None,
+    *,
+    joints: Sequence[int] | None = None,
+    task: Any = "auto",
+    seed: int = 0,
+    ax: Any = None,
+) -> Any:
     """Singular curves over two joints, or in the space of three.
 
     Args:
-        robot: the robot. loci: of :func:`kinlab.analysis.loci.singular_loci`.
-        axes: where to draw; a new figure if left out.
+        robot: the robot.
+        loci: of :func:`kinlab.singular_loci`; traced here if left out.
+        joints, task, seed: as there, for curves that are traced here; left out, the slice begins
+            with the second joint where one can be spared, since the first seldom decides anything.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
+
+    Raises:
+        KinlabError: as :func:`kinlab.singular_loci`.
+        MissingExtraError: matplotlib is not installed.
     """
+    robot = as_robot(robot)
+    if loci is None:
+        needed = abs(read_task(robot, task).m - robot.n) + 2
+        first = 1 if robot.n > needed else 0
+        chosen = range(first, first + needed) if joints is None else joints
+        loci = traced(robot, list(chosen), task=task, seed=seed)
     three = len(loci.joints) == 3
     title = f"{loci.robot}: singular curves, task {loci.task}"
-    axes = axes if axes is not None else new_axes(title, three_d=three)
+    axes = ax if ax is not None else new_axes(title, three_d=three)
+    label: str | None = "singular: det J = 0" if _square(robot, loci) else "singular: J loses rank"
     lower, upper = (np.degrees(b[list(loci.joints)]) for b in (robot.lower, robot.upper))
     for curve in loci.curves:
         angles = np.degrees(curve.q[:, list(loci.joints)])
@@ -82,14 +105,24 @@ def plot_loci(robot: Robot, loci: Loci, axes: Any = None) -> Any:
         )
         jumps = np.abs(np.diff(wrapped, axis=0)).max(axis=1) > 180.0
         for piece in np.split(wrapped, np.flatnonzero(jumps) + 1):
-            axes.plot(*piece.T, color=RED, lw=1.6)
+            axes.plot(*piece.T, color=RED, lw=1.6, label=label)
+            label = None
     names = [figure_text(robot.joint_names[j]) for j in loci.joints]
     axes.set_xlabel(f"{names[0]} [deg]")
     axes.set_ylabel(f"{names[1]} [deg]")
     for which, (low, high) in zip("xyz", zip(lower, upper, strict=True), strict=False):
         reach = (-180.0, 180.0) if high - low >= 360.0 - 1e-6 else (low, high)
         getattr(axes, f"set_{which}lim")(reach[0] - 5.0, reach[1] + 5.0)
+        degree_ticks(getattr(axes, f"{which}axis"), reach, few=three)
     if three:
         axes.set_zlabel(f"{names[2]} [deg]")
+        spread_labels(axes)
     axes.grid(alpha=0.25)
+    if loci.curves:
+        axes.legend(fontsize=9, loc="upper right")
     return axes
+
+
+def _square(robot: Robot, loci: Loci) -> bool:
+    """Whether the Jacobian of the curves' task is square, so that it has a determinant."""
+    return len(loci.joints) == 2 and read_task(robot, loci.task).m == robot.n

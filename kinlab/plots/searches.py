@@ -7,27 +7,33 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.inverse.result import IKHistory
-from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
+from kinlab.errors import OptionError
+from kinlab.inverse.result import IKHistory, IKResult
+from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes, whole_ticks
 
 _FLOOR = 1e-17
 
 
-def plot_searches(histories: Mapping[str, IKHistory], title: str = "", axes: Any = None) -> Any:
+def ik_history(
+    histories: IKResult | IKHistory | Mapping[str, IKHistory], title: str = "", ax: Any = None
+) -> Any:
     """Position error (full line) and rotation error (dashed) of each search.
 
     Args:
-        histories: label to the ``history`` of a result of :func:`kinlab.ik`.
+        histories: a result of ``kinlab.ik(..., history=True)``, its ``history``, or several of
+            these by label.
         title: of the figure.
-        axes: where to draw; a new figure if left out.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
 
     Raises:
+        OptionError: a result without a history.
         MissingExtraError: matplotlib is not installed.
     """
-    axes = axes if axes is not None else new_axes(title)
+    histories = _by_label(histories)
+    axes = ax if ax is not None else new_axes(title)
     longest = 1
     for (label, history), colour in zip(
         histories.items(), (BLUE, RED, GREEN, GREY) * len(histories), strict=False
@@ -43,8 +49,21 @@ def plot_searches(histories: Mapping[str, IKHistory], title: str = "", axes: Any
     axes.set_yscale("log")
     if longest > 100:
         axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    else:
+        whole_ticks(axes.xaxis)
     axes.set_xlabel("iteration (dotted: a new start)")
     axes.set_ylabel("error: position [m] full, rotation [rad] dashed")
     axes.grid(alpha=0.25, which="major")
     axes.legend(fontsize=9)
     return axes
+
+
+def _by_label(histories: IKResult | IKHistory | Mapping[str, IKHistory]) -> Mapping[str, IKHistory]:
+    if isinstance(histories, IKHistory):
+        return {"search": histories}
+    if isinstance(histories, IKResult):
+        if histories.history is None:
+            raise OptionError("this result has no history; ask for it: kl.ik(..., history=True)")
+        return {str(histories.status): histories.history}
+    return histories

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import inspect
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
@@ -58,6 +59,7 @@ def read_measure(measure: str | Iterable[str] | Measure) -> Measure:
         OptionError: neither a name, names, nor a function; no name at all; a name twice.
     """
     if callable(measure):
+        _takes_two(measure)
         return measure
     if isinstance(measure, bytes) or not isinstance(measure, Iterable):
         raise OptionError(f"sweep: measure is {shown(measure)}; give a name or a function")
@@ -71,6 +73,15 @@ def read_measure(measure: str | Iterable[str] | Measure) -> Measure:
     if not names or len(set(names)) < len(names):
         raise OptionError(f"sweep: measures {list(names)}; name at least one, each once")
     return Named(names)
+
+
+def _takes_two(measure: Measure) -> None:
+    try:
+        inspect.signature(measure).bind(None, None)
+    except ValueError:  # some of C's functions do not say what they take
+        return
+    except TypeError as problem:
+        raise OptionError(f"sweep: measure {shown(measure)}: {problem}; f(robot, q)") from None
 
 
 def evaluate(measure: Measure, robot: Any, q: Array) -> dict[str, Array]:

@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.fast.threads import available
+from kinlab.host.introductions import MOST_ROWS, Introduction, Rows, counted, numbered
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.sweeps.measures import Measure, describe, read_measure
@@ -27,8 +28,8 @@ from kinlab.sweeps.pools import Pool, run_chunk, same_columns, serial, spread
 from kinlab.sweeps.samples import BLOCK, Samples, read_samples
 
 
-@dataclass(frozen=True, eq=False)
-class SweepResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class SweepResult(Rows):
     """The answers of a sweep. States are drawn again when asked for, not stored.
 
     Attributes:
@@ -43,6 +44,30 @@ class SweepResult:
 
     def __len__(self) -> int:
         return self.samples.count
+
+    def keys(self) -> tuple[str, ...]:
+        """Names of the columns, so that ``dict(result)`` holds them all."""
+        return self.names
+
+    def columns(self) -> dict[str, Any]:
+        """State by state: q, and every column, those with several numbers entry by entry."""
+        out = numbered("q", self.states)
+        for name in self.names:
+            out |= numbered(name, self[name])
+        return out
+
+    def introduction(self) -> Introduction:
+        """How many states, and the range of each column."""
+        rows: list[tuple[str, ...]] = []
+        if len(self) <= _READ_AT_ONCE:
+            for name in self.names:
+                for part, values in list(numbered(name, self[name]).items())[:MOST_ROWS]:
+                    rows.append((part, *_range(values)))
+        heads = ("column", "least", "median", "largest") if rows else ()
+        names = ", ".join(self.names)
+        return Introduction(
+            f"sweep of {counted(len(self), 'state')}: {names}", (), heads, tuple(rows)
+        )
 
     def __getitem__(self, name: str) -> Array:
         """One column whole, (N, ...).
@@ -108,6 +133,22 @@ class SweepResult:
             raise NameUnknownError(f"sweep: no column {name!r}; {near(str(name), self.names)}")
 
 
+_READ_AT_ONCE = 2_000_000
+"""States up to which the columns are read in order to say their range."""
+
+
+def _range(values: Any) -> tuple[str, str, str]:
+    """Least, median and largest of a column; empty where it holds no numbers."""
+    array = np.asarray(values)
+    if array.dtype.kind not in "buif":
+        return ("", "", "")
+    finite = array[np.isfinite(array)]
+    if not len(finite):
+        return ("-", "-", "-")
+    low, middle, high = (float(f(finite)) for f in (np.min, np.median, np.max))
+    return f"{low:.5g}", f"{middle:.5g}", f"{high:.5g}"
+
+
 def sweep(
     robot: Any,
     measure: str | Iterable[str] | Measure,
@@ -129,7 +170,7 @@ def sweep(
 
     Args:
         robot: what the measure is of: anything that names an arm or a five-bar, or any object
-            that can be pickled.
+            that can be pickled (text and paths always name a mechanism).
         measure: a name or names (``"pose"``, ``"position"``, ``"jacobian"``,
             ``"singular_values"``, ``"condition"``, ``"yoshikawa"``, ``"inverse_condition"``,
             ``"min_singular"``, ``"isotropy"``, all of the full Jacobian in SI units), or a

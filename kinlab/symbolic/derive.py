@@ -46,7 +46,7 @@ _ARGUMENTS = {"C": 2, "T": 2, "tau": 3}
 _HEAVY = ("M", "C", "tau", "D", "T")
 
 
-def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
+def derived_text(robot: str, what: str, form: str, numbers: bool, tool: str | None = None) -> str:
     """One formula of an arm as text.
 
     Args:
@@ -54,6 +54,7 @@ def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
         what: a key of :data:`WHAT`.
         form: ``"text"``, ``"latex"`` or ``"python"``.
         numbers: keep the table's numbers instead of names.
+        tool: the tool's name, as for :func:`kinlab.load`.
 
     Raises:
         NameUnknownError: another robot, formula or format.
@@ -63,10 +64,12 @@ def derived_text(robot: str, what: str, form: str, numbers: bool) -> str:
     for given, known in ((what, tuple(WHAT)), (form, FORMATS)):
         if given not in known:
             raise NameUnknownError(f"derive: {given!r} is unknown; {near(given, known)}")
-    table = load(robot).table
+    table = load(robot, tool).table
     if table is None:
+        named = "" if tool is None else f" --tool {tool}"
         raise StructureError(
-            f"robot {robot!r} has no DH table to derive from (kinlab dh makes one)"
+            f"robot {robot!r} has no DH table to derive from (kinlab dh makes one: "
+            f"kinlab dh {robot}{named} -o arm.toml)"
         )
     if what in _HEAVY and table.n > _LARGEST + 1:
         raise OptionError(

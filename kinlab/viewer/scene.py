@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, shaped
-from kinlab.engine.states import joint_vector
-from kinlab.errors import NameUnknownError, StateError, near
+from kinlab.engine.states import joint_vector, warn_far
+from kinlab.errors import NameUnknownError, StateError, near, warn
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
@@ -20,6 +22,10 @@ from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
 from kinlab.viewer.page import COLORS, Page, one_pose
 from kinlab.viewer.shapes import look_at
 from kinlab.viewer.static_page import new_scene
+
+if TYPE_CHECKING:
+    from kinlab.motion.record import Motion
+    from kinlab.motion.simulation import Simulation
 
 _SEEN = 60
 """Poses of a motion that the camera is placed by."""
@@ -39,9 +45,12 @@ class Scene(Page):
 
     def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
         self.robot = robot
-        start = np.zeros(robot.n) if q is None else one_pose(self._joints(q), robot.name)
         if q is None:
-            start = np.clip(start, robot.lower, robot.upper)
+            start = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
+        else:
+            start = one_pose(self._joints(q), robot.name)
+            if isinstance(q, np.ndarray):  # of a list, it has been asked
+                warn_far(robot, start)
         vis, recorder = new_scene()
         spec = draw_page(vis, robot, start, meshes=meshes)
         super().__init__(vis, recorder, spec, reach(robot), self._joints)
@@ -91,6 +100,31 @@ class Scene(Page):
         shapes.ball(self._vis[path], 1.0, shapes.paint(shapes.ELLIPSOIDS[kind], 0.4))
         self._vis[path].set_transform(place)
 
+    def play(self, motion: Motion | Simulation) -> None:
+        """Gives the page a motion of :mod:`kinlab.motion`, or a simulated one, to play and scrub.
+
+        The tool's way is drawn as a line; where a planned motion meets a singularity or breaks a
+        limit, a labelled frame stands (:func:`kinlab.motion.check`).
+
+        Raises:
+            StateError: a motion of another number of joints.
+        """
+        from kinlab.motion.checks import check  # numba, which other pages do without
+        from kinlab.motion.simulation import Simulation
+
+        rows = self._joints(motion.q)
+        tool = fk(self.robot, rows)[:, :3, 3]
+        if np.ptp(tool, axis=0).max() > 0.0:
+            self.path("the tool's way", tool)
+        if isinstance(motion, Simulation):
+            self.animate(rows, motion.t, "Simulated motion")
+        else:
+            self.animate(rows, motion.t, f"Motion: {motion.law}")
+            found = check(self.robot, motion).findings
+            for one in (x for x in found if x.kind != "branch"):  # it stands at its singularity
+                name = f"{one.kind}, t = {one.t:.3g} s"
+                self.frame(name, fk(self.robot, motion.at(one.t)[0]))
+
     def ghosts(self, name: str, q: ArrayLike, color: int | None = None) -> None:
         """Draws the robot see-through at other poses, such as the branches of an IK solution.
 
@@ -134,6 +168,9 @@ class FiveBarScene(Page):
             start = linkage.ik(best_start(linkage, assembly))
         else:
             start = shaped(theta, (2,), f"{linkage.name}: theta")
+            if np.max(np.abs(start)) > 4.0 * np.pi:
+                angles = " and ".join(f"{angle:.6g}" for angle in start)
+                warn(f"{linkage.name}: the cranks stand at {angles} rad: degrees?")
         xy = linkage.fk(start, assembly)
         self.mode = linkage.mode_of(start, xy)
         solve_pose(linkage, xy, self.mode, regular="II")

@@ -9,12 +9,15 @@ from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
+from kinlab.errors import OptionError
 from kinlab.fivebar.linkage import as_mechanism
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
 
 if TYPE_CHECKING:
     from kinlab.fivebar import FiveBar
+    from kinlab.motion.record import Motion
+    from kinlab.motion.simulation import Simulation
     from kinlab.viewer.scene import FiveBarScene, Scene
 
 
@@ -24,6 +27,7 @@ def view(
     *,
     meshes: bool = True,
     against: Any = None,
+    motion: Motion | Simulation | None = None,
 ) -> Scene | FiveBarScene:
     """Shows an arm or a five-bar: inline in a notebook, otherwise in the browser.
 
@@ -37,6 +41,7 @@ def view(
         meshes: draw the URDF's meshes; otherwise rods from joint to joint.
         against: another description of the same arm, as for :func:`kinlab.diagnose_table`: it is
             drawn see-through over the arm, moves with it, and what is wrong in the table is lit.
+        motion: of :mod:`kinlab.motion` or :func:`kinlab.simulate`, of this arm: to play and scrub.
 
     Returns:
         The scene, to which frames, paths, clouds and (of an arm) ghosts can be added.
@@ -44,18 +49,23 @@ def view(
     Raises:
         StateError: q of another shape, or not finite.
         UnreachableError, SingularError: a five-bar that cannot close at q, or is singular there.
+        OptionError: a motion beside ``against``, or of a five-bar.
     """
     from kinlab.viewer.scene import FiveBarScene, Scene
 
     arm: Any = robot
     scene: Scene | FiveBarScene
     robot = as_mechanism(robot)
+    if motion is not None and (against is not None or not isinstance(robot, Robot)):
+        raise OptionError("view: a motion is shown of one arm: a Robot, a table or a name")
     if against is not None:
         from kinlab.viewer.against import against_scene
 
         scene = against_scene(arm, against, q)
     elif isinstance(robot, Robot):
-        scene = Scene(robot, q, meshes=meshes)
+        scene = Scene(robot, motion.q[0] if q is None and motion is not None else q, meshes=meshes)
+        if motion is not None:
+            scene.play(motion)
     else:
         scene = FiveBarScene(robot, q)
     if not in_notebook():

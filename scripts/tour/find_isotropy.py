@@ -44,7 +44,7 @@ def main() -> None:
 
     from kinlab.plots import arms, canvas
 
-    print(f"wrote {canvas.save(arms.plot_ellipse(robot, design.q), chosen.output)}")
+    print(f"wrote {canvas.save(arms.ellipses(robot, design.q), chosen.output)}")
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ def main() -> None:
 
     from kinlab.plots import canvas, curves
 
-    axes = curves.plot_loci(robot, kl.singular_loci(robot, [1, 2], q))
+    axes = curves.singular_loci(robot, kl.singular_loci(robot, [1, 2], q))
     print(f"wrote {canvas.save(axes, chosen.output)}")
 
 

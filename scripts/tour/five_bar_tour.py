@@ -13,7 +13,7 @@ import numpy as np
 import kinlab as kl
 from kinlab.drives.cycles import pick_and_place
 from kinlab.plots.canvas import save
-from kinlab.plots.fivebar import cycle_picture, gain_picture, workspace_picture
+from kinlab.plots.mechanisms import fivebar, fivebar_cycle, fivebar_gains
 
 
 def main() -> None:
@@ -58,9 +58,9 @@ def main() -> None:
     fastest = robot.fit_to_motor(path, best.motor, best.gear_ratio)
     print(f"   with {best.motor.name} the 25/305/25 mm cycle takes {fastest.duration:.3f} s")
 
-    save(workspace_picture(robot), folder / "workspace.png")
-    save(cycle_picture(robot, sizing), folder / "cycle.png")
-    save(gain_picture(robot, sizing), folder / "gain.png")
+    save(fivebar(robot), folder / "workspace.png")
+    save(fivebar_cycle(robot, sizing), folder / "cycle.png")
+    save(fivebar_gains(robot, sizing), folder / "gain.png")
     for file in robot.export(folder / "five_bar.xml", xy):
         print(f"wrote {file}")
     print(f"wrote {', '.join(str(folder / n) for n in ('workspace.png', 'cycle.png', 'gain.png'))}")

@@ -18,7 +18,7 @@ import numpy as np
 import kinlab as kl
 from kinlab.host.files import write_text
 from kinlab.plots.canvas import new_axes, save
-from kinlab.plots.searches import plot_searches
+from kinlab.plots.searches import ik_history
 
 METHODS = {
     "Newton, J⁻¹": {"method": "newton"},
@@ -91,7 +91,7 @@ def main() -> None:
                 f"{np.median(solved) if solved else float('nan'):.0f} | {growth:.1f} | {step:.1f} |"
             )
             drawn[label] = answers[0].history
-        plot_searches(drawn, axes=panels[kind])
+        ik_history(drawn, ax=panels[kind])
         panels[kind].set_title(
             {"far": "far from a singularity", "near": "near a singularity"}[kind]
         )

@@ -30,7 +30,7 @@ def main() -> None:
     from kinlab.plots import canvas, maps
 
     curves = [kl.fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
-    axes = maps.plot_map(chart, boundary=boundary, curves=curves)
+    axes = maps.workspace_map(chart, boundary=boundary, curves=curves)
     print(f"wrote {canvas.save(axes, chosen.output)}")
 
 

@@ -34,7 +34,7 @@ def main() -> None:
 
     from kinlab.plots import canvas, curves
 
-    print(f"wrote {canvas.save(curves.plot_singular_values(robot, path), chosen.output)}")
+    print(f"wrote {canvas.save(curves.singular_values(robot, path), chosen.output)}")
 
 
 if __name__ == "__main__":

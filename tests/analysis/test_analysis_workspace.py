@@ -217,12 +217,12 @@ def test_figures_are_written(tmp_path):
     chart = kl.sample_workspace(robot, samples=3000)
     loci = kl.singular_loci(robot, [0, 1])
     drawn = {
-        "ellipse.png": arms.plot_ellipse(robot, [0.3, 1.2], ("velocity", "force")),
-        "flat.svg": arms.plot_ellipse(robot, [0.3, 0.0], ("velocity", "force")),
-        "map.pdf": pictures.plot_map(chart, boundary=kl.planar_boundary(robot)),
-        "cloud.png": pictures.plot_cloud(kl.sample_workspace(kl.load("puma560"), samples=500)),
-        "loci.png": curves.plot_loci(robot, loci),
-        "path.png": curves.plot_singular_values(robot, np.linspace([0, -2], [1, 2], 50)),
+        "ellipse.png": arms.ellipses(robot, [0.3, 1.2], ("velocity", "force")),
+        "flat.svg": arms.ellipses(robot, [0.3, 0.0], ("velocity", "force")),
+        "map.pdf": pictures.workspace_map(chart, boundary=kl.planar_boundary(robot)),
+        "cloud.png": pictures.workspace_cloud(kl.sample_workspace(kl.load("puma560"), samples=500)),
+        "loci.png": curves.singular_loci(robot, loci),
+        "path.png": curves.singular_values(robot, np.linspace([0, -2], [1, 2], 50)),
     }
     for name, axes in drawn.items():
         assert canvas.save(axes, tmp_path / name).stat().st_size > 3000

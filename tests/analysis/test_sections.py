@@ -7,7 +7,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.errors import OptionError
-from kinlab.plots.maps import plot_map
+from kinlab.plots.maps import workspace_map
 
 PI = np.pi
 
@@ -100,7 +100,7 @@ def test_limits_and_a_void():
 
 def test_the_picture_has_the_curves(section):
     chart = kl.sample_workspace(orthogonal(), "position", samples=500)
-    axes = plot_map(chart, section=section)
+    axes = workspace_map(chart, section=section)
     drawn = [line.get_xydata() for line in axes.get_lines()]
     assert len(drawn) >= 2 * len(section.curves)
 

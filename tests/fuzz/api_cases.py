@@ -68,6 +68,16 @@ CALLS: Calls = {
         q=_q, v=_v, a=_a, wrench=_w, friction=("bool", True))),
     "forward_dynamics": ("forward_dynamics", _arm(
         q=_q, v=_v, tau=_a, wrench=_w, friction=("bool", True))),
+    "simulate": ("simulate", _arm(
+        q0=_q, v0=_v, torque=_a, duration=("positive", 0.02), wrench=_w, step=("positive", 0.01))),
+    "size_servos": ("size_servos", _arm(
+        motion=("thing", "motion"), gear_ratio=("positive", 20.0), wrench=_w)),
+    "motion.joint": ("motion.joint", _arm(
+        points=("array", [Q, V]), law=("word", "quintic"), duration=("positive", 1.0),
+        step=("positive", 0.1))),
+    "mark": ("mark", {
+        "sheet": ("thing", "sheet"), "submissions": ("thing", "submissions"),
+        "feedback": ("word", "verdict"), "workers": ("count", 1)}),
     "friction_torques": ("friction_torques", _arm(v=_v)),
     "with_payload": ("with_payload", _arm(
         mass=("positive", 0.5), com=("array", [0.0, 0.0, 0.1]), inertia=("array", np.eye(3)))),
@@ -86,7 +96,7 @@ CALLS: Calls = {
         "robot": ("robot", "puma560"), "q": ("array", [0.1, 0.3, -0.8, 0.4, 0.7, 0.1]),
         "task": ("task", "pose"), "length": ("positive", 0.5)}),
     "nearest_singularity": ("nearest_singularity", _arm(
-        q=_q, task=_task, boxes=("count", 50), seed=_seed)),
+        q=_q, task=_task, boxes=("count", 50), points=("count", 4), seed=_seed)),
     "workspace_section": ("workspace_section", {
         "robot": ("robot", "stanford"), "step": ("positive", 0.5), "seed": _seed}),
     "find_singularities": ("find_singularities", _arm(
@@ -386,6 +396,12 @@ def variants(tag: str, clean: Any) -> Iterator[tuple[str, str, Any]]:
             ("bytes", b"planar2r"), ("folder", Path(__file__).parent),
         ):  # fmt: skip
             yield name, "never", value
+    elif tag == "thing":
+        for name, value in (
+            ("None", None), ("5", 5), ("object", object()), ("bytes", b"x"), ("array", np.zeros(3)),
+            ("surrogate", "\ud800"), ("nul", "a\0b"), ("text", "no such thing"), ("class", kl.Robot),
+        ):  # fmt: skip
+            yield name, "never", value
     elif tag == "function":
         for name, value in (
             ("None", None), ("5", 5), ("text", "x"), ("gives None", lambda q: None), ("gives text", lambda q: "x"),
@@ -418,6 +434,17 @@ def _gravity(q: Any) -> Any:
     return kl.gravity_torques(_arm_of("planar2r"), q)
 
 
+def _motion() -> Any:
+    return kl.motion.joint(_arm_of("planar2r"), [Q, V], duration=1.0)
+
+
+SHEET = {
+    "title": "t",
+    "robot": "planar2r",
+    "questions": [{"id": "q", "quantity": "gravity_torques[0]", "points": 1}],
+}
+
+
 def clean_value(tag: str, value: Any) -> Any:
     """What the clean call passes."""
     if tag == "robot":
@@ -428,6 +455,12 @@ def clean_value(tag: str, value: Any) -> Any:
         return kl.fk(_arm_of("planar2r"), np.asarray(value))
     if tag == "function":
         return _gravity
+    if tag == "thing":
+        return {
+            "motion": _motion,
+            "sheet": lambda: SHEET,
+            "submissions": lambda: {"ada": {"q": "0"}},
+        }[value]()
     if tag == "links":
         return [kl.DHLink(a=0.5, mass=1.0, inertia=np.eye(3)), kl.DHLink(a=0.4)]
     five = kl.FiveBar.load("isotropic")
@@ -444,6 +477,8 @@ def clean_value(tag: str, value: Any) -> Any:
 def _function(name: str) -> Callable[..., Any]:
     if name.startswith("five."):
         return getattr(kl.FiveBar.load("isotropic"), name[5:])
+    if name.startswith("motion."):
+        return getattr(kl.motion, name[7:])
     if name.startswith("chain."):
         return getattr(kl.FiveBar.load("isotropic").closed_chain(), name[6:])
     return getattr(kl, name)

@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 import kinlab as kl
 from kinlab.cli import app
 from kinlab.errors import NameUnknownError, OptionError, StateError
-from kinlab.plots.searches import plot_searches
+from kinlab.plots.searches import ik_history
 
 RUN = CliRunner()
 
@@ -69,7 +69,7 @@ def test_the_command_prints_the_solution(tmp_path):
         app, "ik puma560 --xyz .4 .1 .3 --rpy 0 pi 0 --history".split() + [str(figure)]
     )
     assert done.exit_code == 0, done.output
-    assert "converged: position error" in done.output and "mm" in done.output
+    assert "converged, task pose: position error" in done.output and "mm" in done.output
     assert figure.stat().st_size > 5000
     values = [float(line.split()[1]) for line in done.output.splitlines()[:6]]
     pose = kl.fk(kl.load("puma560"), values)
@@ -112,6 +112,6 @@ def test_the_figure_marks_new_starts():
     robot = kl.load("puma560")
     T = kl.fk(robot, [0.3, -0.5, 0.6, 0.4, 0.9, -0.3])
     answer = kl.ik(robot, T, np.full(6, -1.5), history=True)
-    axes = plot_searches({"lm": answer.history}, "puma560")
+    axes = ik_history({"lm": answer.history}, "puma560")
     lines = [line for line in axes.lines if len(line.get_xdata()) == answer.iterations]
     assert len(lines) == 2 and axes.get_yscale() == "log"

@@ -170,7 +170,7 @@ def test_remarks_state_what_is_in_no_answer():
         (kl.Robot.from_model(robot.model), "joint joint_3", "joint joint_4"),
     ):
         friction, points, body = said(arm).splitlines()
-        assert friction.startswith("joint friction of elbow: it counts with friction=True")
+        assert friction.startswith("joint friction of elbow: counted in simulations")
         assert re.match(f"mass without inertia: .*{two}: computed as point masses", points)
         assert re.match(f"unphysical: .*{three}: inertia breaks", body)
 
@@ -182,5 +182,5 @@ def test_info_and_check_say_so(corke, capsys):
         with contextlib.suppress(SystemExit):
             app([command, str(corke)], standalone_mode=False)
         out = capsys.readouterr().out
-        assert "joint friction of waist: it counts with friction=True" in out
+        assert "joint friction of waist: counted in simulations" in out
         assert "unphysical: link 1: inertia breaks the triangle inequality" in out

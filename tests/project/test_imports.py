@@ -81,7 +81,9 @@ def undeclared(trees: dict[str, ast.Module], required: set[str], optional: set[s
 
 REQUIRED = declared(PROJECT["dependencies"])
 EXTRAS = {
-    one for name in ("plots", "dask") for one in declared(PROJECT["optional-dependencies"][name])
+    one
+    for name in ("plots", "dask", "motion", "dataframes")
+    for one in declared(PROJECT["optional-dependencies"][name])
 }
 
 

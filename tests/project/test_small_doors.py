@@ -85,7 +85,7 @@ def test_a_length_that_no_number_can_be_divided_by():
         ("my_arm.TOLM", FileError, "did you mean 'my_arm.toml'"),
         ("folder/arm", FileError, "ends in .toml, .csv or .urdf"),
         ("arm.docx", FileError, "ends in .toml, .csv or .urdf"),
-        ("isotropic", NameUnknownError, "kinlab fivebar isotropic"),
+        ("isotropic", NameUnknownError, "kinlab fivebar analyse isotropic"),
         ("pumma560", NameUnknownError, "did you mean 'puma560'"),
     ],
 )

@@ -217,7 +217,7 @@ def test_a_part_that_was_half_written_is_swept_away(tmp_path):
 
 def test_a_worker_that_dies_costs_nothing(tmp_path):
     flag = str(tmp_path / "died")
-    run = partial(kl.sweep, flag, sweep_measures.dies_once, COUNT, lower=[0, 0], upper=[1, 2])
+    run = partial(kl.sweep, [flag], sweep_measures.dies_once, COUNT, lower=[0, 0], upper=[1, 2])
     result = run(workers=2, chunk=1)
     assert Path(flag).exists()
     assert np.array_equal(result["value"], result.states.sum(axis=1))

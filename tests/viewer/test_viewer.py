@@ -350,7 +350,7 @@ def test_command_saves_one_file(tmp_path):
         (("view", "puma560", "-q", "1,two", "--save", "x.html"), "two"),
         (("view", "puma560", "--animate", "dance", "--save", "x.html"), "'dance'"),
         (("view", "puma560", "--port", "99999"), "port 99999"),
-        (("view", "isotropic", "--tip", "tool"), "leave --tip 'tool' out"),
+        (("view", "isotropic", "--tool", "tool"), "leave --tool 'tool' out"),
         (("view", "puma560", "--host", "192.0.2.1"), "cannot listen on 192.0.2.1"),
     ],
 )

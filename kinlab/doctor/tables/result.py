@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, field
-from html import escape
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from markupsafe import Markup
+
 from kinlab.doctor.tables.words import Cause, degrees, listed, number, where
+from kinlab.host.introductions import Introduction, Rows
 from kinlab.model.dh import DHTable
 
 _ROW = re.compile(r"rows? [^:]*")
 
 
-@dataclass(frozen=True, eq=False)
-class TableDiagnosis:
+@dataclass(frozen=True, eq=False, repr=False)
+class TableDiagnosis(Rows):
     """A DH table, judged against another description of the arm.
 
     Attributes:
@@ -103,17 +105,27 @@ class TableDiagnosis:
             text += f", the next best cause leaves {c['runner_up']:.3g} times the noise"
         return text
 
-    def __str__(self) -> str:
-        lines = [f"{self.name}: {self.verdict} (against {self.reference})", f"  {self.sentence}"]
-        return "\n".join([*lines, *(f"  {line}" for line in self.told)])
+    def columns(self) -> dict[str, Any]:
+        """Slip by slip: row and column, what is written and what is meant."""
+        told = [cause.as_dict() for cause in self.causes]
+        names = ("row", "column", "written", "meant", "kind", "sentence")
+        return {name: [str(one[name]) for one in told] for name in names}
+
+    def introduction(self) -> Introduction:
+        """The verdict, the slips in one sentence, and what they rest on."""
+        verdict = f"{self.name}: {self.verdict} (against {self.reference})"
+        mood: Any = "good" if self.agrees else "bad" if self.causes else "unsure"
+        return Introduction(verdict, (self.sentence, *self.told), mood=mood)
 
     def _repr_html_(self) -> str:
-        items = "".join(f"<li>{escape(line)}</li>" for line in self.told)
-        return (
-            f"<div><p><b>{escape(self.name)}: {escape(self.verdict)}</b> (against "
-            f"{escape(self.reference)})</p><p>{escape(self.sentence)}</p><ul>{items}</ul>"
-            f"{self._rows_html()}</div>"
+        """With the table, its wrong cells struck out beside what is meant."""
+        pair = Markup("<del>{}</del> <b>{}</b>")
+        rows = tuple(
+            (str(i), *(pair.format(was, shall) if shall else was for was, shall in row))
+            for i, row in enumerate(self.cells, 1)
         )
+        columns = ("row", "a", "alpha", "d", "theta")
+        return replace(self.introduction(), columns=columns, rows=rows).html()
 
     @property
     def name(self) -> str:
@@ -139,17 +151,6 @@ class TableDiagnosis:
                 row.append((form(was), form(shall) if abs(was - shall) > 1e-9 else ""))
             rows.append(row)
         return rows
-
-    def _rows_html(self) -> str:
-        """The table with the wrong cells struck out beside what is meant; cells are numbers."""
-        if not self.cells:
-            return ""
-        head = "".join(f"<th>{h}</th>" for h in ("row", "a", "alpha", "d", "theta"))
-        body = ""
-        for i, row in enumerate(self.cells, 1):
-            told = [f"<del>{was}</del> <b>{shall}</b>" if shall else was for was, shall in row]
-            body += f"<tr><td>{i}</td>{''.join(f'<td>{text}</td>' for text in told)}</tr>"
-        return f"<table><tr>{head}</tr>{body}</table>"
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON."""

@@ -20,8 +20,12 @@ _WORST_SHOWN = 10.0
 """Condition numbers above this share the darkest colour."""
 
 
-def workspace_picture(
-    linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1, resolution: int = 301
+def fivebar(
+    linkage: FiveBar,
+    mode: Mode = HANGING,
+    assembly: int = 1,
+    resolution: int = 301,
+    ax: Any = None,
 ) -> Any:
     """Condition number over the workspace with the loci, the free circle and rectangle.
 
@@ -30,6 +34,7 @@ def workspace_picture(
         mode: signs of u_i x w_i.
         assembly: sign of w_1 x w_2 for circle and rectangle.
         resolution: points along the longer side of the map.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
@@ -38,7 +43,7 @@ def workspace_picture(
         MissingExtraError: matplotlib is not installed.
         StructureError: no pose in that mode and assembly.
     """
-    axes = new_axes(size=(8.4, 6.6))
+    axes = ax if ax is not None else new_axes(size=(8.4, 6.6))
     grid = linkage.workspace_map(mode, resolution)
     drawn = axes.pcolormesh(
         grid.x,
@@ -102,8 +107,13 @@ def _bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
         axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
 
 
-def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
+def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
+
+    Args:
+        linkage: the five-bar.
+        sizing: of :meth:`kinlab.FiveBar.size_servo`.
+        ax: four axes of one figure; a new figure if left out.
 
     Returns:
         The first of its four axes.
@@ -111,8 +121,9 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = new_figure((9.6, 6.4))
-    where, rate, torque, power = figure.subplots(2, 2).ravel()
+    four = new_figure((9.6, 6.4)).subplots(2, 2) if ax is None else ax
+    where, rate, torque, power = np.ravel(four)
+    figure = where.figure
     path, cycle, box = sizing.path, sizing.cycle, sizing.workspace
     where.plot(*path.points.T, color="black", lw=1.5)
     _box(where, box, None, colour="tab:green")
@@ -139,8 +150,13 @@ def cycle_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     return where
 
 
-def gain_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
+def fivebar_gains(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
     """Torque per acceleration over the gain of J: I_A sigma + m / sigma, least at sqrt(eta).
+
+    Args:
+        linkage: the five-bar.
+        sizing: of :meth:`kinlab.FiveBar.size_servo`.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
@@ -148,7 +164,7 @@ def gain_picture(linkage: FiveBar, sizing: ServoSizing) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    axes = new_axes(size=(7.2, 4.4))
+    axes = ax if ax is not None else new_axes(size=(7.2, 4.4))
     arms = crank_inertia(linkage, rod_model(linkage, "massless"))
     arms = arms - linkage.reflected_inertia
     best = np.sqrt(sizing.eta[np.isfinite(sizing.eta)])

@@ -18,12 +18,12 @@ _LABELS = {
 _SHADES = ("#ffffff", "#eef2f7", "#cfe0f1", "#b5cfe8", "#86b0d8", "#5f93c6", "#3d76b0")
 
 
-def plot_solutions(chart: SolutionMap, *, axes: Any = None) -> Any:
+def solutions(chart: SolutionMap, *, ax: Any = None) -> Any:
     """Cells coloured by how many solutions are within the limits, with curves, cusps and nodes.
 
     Args:
         chart: the map.
-        axes: where to draw; a new figure if left out.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
@@ -31,6 +31,7 @@ def plot_solutions(chart: SolutionMap, *, axes: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
+    axes = ax
     if axes is None:
         axes = new_axes(f"{chart.robot}: number of solutions\n{chart.text}")
     from matplotlib.collections import LineCollection

@@ -1,0 +1,82 @@
+"""The command mark: a class's formulas against a sheet of questions."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from kinlab.cli.screen import echo, screen, visible
+from kinlab.errors import OptionError
+
+SHEET = Annotated[Path, typer.Argument(help="The sheet: a TOML file of questions.")]
+SUBMISSIONS = Annotated[
+    Path | None, typer.Argument(help="A folder of submissions: .toml, .tex, .txt, .md, .py.")
+]
+OUTPUT = Annotated[Path, typer.Option("--output", "-o", help="The folder for marks and pages.")]
+FEEDBACK = Annotated[
+    str | None, typer.Option(help="verdict, place, cause or answer; the sheet's own without it.")
+]
+HANDOUT = Annotated[
+    Path | None,
+    typer.Option(help="Write each student's sheet instead: a file of ids, one on each line."),
+]
+PYTHON = Annotated[
+    bool, typer.Option("--run-python", help="Run .py submissions, each with limits of its own.")
+]
+WORKERS = Annotated[int | None, typer.Option(help="Processes; as many as processors without it.")]
+
+
+def register(app: typer.Typer) -> None:
+    """Adds the command of this file."""
+    app.command("mark")(mark)
+
+
+def mark(
+    sheet: SHEET,
+    submissions: SUBMISSIONS = None,
+    output: OUTPUT = Path("marks"),
+    feedback: FEEDBACK = None,
+    handout: HANDOUT = None,
+    run_python: PYTHON = False,
+    workers: WORKERS = None,
+) -> None:
+    """Mark a class: every answer beside the engine, with points, pages and results.
+
+    A run that was stopped goes on where it was. Below `answer` nothing that is written holds a
+    right formula.
+    """
+    from kinlab.marking.handout import students_of, write_handouts
+    from kinlab.marking.run import mark as mark_all
+    from kinlab.marking.sheet import read_sheet
+
+    read = read_sheet(sheet)
+    if handout is not None:
+        count = write_handouts(read, students_of(handout), output)
+        echo(f"wrote {count} sheets into {output}")
+        return
+    if submissions is None:
+        raise OptionError("mark: submissions are missing; name their folder, or use --handout")
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
+    with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
+        bar = progress.add_task("", total=None)
+
+        def show(done: int, total: int, name: str) -> None:
+            progress.update(bar, completed=done, total=total, description=visible(name))
+
+        marks = mark_all(
+            read,
+            submissions,
+            output,
+            feedback=feedback,
+            run_python=run_python,
+            workers=workers,
+            progress=show,
+        )
+    echo(str(marks))
+    for (question, kind), count in marks.slips().most_common(10):
+        echo(f"  {question}: {kind}, {count} of {len(marks)}")
+    echo(f"wrote {output}")

@@ -1,0 +1,468 @@
+r"""Formulas as people type them, made plain: LaTeX, MATLAB, Python, letters of Unicode, matrices.
+
+``\tau_2 = ...``, ``θ̇₁²``, ``cos(q(2))``, ``np.cos(q[1])``, ``M = [a, b; c, d]`` become names and
+arithmetic that :mod:`kinlab.formulas.text` reads. What two people would read differently is
+refused, with what to write instead: a formula misread is worse than one not read.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from kinlab.errors import ExpressionError
+from kinlab.formulas import latex
+
+# -------- Which writing it is
+
+_LATEX = re.compile(r"\\[A-Za-z]|\$|[_^]\{")
+_PREFIX = re.compile(r"(?<![\w.])(?:np|numpy|math|sp|sympy)\.(?=[A-Za-z])")
+_BRACKETS = re.compile(r"(?<![\w.])([A-Za-z]\w*)\s*\[\s*(-?\d+)\s*\]")
+_INDEXED = re.compile(r"(?<![\w.])([A-Za-z]\w*)\(\s*(\d+)\s*\)")
+_UPPER = re.compile(r"(?<![\w.])([CS])_?([1-9]+)(?!\w)")
+_RATES = re.compile(r"(?<![A-Za-z])(?:(?:q|th|theta)d{1,2}|d{1,2}(?:q|th|theta))_?\d|dot|omega")
+_OMEGA = re.compile(r"(?<![\w.])omega_?([2-9])(?!\w)")
+
+
+@dataclass(frozen=True)
+class Hand:
+    """What all formulas of one writer together say about the writing.
+
+    Attributes:
+        from_zero: whether an index in brackets counts from 0; None where nothing says so.
+        capitals: whether S1 and S12 stand somewhere, so that C12 is a cosine too.
+        known: names that the writer explains elsewhere.
+    """
+
+    from_zero: bool | None = None
+    capitals: bool = False
+    known: frozenset[str] = frozenset()
+
+
+def hand(texts: Iterable[str], known: Iterable[str] = ()) -> Hand:
+    """Looks for what the writing is, over all formulas of one writer."""
+    whole = "\n".join(texts)
+    zero = any(int(k) == 0 for _, k in _BRACKETS.findall(whole)) or bool(_PREFIX.search(whole))
+    capitals = any(letter == "S" for letter, _ in _UPPER.findall(latexless(whole)))
+    return Hand(True if zero else None, capitals, frozenset(known))
+
+
+def latexless(text: str) -> str:
+    """``S_{12}`` as ``S12``, for a look at the names."""
+    return re.sub(r"_\{?(\w+)\}?", r"\1 ", text)
+
+
+# -------- Unicode
+
+_BELOW = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+_ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
+_SIGNS = str.maketrans(
+    {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
+)
+_GREEK = {
+    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "θ": "theta", "ϑ": "theta",
+    "λ": "lambda", "π": "pi", "μ": "mu", "φ": "phi", "ϕ": "phi", "ψ": "psi", "ω": "omega",
+    "ρ": "rho", "τ": "tau", "ℓ": "l",
+}  # fmt: skip
+_ALONE = re.compile(
+    r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
+)
+"""Text without words: names of one letter, and functions."""
+_BESIDE = re.compile(r"_\w+\s+[A-Za-z]")
+"""A product of names without a sign, as only LaTeX has it."""
+_DOTTED = re.compile(r"([A-Za-zα-ωϑϕℓ])([\u0307\u0308])")
+_SUBSCRIPTS = re.compile("([₀-₉]+)")
+_SUPERSCRIPTS = re.compile("([⁰¹²³⁴-⁹]+)")
+
+
+def ascii_text(text: str, place: str = "expression", *, as_latex: bool = False) -> str:
+    """``θ̇₁² + l₂`` as ``thetad1**2 + l2``, or as LaTeX.
+
+    Raises:
+        ExpressionError: a letter that no formula has.
+    """
+    text = unicodedata.normalize("NFD", text).translate(_SIGNS)
+    if text.isascii():
+        return text
+    text = _DOTTED.sub(lambda found: _dotted(found, as_latex), text)
+    below, above = (r"_{\1}", r"^{\1}") if as_latex else (r"\1", r"**\1 ")
+    if not as_latex:
+        text = re.sub(r"([₀-₉⁰¹²³⁴-⁹])(?=[0-9])", r"\1 ", text)
+    text = _SUPERSCRIPTS.sub(above, _SUBSCRIPTS.sub(below, text))
+    text = text.translate(_BELOW).translate(_ABOVE)
+    for letter, name in _GREEK.items():
+        text = text.replace(letter, rf"\{name} " if as_latex and name != "l" else name)
+    text = re.sub(r" (?=_\{|[0-9])", "", text) if as_latex else text
+    if not text.isascii():
+        strange = next(c for c in text if not c.isascii())
+        raise ExpressionError(f"{place}: {strange!r} has no meaning in a formula")
+    return text
+
+
+def _dotted(found: re.Match[str], as_latex: bool) -> str:
+    letter, dot = found.groups()
+    dots = 1 if dot == "\u0307" else 2
+    if as_latex:
+        return rf"\{'d' * dots}ot{{{letter}}}"
+    return letter + "d" * dots
+
+
+# -------- A formula
+
+_CHAINED = re.compile(r"(?:\*\*|\^)\s*[+-]?\s*(?:[\w.]+|\([^()]*\))\s*(?:\*\*|\^)")
+_ELEMENTWISE = re.compile(r"(?<=[\w)\]\s])\.\s?([*/^])")
+_FOLLOWING = re.compile(r"[A-Za-z]\w*\d$")
+_NO_INDEX = {"c", "s", "C", "S", "pi"}
+
+
+def plain_formula(text: str, place: str = "expression", writing: Hand | None = None) -> str:
+    """The right side of a formula as plain text: names and arithmetic.
+
+    Args:
+        text: LaTeX (told by a backslash, a dollar or a brace), or text with the signs of
+            kinlab, MATLAB or Python.
+        place: what to put in front of a message.
+        writing: what the writer's formulas together say; None looks at this one alone.
+
+    Raises:
+        ExpressionError: what cannot be read surely.
+    """
+    writing = hand([text]) if writing is None else writing
+    typeset = is_latex(text)
+    text = bare(text)
+    alone = not typeset and (not text.isascii() or _BESIDE.search(text))
+    if alone and _ALONE.fullmatch(text):  # m₁l₁² cos θ₂, m_1 l_1
+        typeset, text = True, text.replace("**", "^")
+    text = ascii_text(text, place, as_latex=typeset)
+    if typeset:
+        text = latex.expression(text, place)
+    else:
+        text = _plain_signs(text, place)
+        text = _without_indices(text, place, writing)
+    return _capitals(text, place, writing)
+
+
+def is_latex(text: str) -> bool:
+    """Whether a formula is LaTeX."""
+    return bool(_LATEX.search(text))
+
+
+_OUTSIDE = (
+    ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
+    *((rf"\begin{{{name}}}", rf"\end{{{name}}}") for name in (
+        "equation", "equation*", "align", "align*", "aligned", "gather", "gather*", "displaymath",
+        "math",
+    )),
+)  # fmt: skip
+
+
+def bare(text: str) -> str:
+    """A formula without the dollars and environments around it, and the mark behind it."""
+    text = text.strip()
+    changed = True
+    while changed:
+        changed = False
+        for opening, closing in _OUTSIDE:
+            long_enough = len(text) >= len(opening) + len(closing)
+            if long_enough and text.startswith(opening) and text.endswith(closing):
+                text, changed = text[len(opening) : -len(closing)].strip(), True
+        for mark in (r"\\", ";", ",", r"\,"):
+            if text.endswith(mark):
+                text, changed = text.removesuffix(mark).strip(), True
+        if re.search(r"[\w)}]\s*\.$", text):
+            text, changed = text[:-1].strip(), True
+        cut = re.sub(r"^\s*\\label\{[^{}]*\}|\\label\{[^{}]*\}\s*$|\\nonumber\s*$", "", text)
+        text, changed = (cut.strip(), True) if cut != text else (text, changed)
+    return text
+
+
+def _plain_signs(text: str, place: str) -> str:
+    text = _ELEMENTWISE.sub(r"\1", text)
+    if _CHAINED.search(text):
+        raise ExpressionError(
+            f"{place}: a power of a power without parentheses: Python reads a^b^c from the right, "
+            "MATLAB from the left; write (a^b)^c"
+        )
+    return _PREFIX.sub("", text)
+
+
+def _without_indices(text: str, place: str, writing: Hand) -> str:
+    """``q(2)`` and ``q[1]`` as ``q2``; what may count from 0 or from 1 is refused."""
+    called = _INDEXED.search(text)
+    if _BRACKETS.search(text):
+        if called and called[1] not in _FUNCTIONS:
+            raise ExpressionError(
+                f"{place}: {called[0]} beside an index in brackets: counted from 1 as in MATLAB, "
+                "or from 0 as in Python? write q1, q2, ... for the joints"
+            )
+        text = _BRACKETS.sub(lambda found: _numbered(found, place, writing), text)
+    return _INDEXED.sub(lambda found: _matlab(found, place), text)
+
+
+def _numbered(found: re.Match[str], place: str, writing: Hand) -> str:
+    name, number = found[1], int(found[2])
+    if number < 0:
+        raise ExpressionError(f"{place}: {found[0]} counts from the end; write the joint's number")
+    if writing.from_zero is None:
+        raise ExpressionError(
+            f"{place}: {found[0]}: counted from 0 as in Python, or from 1? nothing else in the "
+            f"formulas says so; write {name}1, {name}2, ... for joints 1, 2, ..."
+        )
+    return _joined(name, number + 1, found[0], place)
+
+
+def _matlab(found: re.Match[str], place: str) -> str:
+    name, number = found[1], int(found[2])
+    if name in _FUNCTIONS:
+        return found[0]
+    if number == 0:
+        raise ExpressionError(f"{place}: {found[0]}: an index in parentheses counts from 1")
+    return _joined(name, number, found[0], place)
+
+
+def _joined(name: str, number: int, shown: str, place: str) -> str:
+    if _FOLLOWING.fullmatch(name) or name in _NO_INDEX:
+        raise ExpressionError(
+            f"{place}: {shown}: an index behind {name!r} has no sure meaning; write * for a product"
+        )
+    return f"{name.rstrip('_')}{number}"
+
+
+_FUNCTIONS = {
+    "sin", "cos", "tan", "sqrt", "atan2", "asin", "acos", "atan", "abs", "exp", "log", "sign",
+    "arcsin", "arccos", "arctan", "arctan2", "Abs", "ln",
+}  # fmt: skip
+"""As in :mod:`kinlab.formulas.tree`, with the other names."""
+
+
+def _capitals(text: str, place: str, writing: Hand) -> str:
+    """``C12`` and ``S1`` as ``c12`` and ``s1``, unless C12 may be an entry of a matrix."""
+    found = [m for m in _UPPER.finditer(text) if m[0] not in writing.known]
+    if not found:
+        return text
+    if not writing.capitals and not any(m[1] == "S" for m in found) and _RATES.search(text):
+        name = found[0][0]
+        raise ExpressionError(
+            f"{place}: {name}: a cosine, or an entry of the matrix C? write {name.lower()} or "
+            "cos(...) for the cosine"
+        )
+
+    def small(m: re.Match[str]) -> str:
+        return m[0] if m[0] in writing.known else f"{m[1].lower()}{m[2]}"
+
+    return _UPPER.sub(small, text)
+
+
+def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
+    """Refuses ``omega2``, which is a joint's rate to some and a link's angular velocity to others.
+
+    Raises:
+        ExpressionError: it stands there, and nothing says what it is.
+    """
+    for found in _OMEGA.finditer(text):
+        if found[0] not in known:
+            k = found[1]
+            raise ExpressionError(
+                f"{place}: {found[0]}: the rate of joint {k}, or the angular velocity of link {k}? "
+                f"write qd{k} or the sum of rates, or explain it in [symbols]"
+            )
+
+
+# -------- Left sides and matrices
+
+_ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?)?)", re.ASCII)
+_PRINTED = {"fk": "T", "L": "lagrangian"}
+"""What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
+_OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
+_NAMED = re.compile(r"([a-z_]{2,})(\[[\d:,\s-]+\])?")
+_LONGEST_NAME = 120
+
+
+def sides(text: str, place: str = "expression") -> tuple[str, str]:
+    """Left and right of the sign of equality; the left is empty where there is none.
+
+    Raises:
+        ExpressionError: more than one sign of equality, or none of its sides.
+    """
+    typeset = is_latex(text)
+    text = bare(text)
+    parts = text.replace("&=", "=").replace("=&", "=").replace(":=", "=").split("=")
+    if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
+        raise ExpressionError(f"{place}: {len(parts) - 1} signs of equality; write name = formula")
+    if len(parts) == 1:
+        return "", f"${text}$" if typeset else text
+    if not parts[1].strip():
+        raise ExpressionError(f"{place}: nothing stands behind the sign of equality")
+    left, right = (part.strip() for part in parts)
+    return left, f"${right}$" if typeset else right
+
+
+def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
+    r"""The name on a left side: ``\tau_{2}``, ``τ₂``, ``tau(2)`` and ``tau_2`` are tau2.
+
+    Args:
+        text: as typed; a state behind it, as in ``M_{12}(q)``, is dropped.
+        place: what to put in front of a message.
+        writing: says whether ``tau[0]`` counts from 0.
+
+    Raises:
+        ExpressionError: a name that can be read in two ways.
+    """
+    if len(text) > _LONGEST_NAME:
+        raise ExpressionError(f"{place}: {text[:30]}... is no name of an entry")
+    typed = _OF_STATE.sub("", bare(text).strip("& ")).strip()
+    named = _NAMED.fullmatch(typed)
+    if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in _LONG):
+        return typed  # a quantity by its own name
+    if is_latex(typed) or not typed.isascii():
+        typed = re.sub(r"_\{\s*(\d)\s*,\s*(\d)\s*\}", r"_{\1\2}", typed)
+        name = latex.expression(ascii_text(typed, place, as_latex=True), place)
+    else:
+        name = re.sub(r"\(\s*(\d)\s*,\s*(\d)\s*\)$", r"\1\2", typed)
+        name = _without_indices(name, place, writing or hand([]))
+    found = _ENTRY.fullmatch(name.strip("()"))
+    if found is None:
+        return typed
+    head, index = found.groups()
+    return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
+
+
+_MATRIX = re.compile(
+    r"(?:\\left\s*[(\[.]\s*|[(\[]\s*)?"
+    r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(\{[lcr| ]*\})?"
+    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?",
+    re.DOTALL,
+)
+_ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
+_MOST = 36
+
+
+def cells(text: str, place: str = "expression") -> list[list[str]] | None:
+    r"""The entries of a matrix, row by row; None of what is no matrix.
+
+    Args:
+        text: ``bmatrix``, ``pmatrix``, ``matrix`` or ``array``; ``[a, b; c, d]``;
+            ``[[a, b], [c, d]]``, with ``np.array(...)`` around it or not.
+        place: what to put in front of a message.
+
+    Raises:
+        ExpressionError: rows of different lengths, or too many entries.
+    """
+    text = bare(text)
+    found = _MATRIX.fullmatch(text)
+    if found and found[1] == "vmatrix":
+        raise ExpressionError(f"{place}: vmatrix is a determinant; write bmatrix for a matrix")
+    if found:
+        lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[3]) if row.strip()]
+        rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
+    else:
+        inside = _ARRAY.fullmatch(text)
+        rows = _listed((inside[1] if inside else text).strip(), place)
+    if not rows:
+        return None
+    if len({len(row) for row in rows}) > 1 or not all(
+        cell.strip("$") for row in rows for cell in row
+    ):
+        raise ExpressionError(f"{place}: the rows of the matrix have different lengths, or gaps")
+    if len(rows) * len(rows[0]) > _MOST:
+        raise ExpressionError(f"{place}: a matrix of more than {_MOST} entries")
+    return rows
+
+
+def _listed(text: str, place: str) -> list[list[str]]:
+    if not (text.startswith("[") and text.endswith("]")) or _closes(text) != len(text) - 1:
+        return []
+    inside = text[1:-1]
+    rows = _parts(inside, ";")
+    if len(rows) == 1:
+        members = [member for member in _parts(inside, ",") if member]
+        if members and all(m.startswith("[") and _closes(m) == len(m) - 1 for m in members):
+            return [_parts(m[1:-1], ",") for m in members]
+        if len(members) < 2:
+            return []
+        return [[member] for member in members]
+    return [_parts(row, ",") for row in rows if row]
+
+
+def _closes(text: str) -> int:
+    """Where the bracket that the text begins with is closed."""
+    depth = 0
+    for k, character in enumerate(text):
+        depth += (character in "([{") - (character in ")]}")
+        if depth == 0:
+            return k
+    return -1
+
+
+def _parts(text: str, sign: str) -> list[str]:
+    """The text, cut at a sign outside of all parentheses."""
+    parts, depth = [""], 0
+    for character in text:
+        depth += (character in "([{") - (character in ")]}")
+        if character == sign and depth == 0:
+            parts.append("")
+        else:
+            parts[-1] += character
+    return [part.strip() for part in parts]
+
+
+def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) -> dict[str, str]:
+    """Each entry by a plain name, a matrix as its entries, without left sides.
+
+    Args:
+        entries: name to formula, both as typed.
+        place: the file, for messages.
+        writing: what all the writer's formulas say; None looks at these.
+
+    Raises:
+        ExpressionError: a name or matrix that cannot be read, a left side that is not the
+            entry's name, or an entry that is given twice.
+    """
+    writing = writing or hand(entries.values())
+    plain: dict[str, str] = {}
+    for key, value in entries.items():
+        at = f"{place}: {key}"
+        left, right = sides(value, at)
+        name = entry_name(key, at, writing)
+        if left and entry_name(left, at, writing) != name:
+            raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
+        grid = cells(right, at)
+        if grid and name in _TWO and len(grid[0]) == 1 and right[0] == "[" and ";" not in right:
+            raise ExpressionError(
+                f"{at}: a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"
+            )
+        if grid is None:
+            _put(plain, name, right, at)
+            continue
+        if name[-1:].isdigit() or name.endswith("]"):
+            raise ExpressionError(f"{at}: {name} is one entry, and a matrix is given")
+        for i, row in enumerate(grid, 1):
+            for j, cell in enumerate(row, 1):
+                long = name in _LONG or "_" in name
+                below = f"[{i - 1}" if long else f"{i}"
+                column = len(row) > 1 or name in _TWO
+                if long:
+                    below += f",{j - 1}]" if column else "]"
+                elif column:
+                    below += f"{j}"
+                _put(plain, name + below, cell, at)
+    return plain
+
+
+_LONG = {
+    "mass_matrix", "coriolis_matrix", "jacobian", "jacobian_tool", "jacobian_spatial", "fk",
+    "planar_jacobian", "gravity_torques", "inverse_dynamics", "coriolis_torques",
+}  # fmt: skip
+_TWO = {
+    "M", "H", "B", "J", "T", "R", "C",
+    *(n for n in _LONG if n not in ("gravity_torques", "inverse_dynamics", "coriolis_torques")),
+}  # fmt: skip
+"""Quantities of two indices, whose one column is no vector."""
+
+
+def _put(entries: dict[str, str], name: str, formula: str, place: str) -> None:
+    if name in entries:
+        raise ExpressionError(f"{place}: {name} is given twice; keep one")
+    entries[name] = formula

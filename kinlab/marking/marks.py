@@ -1,0 +1,132 @@
+"""The marks of one submission and of a class, as a program, a terminal and a notebook see them."""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import math
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from kinlab.errors import NameUnknownError, near
+from kinlab.marking.judge import Outcome
+from kinlab.marking.sheet import Sheet
+
+
+@dataclass(frozen=True)
+class Mark:
+    """One submission, marked.
+
+    Attributes:
+        file: its name in the folder.
+        student, name: who, as far as it says so.
+        outcomes: question by question, in the order of the sheet.
+        note: what a person should look at.
+        slug: what its page and results are called.
+        pictures: question id to its formulas as MathML, for the page.
+    """
+
+    file: str
+    student: str
+    name: str
+    outcomes: tuple[Outcome, ...]
+    note: str = ""
+    slug: str = ""
+    pictures: Mapping[str, tuple[str, ...]] | None = None
+
+    @property
+    def total(self) -> float:
+        """All points."""
+        return round(math.fsum(outcome.points for outcome in self.outcomes), 6)
+
+    @property
+    def of(self) -> float:
+        """The points of a submission with everything right."""
+        return round(math.fsum(outcome.of for outcome in self.outcomes), 6)
+
+    def __getitem__(self, question: str) -> Outcome:
+        for outcome in self.outcomes:
+            if outcome.question == question:
+                return outcome
+        names = [outcome.question for outcome in self.outcomes]
+        raise NameUnknownError(f"question {question!r} is unknown; {near(question, names)}")
+
+    def __str__(self) -> str:
+        lines = [f"{self.student}: {self.total:g} of {self.of:g} points"]
+        for one in self.outcomes:
+            told = "; ".join(t for t in (one.place, one.cause, *one.answer, one.remark) if t)
+            points = f"{one.points:g} of {one.of:g}"
+            lines.append(f"  {one.question}: {one.verdict}, {points}{': ' if told else ''}{told}")
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{html.escape(str(self))}</pre>"
+
+
+@dataclass(frozen=True, eq=False)
+class Marks:
+    """A class, marked.
+
+    Attributes:
+        sheet: with which it was marked.
+        marks: one for each submission, in the order of the students' ids.
+        feedback: how much is told.
+    """
+
+    sheet: Sheet
+    marks: tuple[Mark, ...]
+    feedback: str
+
+    def __getitem__(self, student: str) -> Mark:
+        for mark in self.marks:
+            if mark.student == student:
+                return mark
+        names = [mark.student for mark in self.marks]
+        raise NameUnknownError(f"student {student!r} is unknown; {near(student, names)}")
+
+    def __len__(self) -> int:
+        return len(self.marks)
+
+    def slips(self) -> Counter[tuple[str, str]]:
+        """How often each kind of slip was made, by question."""
+        return Counter(
+            (outcome.question, kind)
+            for mark in self.marks
+            for outcome in mark.outcomes
+            if not outcome.right
+            for kind in dict.fromkeys(outcome.kinds)
+        )
+
+    def __str__(self) -> str:
+        return f"{self.sheet.title}: {self.summary}"
+
+    @property
+    def summary(self) -> str:
+        """How many there are, and how they did."""
+        if not self.marks:
+            return "no submissions"
+        mean = math.fsum(mark.total for mark in self.marks) / len(self.marks)
+        unread = sum(one.verdict == "could not be read" for m in self.marks for one in m.outcomes)
+        several = "submission" if len(self.marks) == 1 else "submissions"
+        text = f"{len(self.marks)} {several}, mean {mean:.2f} of "
+        text += f"{self.sheet.points:g} points"
+        return text + (f"; {unread} answers could not be read" if unread else "")
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{html.escape(m.student)}</td><td>{m.total:g} of {m.of:g}</td></tr>"
+            for m in self.marks
+        )
+        return f"<p><b>{html.escape(str(self))}</b></p><table>{rows}</table>"
+
+
+def slug_of(shown: str) -> str:
+    """A name for files that is safe everywhere, and different for different submissions."""
+    stem = shown.removesuffix(".toml")
+    clean = re.sub(r"[^A-Za-z0-9_-]", "-", stem).strip("-")[:48]
+    if clean and clean == stem:
+        return clean
+    digest = hashlib.sha256(shown.encode("utf-8", "replace")).hexdigest()
+    return f"{clean or 'submission'}-{digest[:8]}"

@@ -1,0 +1,143 @@
+"""A submission in Python: run in a process of its own, only where the teacher asks for it.
+
+The process starts afresh (it shares no memory with the marks) and gets time, memory and file
+limits of the system, a network of its own with nothing on it where the system lets users make
+one, and an audit hook against files, sockets and other processes. The hook is Python's own and
+can be beaten by one who tries hard; what the system enforces cannot. For work by strangers run
+all of it in a container.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import select
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.doctor.terms import split_name
+from kinlab.errors import KinlabError
+from kinlab.marking.judge import Outcome, lost, missing, of_values, states_of
+from kinlab.marking.sheet import Question, Sheet
+from kinlab.marking.submission import Submission
+
+SECONDS = 10.0
+"""Processor and clock time of one program."""
+
+MEGABYTES = 1024
+_LARGEST = 8 << 20
+
+
+def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[list[Outcome], str]:
+    """The outcomes of a Python file, and what the system enforced while it ran.
+
+    A question is answered by the function called as its id or its entry, which takes one state:
+    the quantity's arguments in order.
+    """
+    asked = [question for question in sheet.questions if question.quantity]
+    states = {q.id: states_of(sheet, q, submission.student) for q in asked}
+    wanted = [
+        [q.id, [q.id, q.entry], list(find_quantity(split_name(q.quantity)[0]).arguments)]
+        for q in asked
+    ]
+    request = {
+        "program": submission.program,
+        "wanted": wanted,
+        "arguments": {k: {n: v.tolist() for n, v in s.items()} for k, s in states.items()},
+        "seconds": SECONDS,
+        "megabytes": MEGABYTES,
+    }
+    reply, enforced = _run(json.dumps(request))
+    found = reply.get("answers")
+    outcomes = []
+    for question in sheet.questions:
+        if not isinstance(found, dict):
+            outcomes.append(lost(question, str(reply.get("error", "no answer"))[:200]))
+        elif question.id not in found:
+            outcomes.append(missing(question))
+        else:
+            outcomes.append(_of(sheet, question, submission, found[question.id], level))
+    return outcomes, f"run with limits of: {enforced or 'time'}"
+
+
+def _of(
+    sheet: Sheet, question: Question, submission: Submission, found: Any, level: str
+) -> Outcome:
+    try:
+        if "error" in found:
+            return lost(question, f"{question.id}: {str(found['error'])[:200]}")
+        values = np.array(found["values"], dtype=float).reshape([int(k) for k in found["shape"]])
+        return of_values(sheet, question, submission.student, values, level)
+    except (KinlabError, TypeError, ValueError, KeyError) as problem:
+        return lost(question, f"{question.id}: {str(problem)[:200]}")
+
+
+def _run(request: str) -> tuple[dict[str, Any], str]:
+    """What the process answered, or how it ended, and what the system enforced."""
+    here = Path(__file__).with_name("child.py")
+    reading, writing = os.pipe()
+    environment = {"PATH": os.defpath, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    with tempfile.TemporaryDirectory(prefix="kinlab-mark-") as folder:
+        process = subprocess.Popen(
+            [sys.executable, "-I", "-B", str(here), str(writing)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            pass_fds=(writing,),
+            cwd=folder,
+            env=environment,
+            start_new_session=True,
+        )
+        os.close(writing)
+        try:
+            assert process.stdin is not None
+            try:
+                process.stdin.write(request.encode() + b"\n")
+                process.stdin.close()
+            except BrokenPipeError:
+                return {"error": "its process did not start"}, ""
+            content, ending = _received(reading, process)
+        finally:
+            process.kill()
+            process.wait()
+            os.close(reading)
+    first, _, rest = content.decode("utf-8", "replace").partition("\n")
+    limits, reply = _line(first), _line(rest)
+    enforced = ", ".join(str(part)[:20] for part in limits) if isinstance(limits, list) else ""
+    if ending or not isinstance(reply, dict):
+        reply = {"error": ending or "no answer"}
+    return reply, enforced
+
+
+def _line(text: str) -> Any:
+    try:
+        return json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+
+
+def _received(reading: int, process: subprocess.Popen[bytes]) -> tuple[bytes, str]:
+    """What came, and how it ended where that was too soon or too late."""
+    until = time.monotonic() + SECONDS + 5.0
+    content = b""
+    while content.count(b"\n") < 2:
+        left = until - time.monotonic()
+        if left <= 0 or not select.select([reading], [], [], left)[0]:
+            return content, f"did not come back within {SECONDS:g} s"
+        part = os.read(reading, 1 << 16)
+        if not part:
+            process.wait(5.0)
+            if process.returncode < 0:
+                return content, f"ended its process by signal {-process.returncode} (its limits)"
+            return content, f"ended its process with exit code {process.returncode}"
+        content += part
+        if len(content) > _LARGEST:
+            return content, "answered with more than 8 MB"
+    return content, ""

@@ -1,0 +1,104 @@
+"""What is written of a class: marks.csv, a page for each student and one of the class, results.
+
+::
+
+    marks/marks.csv            one row for each submission
+    marks/class.html           for the teacher: which slips, how often, who
+    marks/students/ada.html    for the student
+    marks/results/ada.json     the same as Gradescope reads it (results.json of an autograder)
+    marks/.records/            what a run that was stopped goes on from
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+from kinlab.errors import FileError
+from kinlab.host.files import write_text
+from kinlab.marking.judge import Outcome
+from kinlab.marking.marks import Mark, Marks
+from kinlab.marking.pages import class_page, student_page
+
+_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "|", "%")
+"""What a spreadsheet would take for the beginning of a formula or a command."""
+
+
+def write_marks(marks: Marks, folder: Path) -> None:
+    """Writes all files of a class.
+
+    Raises:
+        FileError: the folder cannot be written.
+    """
+    try:
+        for name in ("students", "results"):
+            (folder / name).mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        raise FileError(f"{folder}: cannot be written ({problem.strerror})") from None
+    for mark in marks.marks:
+        write_text(folder / "students" / f"{mark.slug}.html", student_page(marks, mark))
+        text = json.dumps(gradescope(marks, mark), indent=1, ensure_ascii=False, allow_nan=False)
+        write_text(folder / "results" / f"{mark.slug}.json", text + "\n")
+    write_text(folder / "marks.csv", as_csv(marks))
+    write_text(folder / "class.html", class_page(marks))
+
+
+def as_csv(marks: Marks) -> str:
+    """One row for each submission; no cell that a spreadsheet would run."""
+    ids = [question.id for question in marks.sheet.questions]
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(
+        ["student", "name", "file", "points", "of", *ids, *(f"{k} verdict" for k in ids), "note"]
+    )
+    for mark in marks.marks:
+        row: list[Any] = [_cell(mark.student), _cell(mark.name), _cell(mark.file)]
+        row += [f"{mark.total:g}", f"{mark.of:g}"]
+        row += [f"{outcome.points:g}" for outcome in mark.outcomes]
+        row += [outcome.verdict for outcome in mark.outcomes]
+        writer.writerow([*row, _cell(mark.note)])
+    return stream.getvalue()
+
+
+def _cell(text: str) -> str:
+    text = "".join(c if c.isprintable() else " " for c in text)
+    return f"'{text}" if text.startswith(_FORMULA) else text
+
+
+def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
+    """A student's results as Gradescope's autograder reads them."""
+    tests = []
+    for number, (question, outcome) in enumerate(
+        zip(marks.sheet.questions, mark.outcomes, strict=True), 1
+    ):
+        tests.append(
+            {
+                "number": str(number),
+                "name": f"{question.id}: {question.text}",
+                "score": outcome.points,
+                "max_score": outcome.of,
+                "status": "passed" if outcome.right else "failed",
+                "output": told(outcome),
+                "output_format": "text",
+                "visibility": "visible",
+            }
+        )
+    return {
+        "score": mark.total,
+        "output": mark.note,
+        "output_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": tests,
+    }
+
+
+def told(outcome: Outcome) -> str:
+    """An outcome in a few lines, as much as its feedback lets through."""
+    first = outcome.verdict[:1].upper() + outcome.verdict[1:]
+    lines = [f"{first}.", outcome.place and f"Place: {outcome.place}."]
+    lines += [outcome.cause and f"Kind: {outcome.cause}.", *outcome.answer, outcome.remark]
+    return "\n".join(line for line in lines if line)

@@ -1,0 +1,346 @@
+"""What a student hands in: TOML, LaTeX or text, read so that one file harms only itself.
+
+Text and LaTeX name the student in a line such as ``student: ada`` (``% student: ada``), and each
+answer by the question's id or by the left side of the formula::
+
+    student: ada
+    q1: (m_1 + m_2)*l_1**2*qdd1 + ...
+    x = l1*c1 + l2*c12
+"""
+
+from __future__ import annotations
+
+import re
+import stat
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from kinlab.doctor.file import quantity_of
+from kinlab.doctor.terms import split_name
+from kinlab.errors import ExpressionError, FileError, KinlabError
+from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
+from kinlab.host.files import read_text, read_toml
+from kinlab.marking.sheet import Question, Sheet
+
+LARGEST = 256 * 1024
+"""Bytes of a submission above which it is not read."""
+
+KINDS = (".toml", ".tex", ".txt", ".md", ".py")
+_ID = 64
+_LINES = 2000
+_MOST = 400
+_WORDS = ("student", "id", "name", "matriculation", "student_id", "student id")
+
+
+@dataclass(frozen=True)
+class Submission:
+    """One submission, taken apart.
+
+    Attributes:
+        file: its name.
+        student: the id; the file's name where none stands in it.
+        name: the student's name, where it is given.
+        answers: question id to formulas by name; the name is empty where none is written.
+        symbols: the student's own names.
+        problems: question id to what cannot be used.
+        note: what a person should know.
+        program: the text of a Python file, which is not run here.
+    """
+
+    file: str
+    student: str
+    name: str = ""
+    answers: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    symbols: Mapping[str, Any] = field(default_factory=dict)
+    problems: Mapping[str, str] = field(default_factory=dict)
+    note: str = ""
+    program: str = ""
+
+    @property
+    def writing(self) -> Hand:
+        """What all formulas together say about the writing."""
+        texts = [text for given in self.answers.values() for text in given.values()]
+        return hand(
+            [*texts, *(s for s in self.symbols.values() if isinstance(s, str))], self.symbols
+        )
+
+
+def found_in(folder: str | Path) -> list[Path]:
+    """The submissions of a folder, in the order of their names; folders are looked into once.
+
+    Raises:
+        FileError: no such folder, or nothing in it that could be a submission.
+    """
+    root = Path(folder)
+    if not root.is_dir():
+        raise FileError(f"{root}: no such folder of submissions")
+    files = []
+    for path in sorted(root.iterdir(), key=lambda p: p.name):
+        if path.name.startswith("."):
+            continue
+        if path.is_dir() and not path.is_symlink():
+            inside = sorted(path.iterdir(), key=lambda p: p.name)
+            files += [p for p in inside if p.suffix.lower() in KINDS]
+        elif path.suffix.lower() in KINDS:
+            files.append(path)
+    if not files:
+        raise FileError(f"{root}: no submissions; files end in {', '.join(KINDS)}")
+    return files
+
+
+def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submission:
+    """Reads one file.
+
+    Raises:
+        KinlabError: it cannot be read; the message says why.
+    """
+    shown = str(path.relative_to(root)) if root is not None else path.name
+    stem = path.parent.name if root is not None and path.parent != root else path.stem
+    about = path.lstat()
+    if stat.S_ISLNK(about.st_mode):
+        raise FileError(f"{shown}: is a link; hand in the file itself")
+    text = read_text(path, limit=LARGEST)
+    if "\x00" in text:
+        raise FileError(f"{shown}: not text")
+    suffix = path.suffix.lower()
+    if suffix == ".toml":
+        return of_document(read_toml(text, shown, FileError), sheet, shown, stem)
+    if suffix == ".py":
+        student, name = _people(_lines(text, "#"))
+        return Submission(shown, student or _safe(stem), name, note=_note(student), program=text)
+    lines = list(_lines(text, "%" if suffix == ".tex" else ""))
+    student, name = _people(lines)
+    pieces = _of_latex(text) if suffix == ".tex" else _of_text(lines, sheet)
+    answers, problems = _sorted(pieces, sheet)
+    who = student or _safe(stem)
+    return Submission(shown, who, name, answers, {}, problems, _note(student))
+
+
+def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str) -> Submission:
+    """A submission from a TOML document, or from a mapping in a notebook."""
+    rest = dict(document)
+    student = next((rest.pop(w) for w in ("student", "id", "student_id") if w in rest), "")
+    name = rest.pop("name", "")
+    symbols = rest.pop("symbols", {})
+    rest.pop("robot", None)
+    rest.pop("title", None)
+    if not isinstance(symbols, dict):
+        raise FileError(f"{shown}: [symbols] is {type(symbols).__name__}; it must be a table")
+    given: list[tuple[str, Any]] = []
+    for key, value in rest.items():
+        if key in ("answers", "formulas", "latex") and isinstance(value, dict):
+            dollars = key == "latex"
+            given += [
+                (k, f"${v}$" if dollars and isinstance(v, str) else v) for k, v in value.items()
+            ]
+        else:
+            given.append((key, value))
+    answers, problems = _sorted(given, sheet)
+    if isinstance(student, bool) or not isinstance(student, (str, int)):
+        student = ""
+    known = _safe(str(student))
+    who = known or _safe(stem)
+    called = _safe(name) if isinstance(name, str) else ""
+    return Submission(shown, who, called, answers, symbols, problems, _note(known))
+
+
+def _note(student: str) -> str:
+    return "" if student else "no student id in the file; its name is taken"
+
+
+def _safe(text: str) -> str:
+    """One line of bounded length."""
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())[:_ID]
+
+
+# -------- Text and LaTeX
+
+_FIELD = re.compile(rf"\s*({'|'.join(_WORDS)})\s*[:=]\s*(\S.*)", re.IGNORECASE)
+
+
+def _lines(text: str, comment: str) -> Iterator[str]:
+    for line in text.splitlines()[:_LINES]:
+        stripped = line.lstrip()
+        if comment and stripped.startswith(comment):
+            stripped = stripped.lstrip(comment)
+        yield stripped.rstrip()
+
+
+def _people(lines: Sequence[str] | Iterator[str]) -> tuple[str, str]:
+    """The student's id and name."""
+    student = name = ""
+    for line in lines:
+        found = _FIELD.fullmatch(line)
+        if found is None:
+            continue
+        if found[1].lower() == "name":
+            name = name or _safe(found[2])
+        else:
+            student = student or _safe(found[2].strip("\"'"))
+    return student, name
+
+
+def _of_text(lines: Sequence[str], sheet: Sheet) -> list[tuple[str, Any]]:
+    pieces: list[tuple[str, Any]] = []
+    for line in lines:
+        if not line or line.startswith("#") or _FIELD.fullmatch(line):
+            continue
+        before, colon, after = line.partition(":")
+        if colon and before.strip().lower() in {q.id.lower() for q in sheet.questions}:
+            pieces.append((before.strip(), after.strip()))
+        elif "=" in line:
+            pieces.append(("", line))
+        elif pieces and (
+            line[0] in "+-*/" or str(pieces[-1][1]).rstrip()[-1:] in ("+", "-", "*", "")
+        ):
+            key, value = pieces[-1]
+            pieces[-1] = (key, f"{value} {line}")
+    return pieces
+
+
+_BODY = re.compile(r"\\begin\{document\}(.*?)(?:\\end\{document\}|\Z)", re.DOTALL)
+_SHOWN = re.compile(
+    r"\\\[(?P<a>.*?)\\\]|\$\$(?P<b>.*?)\$\$"
+    r"|\\begin\{(?P<env>(?:equation|align|gather|multline)\*?)\}(?P<c>.*?)\\end\{(?P=env)\}"
+    r"|\\\((?P<d>.*?)\\\)|(?<!\\)\$(?P<e>[^$]*)\$",
+    re.DOTALL,
+)
+_COMMENT = re.compile(r"(?<!\\)%.*")
+_INSIDE = re.compile(r"\\begin\{(\w*matrix|array|aligned|split)\}.*?\\end\{\1\}", re.DOTALL)
+
+
+def _of_latex(text: str) -> list[tuple[str, Any]]:
+    text = _COMMENT.sub("", text)
+    if text.count(r"\begin") > _MOST or text.count("$") > 4 * _MOST or text.count(r"\[") > _MOST:
+        raise FileError(f"more than {_MOST} formulas in one file")
+    body = _BODY.search(text)
+    text = body[1] if body else text
+    shown = [next(v for k, v in m.groupdict().items() if k != "env" and v is not None)
+             for m in _SHOWN.finditer(text)]  # fmt: skip
+    if not shown:  # bare lines, as a fragment may be
+        shown = [line for line in text.splitlines() if "=" in line]
+    pieces: list[tuple[str, Any]] = []
+    for formula in shown:
+        for line in _rows(formula):
+            if "=" in line:
+                pieces.append(("", f"${bare(line)}$"))
+    return pieces
+
+
+def _rows(formula: str) -> list[str]:
+    r"""The lines of an ``align``; what is broken inside a matrix stays whole."""
+    matrices = [m[0] for m in _INSIDE.finditer(formula)]
+    held = formula
+    for k, matrix in enumerate(matrices):
+        held = held.replace(matrix, f"\x01{k}\x01", 1)
+    lines: list[str] = []
+    for part in re.split(r"\\\\(?:\[[^\]]*\])?", held):
+        line = part.replace("&", " ").strip()
+        if lines and line and "=" not in line:  # a sum goes on
+            lines[-1] += f" {line}"
+        elif line:
+            lines.append(line)
+    return [re.sub("\x01(\\d+)\x01", lambda m: matrices[int(m[1])], line) for line in lines]
+
+
+# -------- Which formula answers which question
+
+
+def _sorted(
+    pieces: Sequence[tuple[str, Any]], sheet: Sheet
+) -> tuple[dict[str, dict[str, str]], dict[str, str]]:
+    """Formulas by question: by its id, or by the name on the left side."""
+    answers: dict[str, dict[str, str]] = {}
+    problems: dict[str, str] = {}
+    ids = {question.id.lower(): question for question in sheet.questions}
+    writing = hand(str(value) for _, value in pieces)
+    for key, value in pieces:
+        question = ids.get(key.strip().lower())
+        name = ""
+        if question is None:
+            left = key or _left(value)
+            question, name = _asked(left, sheet, writing)
+        if question is None:
+            continue
+        if isinstance(value, (int, float)) and not isinstance(value, bool):
+            value = repr(value)
+        if isinstance(value, dict) and all(isinstance(v, str) for v in value.values()):
+            answers.setdefault(question.id, {}).update(value)
+        elif not isinstance(value, str):
+            problems[question.id] = f"{type(value).__name__}; write the formula as text"
+        elif name in answers.get(question.id, {}):
+            problems[question.id] = f"{name or question.id} is given twice; keep the last line only"
+        else:
+            answers.setdefault(question.id, {})[name] = value
+    return answers, problems
+
+
+def _left(value: Any) -> str:
+    if not isinstance(value, str) or "=" not in value:
+        return ""
+    left = value.strip().partition("=")[0].strip().strip("$&").strip()
+    return left.rstrip(":").strip()
+
+
+def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str]:
+    """The question that a left side answers, and the plain name."""
+    try:
+        name = entry_name(left, "left side", writing) if left else ""
+    except ExpressionError:
+        return None, ""
+    if not name:
+        return None, ""
+    for question in sheet.questions:
+        if name in (question.entry, question.id, *question.answer):
+            return question, name
+    try:
+        plain, index = split_name(quantity_of(name, sheet.robot.table))
+    except KinlabError:
+        return next(
+            ((q, name) for q in sheet.questions if q.plain and name == _head(q)), (None, "")
+        )
+    for question in sheet.questions:
+        if question.quantity and question.plain == plain:
+            asked = split_name(question.quantity)[1]
+            if not asked or asked == index:
+                return question, name
+    return None, ""
+
+
+_HEADS = {
+    "inverse_dynamics": "tau", "gravity_torques": "g", "coriolis_torques": "c", "mass_matrix": "M",
+    "coriolis_matrix": "C", "jacobian": "J", "planar_jacobian": "J", "fk": "T",
+}  # fmt: skip
+
+
+def _head(question: Question) -> str:
+    """The letter of a whole quantity: M of mass_matrix."""
+    return "" if "[" in question.quantity else _HEADS.get(question.plain, "")
+
+
+def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> dict[str, str]:
+    """The formulas of an answer under names that say what they claim to be.
+
+    Raises:
+        ExpressionError: a left side that is another entry's name.
+    """
+    whole = question.plain and "[" not in question.quantity
+    default = question.plain if whole else question.entry
+    named: dict[str, str] = {}
+    for name, text in given.items():
+        left, right = sides(text, question.id)
+        said = entry_name(left, question.id) if left else name
+        if said in ("", question.id, question.entry, default, _head(question)):
+            named[default] = right
+            continue
+        found, _ = _asked(said, sheet, hand([]))
+        if said not in question.answer and (found is None or found.id != question.id):
+            if question.quantity != quantity_of(said, sheet.robot.table):
+                raise ExpressionError(
+                    f"the line begins with {said} =, and the question asks for {question.entry}"
+                )
+            said = default
+        named[said] = right
+    return named

@@ -1,0 +1,100 @@
+"""Numbers of the robot for each student, from the sheet's seed and the student's id."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+
+from kinlab.marking.sheet import Sheet, Variation
+from kinlab.model.dh import DHTable
+from kinlab.model.link import DHLink
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import Vocabulary, exact, vocabulary
+
+_DIGITS = 3
+_AXES = "xyz"
+_TENSOR = re.compile(r"I[xyz]{2}(\d+)")
+
+
+def robot_for(sheet: Sheet, student: str) -> Robot:
+    """The robot with the numbers of one student; the sheet's own where nothing is varied.
+
+    Args:
+        sheet: the sheet.
+        student: the id; upper and lower case are the same student.
+    """
+    if sheet.variation is None or sheet.robot.table is None:
+        return sheet.robot
+    return _varied(sheet.robot, sheet.variation, student.strip().lower())
+
+
+def numbers_for(sheet: Sheet, student: str) -> dict[str, float]:
+    """What each name stands for, for one student; empty without a DH table."""
+    table = robot_for(sheet, student).table
+    return dict(vocabulary(table).values) if table is not None else {}
+
+
+@lru_cache(maxsize=512)
+def _varied(robot: Robot, variation: Variation, student: str) -> Robot:
+    assert robot.table is not None
+    words = vocabulary(robot.table)
+    chosen = variation.names or tuple(
+        name for name in words.values if name not in ("g", "gx", "gy", "gz")
+    )
+    values = {}
+    for name, value in words.values.items():
+        if name in chosen:
+            shared = _TENSOR.sub(r"I\1", name)  # a tensor stays one of a body
+            share = 2.0 * _fraction(variation.seed, student, shared) - 1.0
+            share = 1.0 + variation.spread * share
+            values[name] = float(f"{value * share:.{_DIGITS}g}")
+        else:
+            values[name] = value
+    return Robot.from_dh(_with_numbers(robot.table, words, values))
+
+
+def _fraction(seed: int, student: str, name: str) -> float:
+    """A number from 0 to 1 that only these three decide, on every machine."""
+    digest = hashlib.sha256(f"{seed}\0{student}\0{name}".encode("utf-8", "replace")).digest()
+    return int.from_bytes(digest[:6], "big") / float(2**48 - 1)
+
+
+def _with_numbers(table: DHTable, words: Vocabulary, values: dict[str, float]) -> DHTable:
+    def entry(key: str, old: float) -> float:
+        if key not in words.entries:
+            return old
+        total = sum(
+            (factor * (exact(values[name]) if name else 1) for factor, name in words.entries[key]),
+            start=exact(0.0),
+        )
+        return float(total)
+
+    links: list[DHLink] = []
+    for i, link in enumerate(table.links, 1):
+        tensor = np.array(link.inertia, dtype=float)
+        for k, one in enumerate(_AXES):
+            for m in range(k, 3):
+                value = entry(f"inertia{i}{one}{_AXES[m]}", tensor[k, m])
+                tensor[k, m] = tensor[m, k] = value
+        com = np.asarray(link.com, dtype=float)
+        links.append(
+            replace(
+                link,
+                a=entry(f"a{i}", link.a),
+                d=entry(f"d{i}", link.d),
+                mass=entry(f"mass{i}", link.mass),
+                armature=entry(f"armature{i}", link.armature),
+                com=[entry(f"com{i}{axis}", float(com[k])) for k, axis in enumerate(_AXES)],
+                inertia=tensor,
+            )
+        )
+    ends = {}
+    for which in ("base", "tool"):
+        frame = np.array(getattr(table, which), dtype=float)
+        frame[:3, 3] = [entry(f"{which}{a}", frame[k, 3]) for k, a in enumerate(_AXES)]
+        ends[which] = frame
+    return replace(table, links=links, base=ends["base"], tool=ends["tool"])

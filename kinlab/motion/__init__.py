@@ -1,0 +1,45 @@
+"""Motions of an arm: planned between joint positions or along ways of the tool, and judged.
+
+================  ================================================================================
+module            what it holds
+================  ================================================================================
+``checks``        What a motion meets on its way: limits, singularities, changes of branch; said
+                  where and when
+``jerk_limited``  Jerk-limited motions from point to point by ruckig (the optional extra
+                  ``motion``)
+``joint_space``   Motions between joint positions: trapezoid, quintic, spline, jerk-limited,
+                  time-optimal
+``laws``          Time laws along a way of length 1: trapezoid of the velocity, and the polynomial
+                  of degree five
+``limits``        Limits of a motion: read at the door, held exactly, and what would hold them
+                  where they break
+``record``        ``Motion``: joint positions, velocities and accelerations over time, exact
+                  between the samples
+``simulation``    Motion under torques: an arm or a five-bar in time, with friction, and its balance
+                  of energy
+``time_optimal``  Time-optimal motions along a path in joint space by toppra (the optional extra
+                  ``motion``)
+``tool_space``    Motions of the tool: straight lines with slerp, arcs, blends; joints by inverse
+                  kinematics
+``ways``          Ways of the tool in space: lines and arcs from pose to pose, blended where they
+                  meet
+================  ================================================================================
+"""
+
+from kinlab.motion.checks import Finding, MotionCheck, check
+from kinlab.motion.joint_space import joint
+from kinlab.motion.record import Motion, from_samples, read_motion
+from kinlab.motion.tool_space import cartesian
+from kinlab.motion.ways import Arc
+
+__all__ = [
+    "Arc",
+    "Finding",
+    "Motion",
+    "MotionCheck",
+    "cartesian",
+    "check",
+    "from_samples",
+    "joint",
+    "read_motion",
+]

@@ -1,0 +1,213 @@
+"""Formulas as people type them: written by sympy's printers, read back; what is unsure is refused."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+import sympy
+
+from kinlab.errors import ExpressionError
+from kinlab.formulas import tree
+from kinlab.formulas.text import canonical, formula_file, parse
+from kinlab.formulas.typed import cells, entry_name, plain_formula
+
+PLAIN = ("q1", "q2", "qd1", "qd2", "qdd1", "qdd2", "l1", "l2", "lc1", "m1", "m2", "I2", "g")
+AT = dict(zip(PLAIN, np.random.default_rng(8).uniform(0.4, 1.9, (len(PLAIN), 7)), strict=True))
+
+
+def meant(text: str, writing=None):
+    """The values of a formula at the states, by the reader and the tree."""
+    node = parse(plain_formula(text, "here", writing))
+    node = tree.renamed(node, {name: canonical(name) for name in tree.names(node)})
+    return np.broadcast_to(tree.evaluate(node, AT), 7)
+
+
+def random_formula(rng, symbols, depth: int = 3):
+    """A sum, product, power, quotient or cosine of the names, as sympy builds it."""
+    kind = rng.integers(0, 7) if depth else 6
+    if kind == 6:
+        return symbols[PLAIN[rng.integers(len(PLAIN))]]
+    one = random_formula(rng, symbols, depth - 1)
+    if kind == 0:
+        return one ** int(rng.integers(2, 4))
+    if kind == 1:
+        angle = [symbols["q1"], symbols["q2"], symbols["q1"] + symbols["q2"]][rng.integers(3)]
+        return one * [sympy.cos, sympy.sin][rng.integers(2)](angle) ** int(rng.integers(1, 3))
+    other = random_formula(rng, symbols, depth - 1)
+    if kind == 2:
+        return one / (other**2 + sympy.Rational(int(rng.integers(1, 5)), 2))
+    if kind == 3:
+        return one * other
+    return one - other * sympy.Float("0.25") if kind == 4 else one + 2 * other
+
+
+def truth(formula, symbols):
+    back = {symbols[name]: sympy.Symbol(name) for name in PLAIN}
+    names = [sympy.Symbol(name) for name in PLAIN]
+    values = sympy.lambdify(names, formula.xreplace(back), "numpy")(*AT.values())
+    return np.broadcast_to(np.asarray(values, dtype=float), 7)
+
+
+def index(name: str) -> tuple[str, str]:
+    head, number = re.fullmatch(r"([A-Za-z]+)(\d*)", name).groups()
+    return head, number
+
+
+def latex_name(name: str, angle: str, braced: bool) -> str:
+    head, number = index(name)
+    dotted = {"q": angle, "qd": rf"\dot{{{angle}}}", "qdd": rf"\ddot{{{angle}}}"}.get(head, head)
+    if head == "lc":
+        return rf"l_{{c{number}}}" if braced else rf"l_{{\mathrm{{c}}{number}}}"
+    return dotted + (f"_{{{number}}}" if number and braced else f"_{number}" if number else "")
+
+
+LETTER = {"q": "q", "qd": "dq", "qdd": "ddq"}
+
+
+def as_latex(formula, symbols, rng):
+    angle, braced = (("q", r"\theta")[rng.integers(2)], bool(rng.integers(2)))
+    names = {symbols[name]: latex_name(name, angle, braced) for name in PLAIN}
+    text = sympy.latex(
+        formula, symbol_names=names, mul_symbol=(None, "dot", "times")[rng.integers(3)]
+    )
+    return rf"$\displaystyle {text}$" if rng.integers(2) else text
+
+
+def as_matlab(formula, symbols, rng):
+    names = {symbols[name]: sympy.Symbol(f"{LETTER.get(h, h)}({k})" if k else h)
+             for name in PLAIN for h, k in [index(name)]}  # fmt: skip
+    text = sympy.octave_code(formula.xreplace(names))
+    return text if rng.integers(2) else re.sub(r"\.([*/^])", r"\1", text) + ";"
+
+
+def as_python(formula, symbols, rng):
+    names = {symbols[name]: sympy.Symbol(f"{LETTER.get(h, h)}[{int(k) - 1}]" if k else h)
+             for name in PLAIN for h, k in [index(name)]}  # fmt: skip
+    text = sympy.pycode(formula.xreplace(names))
+    return text.replace("math.", ("np.", "math.", "numpy.")[rng.integers(3)]) + " + 0*math.pi"
+
+
+def as_unicode(formula, symbols, rng):
+    below = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+    angle = "qθ"[rng.integers(2)]
+    text = str(formula)
+    for name in sorted(PLAIN, key=len, reverse=True):
+        head, number = index(name)
+        letter = {"q": angle, "qd": angle + "\u0307", "qdd": angle + "\u0308"}.get(head, head)
+        text = re.sub(rf"\b{name}\b", letter + number.translate(below), text)
+    text = re.sub(r"\*\*([23])(?!\d)", lambda m: "²³"[int(m[1]) - 2], text)
+    return text.replace("*", "·") if rng.integers(2) and "**" not in text else text
+
+
+WRITERS = {"latex": as_latex, "matlab": as_matlab, "python": as_python, "unicode": as_unicode}
+SYMBOLS = {name: sympy.Symbol(name) for name in PLAIN}
+
+
+def read_back(writer: str, count: int, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    for _ in range(count):
+        formula = random_formula(rng, SYMBOLS)
+        if any(power.exp > 6 for power in formula.atoms(sympy.Pow)):
+            continue  # refused by design
+        text = WRITERS[writer](formula, SYMBOLS, rng)
+        expected = truth(formula, SYMBOLS)
+        np.testing.assert_allclose(meant(text), expected, rtol=1e-9, atol=1e-9, err_msg=text)
+
+
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_sympy_writes_is_read_back(writer):
+    read_back(writer, 30, 1)
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("writer", WRITERS)
+def test_what_sympy_writes_is_read_back_often(writer):
+    read_back(writer, 2000, 2)
+
+
+@pytest.mark.parametrize(
+    ("typed", "plain"),
+    [
+        (r"$m_2 l_2^2 \ddot{\theta}_1$", "m2*l2**2*qdd1"), (r"\cos\theta_2 \dot{\theta}_1^2", "cos(q2)*qd1**2"),
+        (r"C_{12} l_2 + S_1", "cos(q1+q2)*l2 + sin(q1)"), (r"\theta_{12}", "q1 + q2"), (r"\dot\theta_{12}", "qd1 + qd2"),
+        (r"\omega_1^2", "qd1**2"), (r"\mathrm{l}_{\mathrm{c1}} m1", "lc1*m1"), ("m₁l₁²θ̇₁ cos θ₂", "m1*l1**2*qd1*cos(q2)"),
+        ("θ₁ + θ1", "2*q1"), ("l1.*cos(q(1)).^2", "l1*cos(q1)**2"), ("np.cos(q[1])*q[0]", "cos(q2)*q1"),
+        ("½m₁l₁²", "m1*l1**2/2"),
+        ("- 0.25 l_1 m_2 + l_2", "-0.25*l1*m2 + l2"), (r"\frac12 m_1", "m1/2"), (r"{\dot q}_1^2", "qd1**2"), ("l_2*c_12", "l2*cos(q1+q2)"),
+        (r"\begin{equation} 1/2 m_1 l_1 \end{equation}", "m1*l1/2"), (r"\sin^{2}{\left(q_{1} \right)}", "sin(q1)**2"),
+        (r"m_1 l_1/2\cos q_1", "m1*l1/2*cos(q1)"), (r"\cos\frac{q_1}{2}", "cos(q1/2)"), ("2^-1*l1", "l1/2"),
+        (r"l_{1}\cos{q_1 + q_2}", "l1*cos(q1 + q2)"), ("q̈₁ + θ̈₂", "qdd1 + qdd2"), (r"\text{g} m_1,", "g*m1"),
+    ],
+)  # fmt: skip
+def test_by_hand(typed, plain):
+    rng = {name: AT[name] for name in PLAIN}
+    expected = eval(plain, {"__builtins__": {}, "cos": np.cos, "sin": np.sin}, rng)  # noqa: S307
+    np.testing.assert_allclose(meant(typed), expected, rtol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("typed", "message"),
+    [
+        ("q[1] + 1", "counted from 0"), (r"\cos\theta_1 + \theta_2", "parentheses before"), (r"\cos^{-1} x", "two ways"),
+        ("l1^q1^2", "power of a power"), ("2^(1)^2", "power of a power"), ("C12*qd1", "a cosine, or an entry"),
+        (r"c_12 \cdot 2", r"write _\{12\}"), (r"g/2l_1 \cdot 1", "two ways"), (r"\sqrt[3]{x}", "square roots"),
+        (r"g(q_1) \cdot 1", "two ways"), ("q(0)", "counts from 1"), (r"\cos\theta_2^2", "a power behind"),
+        (r"\sin q_1 q_2", "parentheses before"), (r"\cos q_1/2", "a slash behind"), ("q[0]*q(1)", "counted from"),
+        ("l1(2)", "no sure meaning"), ("c(2)", "no sure meaning"), ("q[-1]", "from the end"), ("m₁ л", "no meaning"),
+        (r"9 81 \cdot m_1", "two ways"), (r"\log q_1", "cannot be read"),
+    ],
+)  # fmt: skip
+def test_what_can_be_read_in_two_ways_is_refused(typed, message):
+    with pytest.raises(ExpressionError, match=message) as caught:
+        parse(plain_formula(typed, "f.toml: tau1"), "f.toml: tau1")
+    assert "f.toml: tau1" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("typed", "name"),
+    [
+        (r"\tau_2", "tau2"), (r"$\tau_{2}$", "tau2"), ("tau(2)", "tau2"), ("τ₂", "tau2"), ("M_{12}(q)", "M12"),
+        ("M(1,2)", "M12"), (r"\mathbf{M}_{1,2}", "M12"), ("fk14", "T14"), ("L", "lagrangian"), ("fk[0,3]", "fk[0,3]"),
+        (r"\boldsymbol{\tau}", "tau"), ("C_12(q, qd)", "C12"), ("mass_matrix[0,0]", "mass_matrix[0,0]"), ("x", "x"),
+    ],
+)  # fmt: skip
+def test_names_of_entries(typed, name):
+    assert entry_name(typed) == name
+
+
+@pytest.mark.parametrize(
+    "typed",
+    [
+        r"\begin{bmatrix} a & b \\ c & d \end{bmatrix}", r"\left(\begin{array}{cc} a & b\\ c & d\\ \end{array}\right)",
+        r"$\begin{pmatrix}a&b\\[2pt]c&d\end{pmatrix}$", "[a, b; c, d]", "[[a, b], [c, d]]", "np.array([[a, b], [c, d]])",
+    ],
+)  # fmt: skip
+def test_matrices(typed):
+    found = cells(typed)
+    assert [[cell.strip("$") for cell in row] for row in found] == [["a", "b"], ["c", "d"]]
+
+
+def test_a_file_of_one_writer():
+    file = formula_file(
+        {
+            "robot": "planar2r",
+            "M": r"M(q) = \begin{bmatrix} m_1 & m_2 c_2 \\ m_2 c_2 & I_2 \end{bmatrix}",
+            "tau": "[np.cos(q[0]), q[1]]",
+            "g2": r"g_2 = S_{12} C_{12} \dot q_1",
+        },
+        "f.toml",
+    )
+    assert list(file.formulas) == ["M11", "M12", "M21", "M22", "tau1", "tau2", "g2"]
+    assert str(file.formulas["tau2"]) == "q2"
+    assert str(file.formulas["g2"]) == "s12*c12*qd1"
+    for formulas, message in (
+        ({"tau1": "tau2 = m1"}, "another"), ({"tau1": "m1", r"\tau_1": "m2"}, "given twice"),
+        ({"tau1": "omega2*m1"}, "angular velocity of link 2"), ({"M": "[a, b]"}, "a row or a column"),
+        ({"M": "[a, b; c]"}, "different lengths"), ({"tau1": "a = b = c"}, "signs of equality"),
+    ):  # fmt: skip
+        with pytest.raises(ExpressionError, match=message):
+            formula_file({"robot": "planar2r", "formulas": formulas}, "f.toml")
+    given = {"robot": "planar2r", "symbols": {"omega2": "qd2"}, "tau1": "omega2*m1"}
+    assert formula_file(given, "f.toml").texts["tau1"] == "omega2*m1"

@@ -1,0 +1,376 @@
+"""A class marked: verdicts and points, hostile submissions, order, resumption, no leaks."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import random
+import re
+
+import pytest
+import sympy
+
+import kinlab as kl
+from kinlab.marking import run
+from kinlab.marking.marks import slug_of
+from kinlab.marking.program import judge_program
+from kinlab.marking.results import as_csv, gradescope
+from kinlab.marking.sheet import sheet_of
+from kinlab.marking.submission import Submission, read_submission
+
+G1 = "(m1+m2)*g*l1*c1 + m2*g*l2*c12"
+M = "[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2; m2*l2^2 + m2*l1*l2*c2, m2*l2^2]"
+SHEET = {
+    "title": "Homework",
+    "robot": "planar2r",
+    "feedback": "cause",
+    "slips": {"sign": 0.25},
+    "questions": [
+        {"id": "q1", "entry": "x", "points": 2},
+        {"id": "q2", "entry": "g1", "points": 4, "slips": {"index": 0.5}},
+        {"id": "q3", "quantity": "mass_matrix", "points": 3},
+        {"id": "q4", "answer": "m1*g*l1*sin(q1)", "points": 1},
+    ],
+}
+RIGHT = {"q1": "l1*c1 + l2*c12", "q2": G1, "q3": M, "q4": "g*sin(q1)*m1*l1"}
+
+
+def marked(answers, feedback=None, **changes):
+    return kl.mark({**SHEET, **changes}, {"ada": answers}, feedback=feedback)["ada"]
+
+
+def test_right_answers_get_all_points():
+    found = marked(RIGHT)
+    assert [one.verdict for one in found.outcomes] == ["right"] * 4
+    assert found.total == found.of == 10.0
+
+
+@pytest.mark.parametrize(
+    ("question", "answer", "verdict", "points", "place", "cause"),
+    [
+        ("q1", "l1*c1 - l2*c12", "wrong", 1.5, "x: look at -l2*c12", "a sign is the other way"),
+        ("q2", "(m1+m2)*g*l1*c1 + m2*g*l1*c12", "wrong", 2.0, "g1: look at l1", "an index is off"),
+        ("q2", "(m1+m2)*g*l1*c1", "wrong", 0.0, "g1", "a term is missing"),
+        ("q4", "-m1*g*l1*sin(q1)", "wrong", 0.75, "the formula as a whole", "a sign is the other way"),
+        ("q4", "m1*g*l1", "wrong", 0.0, "the formula as a whole", "the cause is not known"),
+        ("q1", "l1*c1 + l2*c_{12", "could not be read", 0.0, "", ""), ("q1", "", "no answer", 0.0, "", ""),
+        ("q1", "y = l1*c1", "could not be read", 0.0, "", ""), ("q3", "M11 = m2", "wrong", 0.0, None, None),
+        ("q2", r"$g_1 = (m_1+m_2) g l_1 \cos\theta_1 + m_2 g l_2 \cos(\theta_1+\theta_2)$", "right", 4.0, "", ""),
+        ("q1", "x = l1*np.cos(q[0]) + l2*np.cos(q[0]+q[1])", "right", 2.0, "", ""),
+    ],
+)  # fmt: skip
+def test_points_place_and_cause(question, answer, verdict, points, place, cause):
+    found = marked({question: answer})[question]
+    assert (found.verdict, found.points) == (verdict, points)
+    if place is not None:
+        assert (found.place, found.cause) == (place, cause)
+
+
+def test_levels_of_feedback():
+    slip = {"q1": "l1*c1 - l2*c12"}
+    told = {level: marked(slip, level)["q1"] for level in ("verdict", "place", "cause", "answer")}
+    assert not told["verdict"].place and not told["verdict"].cause
+    assert r"\wrong" not in str(told["verdict"].formulas)
+    assert told["place"].place and not told["place"].cause
+    assert told["cause"].cause and not told["cause"].answer
+    assert any("l2*c12" in text or "l2*cos(q1 + q2)" in text for text in told["answer"].answer)
+    assert len({one.points for one in told.values()}) == 1
+
+
+def test_numbers_of_each_student():
+    sheet = sheet_of({**SHEET, "variation": {"seed": 1, "names": ["l1", "l2"]}}, "s")
+    from kinlab.marking.variation import numbers_for
+
+    ada, bob = numbers_for(sheet, "ada"), numbers_for(sheet, "bob")
+    own = {"q1": f"{ada['l1']}*c1 + {ada['l2']}*c12"}
+    marks = kl.mark(sheet, {"ada": own, "bob": own, "eve": {"q1": "l1*c1 + l2*c12"}})
+    assert ada["l1"] != bob["l1"]
+    assert [marks[who]["q1"].right for who in ("ada", "bob", "eve")] == [True, False, True]
+
+
+TEX = r"""\documentclass{article}
+% student: bob
+\begin{document}
+The tool is at $x = l_1 c_1 + l_2 c_{12}$, and
+\begin{align}
+ g_1 &= (m_1 + m_2) g l_1 \cos\theta_1 \\  % two lines
+     &+ m_2 g l_2 \cos(\theta_1 + \theta_2) \\
+ M_{11} &= (m_1 + m_2) l_1^2 + m_2 l_2^2 + 2 m_2 l_1 l_2 c_2
+\end{align}
+\[ M_{12} = m_2 l_2^2 + m_2 l_1 l_2 c_2, \] \[ M_{22} = m_2 l_2^2. \]
+\end{document}
+"""
+
+
+def test_latex_and_text(tmp_path):
+    sheet = sheet_of(SHEET, "s")
+    (tmp_path / "a.tex").write_text(TEX)
+    (tmp_path / "b.txt").write_text(
+        f"student: eve\nname: Eve\n\nx = l1*c1\n + l2*c12\nq2: {G1}\nM = {M}\n"
+    )
+    marks = kl.mark(sheet, tmp_path, workers=1)
+    assert [(m.student, m.total) for m in marks.marks] == [("bob", 9.0), ("eve", 9.0)]
+    assert marks["eve"].name == "Eve"
+    assert marks["bob"]["q3"].right
+    twice = tmp_path / "c.txt"
+    twice.write_text("x = l1\nx = l2\n")
+    assert "twice" in read_submission(twice, sheet).problems["q1"]
+
+
+HOSTILE = {
+    "bomb.toml": 'student = "bomb"\nq1 = "9**9**9**9"\nq2 = "9**(9**(9**9))"\n', "deep.txt": "q1: " + "(" * 90_000,
+    "open.toml": "q1 = " + "[" * 50_000, "binary.txt": b"\xff\xfe\x00q1", "huge.txt": b"a" * 400_000,
+    "<img src=x onerror=alert(1)>.txt": "q1: l1*c1 + l2*c12", "empty.txt": "", "loop.py": "while True: pass",
+    "name.toml": 'student = "=cmd|calc"\nname = "<script>alert(1)</script>"\nq1 = "<b>l1</b>"\n',
+    "expo.toml": 'student = "expo"\nq1 = "a0"\n[symbols]\n' + "".join(f'a{i} = "a{i+1}*a{i+1}"\n' for i in range(60)) + 'a60 = "q1"\n',
+    "round.toml": 'student = "round"\nq4 = "a"\n[symbols]\na = "b"\nb = "a"\n', "odd.toml": "student = true\nq1 = [1, 2]\nq2 = 3\nq3 = 1979-05-27\n",
+    "same.txt": "student: GOOD\nq1: l1*c1 + l2*c12", "long.txt": "q1: " + "+".join(["cos(q1)"] * 1500),
+    "tex.tex": r"\begin{align}" * 3000 + "$" * 3001 + "q_1 = " + r"\sqrt" * 5000,
+}  # fmt: skip
+
+
+def hostile(folder):
+    for name, content in HOSTILE.items():
+        data = content if isinstance(content, bytes) else content.encode()
+        (folder / name).write_bytes(data)
+    (folder / "link.txt").symlink_to("/etc/hostname")
+    (folder / "ring").symlink_to(folder)
+    os.mkfifo(folder / "pipe.txt")
+    good = "".join(f"{key} = '{value}'\n" for key, value in RIGHT.items())
+    (folder / "good.toml").write_text(f"student = 'good'\n{good}")
+
+
+def test_one_hostile_submission_costs_only_itself(tmp_path):
+    folder, out = tmp_path / "in", tmp_path / "out"
+    folder.mkdir()
+    hostile(folder)
+    marks = kl.mark(SHEET, folder, out, workers=1)
+    assert len(marks) == len(HOSTILE) + 3
+    by_file = {m.file: m for m in marks.marks}
+    assert by_file["good.toml"].total == 10.0
+    assert by_file["<img src=x onerror=alert(1)>.txt"].total == 2.0
+    others = [
+        m for f, m in by_file.items() if f not in ("good.toml", "same.txt") and "img" not in f
+    ]
+    assert all(m.total == 0 for m in others)
+    assert "handed in 2 times: good.toml, same.txt" in by_file["good.toml"].note
+    assert "link" in by_file["link.txt"]["q1"].remark
+    assert "run only with --run-python" in by_file["loop.py"]["q1"].remark
+    for page in out.rglob("*.html"):
+        text = page.read_text()
+        assert "<script" not in text and "<img" not in text and "<b>l1" not in text
+    rows = list(csv.reader(io.StringIO((out / "marks.csv").read_text())))
+    assert not any(cell.startswith(("=", "+", "-", "@")) for row in rows for cell in row)
+    assert len(list((out / "results").iterdir())) == len(marks)
+
+
+def test_any_order_and_any_number_of_workers(tmp_path):
+    folder = tmp_path / "in"
+    folder.mkdir()
+    hostile(folder)
+    one = kl.mark(SHEET, folder, workers=1)
+    paths = [path for path in folder.iterdir() if path.suffix]
+    random.Random(4).shuffle(paths)
+    two = kl.mark(SHEET, paths, workers=2)
+    assert as_csv(one) == as_csv(two)
+
+
+def test_a_worker_that_dies_or_hangs_loses_one_submission(tmp_path, monkeypatch):
+    for who in ("a", "b", "c", "d"):
+        (tmp_path / f"{who}.txt").write_text(f"student: {who}\nq1: l1*c1 + l2*c12\n")
+    real = run.read_submission
+
+    def read(path, *rest):
+        if path.stem == "b":
+            os._exit(7)
+        while path.stem == "c":
+            pass
+        return real(path, *rest)
+
+    monkeypatch.setattr(run, "read_submission", read)
+    monkeypatch.setattr(run, "SECONDS", 1.0)
+    marks = kl.mark(SHEET, tmp_path, workers=2)
+    assert [m.total for m in marks.marks] == [2.0, 0.0, 0.0, 2.0]
+    assert "ended the process" in marks["b"]["q1"].remark
+    assert "took longer than 1 s" in marks["c"]["q1"].remark
+
+
+def test_a_run_that_was_stopped_goes_on(tmp_path, monkeypatch):
+    folder, out = tmp_path / "in", tmp_path / "out"
+    folder.mkdir()
+    for k in range(4):
+        (folder / f"s{k}.txt").write_text(f"q1: {k}*l1*c1 + l2*c12\n")
+
+    def stop(done, total, name):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        kl.mark(SHEET, folder, out, workers=1, progress=stop)
+    assert not (out / "marks.csv").exists()
+    (folder / "s0.txt").write_text("q1: l1*c1 + l2*c12\n")  # handed in anew
+    seen = []
+    again = kl.mark(
+        SHEET, folder, out, workers=1, progress=lambda done, total, name: seen.append(name)
+    )
+    assert seen == ["s0.txt", "s2.txt", "s3.txt"]
+    assert as_csv(again) == as_csv(kl.mark(SHEET, folder, workers=1))
+    changed = {**SHEET, "slips": {"factor": 0.1}}
+    assert as_csv(kl.mark(changed, folder, out, workers=1)) == as_csv(
+        kl.mark(changed, folder, workers=1)
+    )
+
+
+def test_results_as_gradescope_reads_them():
+    marks = kl.mark(SHEET, {"ada": {**RIGHT, "q1": "l1*c1 - l2*c12"}})
+    result = json.loads(json.dumps(gradescope(marks, marks["ada"])))
+    assert result["score"] == 9.5 == sum(test["score"] for test in result["tests"])
+    assert [test["max_score"] for test in result["tests"]] == [2, 4, 3, 1]
+    assert [test["status"] for test in result["tests"]] == ["failed", "passed", "passed", "passed"]
+    assert result["tests"][0]["output"].startswith("Wrong.\nPlace: x: look at -l2*c12.")
+    assert {"name", "number", "output_format", "visibility"} <= result["tests"][0].keys()
+
+
+def test_names_of_files():
+    names = ["a.toml", "a.txt", "A b.toml", "a/b.toml", "a-b.toml", "ä.toml", "..toml", "x" * 300]
+    slugs = [slug_of(name) for name in names]
+    assert len({slug.casefold() for slug in slugs}) == len(names)
+    assert all(re.fullmatch(r"[A-Za-z0-9_-]{1,64}", slug) for slug in slugs)
+
+
+# -------- Leaks
+
+
+def mutated(rng, formula: str) -> str:
+    """A formula with one to three slips of the pen, by text: none of them from the doctor."""
+    swaps = [
+        ("+", "-"),
+        ("-", "+"),
+        ("c12", "c1"),
+        ("c1", "s1"),
+        ("l2", "l1"),
+        ("m2", "m1"),
+        ("^2", ""),
+        ("2*", ""),
+        ("g*", ""),
+    ]
+    for _ in range(rng.randrange(1, 4)):
+        old, new = rng.choice(swaps)
+        found = [m.start() for m in re.finditer(re.escape(old), formula)]
+        if found:
+            at = rng.choice(found)
+            formula = formula[:at] + new + formula[at + len(old) :]
+    return formula
+
+
+def forms_of(right: str) -> set[str]:
+    """How a right formula may stand somewhere: as typed, and as the engine and sympy write it."""
+    names = {n: sympy.Symbol(n) for n in "m1 m2 l1 l2 g q1 q2".split()}
+    long = re.sub(
+        r"\b([cs])(\d+)",
+        lambda m: f"{'cos' if m[1] == 'c' else 'sin'}({'+'.join('q' + d for d in m[2])})",
+        right,
+    )
+    value = sympy.sympify(long.replace("^", "**"), locals=names)
+    texts = {
+        right,
+        long,
+        str(value),
+        str(sympy.expand(value)),
+        sympy.latex(value),
+        sympy.latex(sympy.expand(value)),
+    }
+    return {bare(text) for text in texts}
+
+
+def bare(text: str) -> str:
+    return re.sub(r"[\s{}\\]|left|right", "", text).replace("**", "^")
+
+
+def leaks(level: str, runs: int, seed: int, folder) -> int:
+    """How many of the runs wrote the right formula somewhere that the student did not write."""
+    rng = random.Random(seed)
+    truths = {k: v for k, v in RIGHT.items() if k != "q3"}
+    secrets = {key: forms_of(value) for key, value in truths.items()}
+    found = 0
+    submissions = {
+        f"s{k}": {key: mutated(rng, value) for key, value in truths.items()} for k in range(runs)
+    }
+    marks = kl.mark(SHEET, submissions, folder, feedback=level)
+    common = [bare((folder / name).read_text()) for name in ("marks.csv", "class.html")]
+    for who, given in submissions.items():
+        mark = marks[who]
+        outputs = [p.read_text() for p in folder.rglob(f"{mark.slug}.*")]
+        outputs = [
+            bare(text) for text in (*outputs, str(mark), json.dumps(gradescope(marks, mark)))
+        ]
+        for key, forms in secrets.items():
+            if mark[key].right:
+                continue
+            own = bare(given[key])
+            hidden = [form for form in forms if form not in own]
+            found += any(form in text for form in hidden for text in (*outputs, *common))
+    return found
+
+
+@pytest.mark.parametrize("level", ["place", "cause"])
+def test_no_right_formula_leaks(level, tmp_path):
+    assert leaks(level, 8, 5, tmp_path) == 0
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("level", ["place", "cause"])
+def test_no_right_formula_leaks_in_a_thousand_runs(level, tmp_path):
+    assert leaks(level, 500, 6, tmp_path) == 0
+
+
+def test_the_leak_is_seen_where_answers_are_told(tmp_path):
+    assert leaks("answer", 4, 5, tmp_path) > 0
+
+
+# -------- Programs
+
+PROGRAM = """
+import numpy as np
+l1, l2, m1, m2, g = 0.5, 0.4, 2, 1.5, 9.81
+def q1(q):
+    return l1*np.cos(q[0]) + l2*np.cos(q[0] + q[1])
+def g1(q):
+    return -(m1+m2)*g*l1*np.cos(q[0]) - m2*g*l2*np.cos(q[0] + q[1])
+"""
+
+
+def test_a_program_is_judged():
+    sheet = sheet_of(SHEET, "s")
+    outcomes, enforced = judge_program(sheet, Submission("a.py", "ada", program=PROGRAM), "cause")
+    assert [one.verdict for one in outcomes] == ["right", "wrong", "no answer", "no answer"]
+    assert "sign" in outcomes[1].cause
+    assert "memory" in enforced and "processor time" in enforced
+
+
+@pytest.mark.parametrize(
+    ("program", "message"),
+    [
+        ("open('/etc/passwd').read()", "may not read files"), ("open('x', 'w').write('a')", "may not write files"),
+        ("import socket", "may not import socket"), ("import kinlab", "may not import kinlab"),
+        ("import os\nos.fork()", "may not use os.fork"), ("x = [0]*10**10", "MemoryError"), ("import os\nos._exit(3)", "exit code 3"),
+        ("def q1(:", "SyntaxError"), ("raise SystemExit", "SystemExit"),
+    ],
+)  # fmt: skip
+def test_a_hostile_program_costs_only_itself(program, message):
+    sheet = sheet_of(SHEET, "s")
+    outcomes, _ = judge_program(sheet, Submission("a.py", "ada", program=program), "cause")
+    assert message in outcomes[0].remark
+    assert all(one.points == 0 for one in outcomes)
+
+
+def test_an_endless_program_is_ended(monkeypatch):
+    monkeypatch.setattr("kinlab.marking.program.SECONDS", 1.0)
+    sheet = sheet_of(SHEET, "s")
+    outcomes, enforced = judge_program(
+        sheet, Submission("a.py", "ada", program="while 1: pass"), "cause"
+    )
+    assert "signal" in outcomes[0].remark or "did not come back" in outcomes[0].remark
+    assert "processor time" in enforced

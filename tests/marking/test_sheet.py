@@ -1,0 +1,103 @@
+"""The sheet: what it may hold, and errors at the door; numbers for each student; handouts."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.errors import FileError
+from kinlab.marking.handout import handout, students_of, write_handouts
+from kinlab.marking.sheet import SheetError, read_sheet, sheet_of
+from kinlab.marking.variation import numbers_for, robot_for
+
+ASKED = {"id": "q1", "entry": "tau1", "points": 4}
+
+
+def sheet(**changes):
+    return sheet_of({"robot": "planar2r", "questions": [ASKED], **changes}, "s.toml")
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"robot": None}, "s.toml: robot is missing"), ({"robot": "planar3x"}, "s.toml: robot: .*unknown"),
+        ({"feedbck": "place"}, "key 'feedbck' is unknown; did you mean 'feedback'"),
+        ({"feedback": "all"}, "feedback is 'all'; choose one of 'verdict'"), ({"questions": []}, "questions are missing"),
+        ({"slips": {"sgn": 0.5}}, "'sgn' is no kind of slip; did you mean 'sign'"),
+        ({"slips": {"sign": 2}}, "sign = 2; a share of the points"), ({"samples": 3}, "samples is 3; a whole number from 10"),
+        ({"questions": [ASKED, ASKED]}, "two questions have the id 'q1'"),
+        ({"questions": [{"id": "q 1"}]}, "question 1: id is 'q 1'"), ({"questions": [{"id": "q1"}]}, r"question 1 \(q1\): what is asked"),
+        ({"questions": [{"id": "q1", "entry": "foo7"}]}, r"\(q1\): 'foo7' names no quantity"),
+        ({"questions": [{"id": "q1", "quantity": "mass_matrx"}]}, "did you mean 'mass_matrix'"),
+        ({"questions": [{"id": "q1", "quantity": "fk[:3,3]"}]}, "is a range"),
+        ({"questions": [{"id": "q1", "quantity": "fk", "answer": "1"}]}, "quantity and answer are both given"),
+        ({"questions": [{"id": "q1", "entry": "tau1", "points": -1}]}, "points is -1"),
+        ({"questions": [{"id": "q1", "entry": "tau1", "points": "4"}]}, "points is str; write a number"),
+        ({"questions": [{"id": "q1", "quantity": "fivebar_rods"}]}, "no quantity of a serial arm"),
+        ({"variation": {"names": ["l9"]}}, r"\[variation\]: names: planar2r has no 'l9'"), ({"variation": {"spread": 2}}, "spread is 2"),
+        ({"title": 3}, "title is int; write text"),
+    ],
+)  # fmt: skip
+def test_errors_at_the_door(changes, message):
+    with pytest.raises(SheetError, match=message):
+        sheet(**changes)
+
+
+def test_a_bad_model_answer_is_found_before_anything_is_marked():
+    asked = {"id": "q1", "answer": "l1*"}
+    with pytest.raises(SheetError, match="s.toml: q1: answer"):
+        kl.mark(
+            sheet_of({"robot": "planar2r", "questions": [asked]}, "s.toml"), {"ada": {"q1": "1"}}
+        )
+
+
+def test_a_file_that_is_no_sheet(tmp_path):
+    file = tmp_path / "s.toml"
+    file.write_text("title = [")
+    with pytest.raises(SheetError, match=r"s.toml: not TOML"):
+        read_sheet(file)
+    with pytest.raises(FileError, match="no such file"):
+        read_sheet(tmp_path / "t.toml")
+
+
+@pytest.mark.parametrize("robot", ["planar2r", "puma560"])
+def test_each_student_has_numbers_of_the_same_kind(robot):
+    varied = sheet(robot=robot, variation={"seed": 3, "spread": 0.2})
+    plain = numbers_for(sheet(robot=robot), "ada")
+    ada, bob = numbers_for(varied, "ada"), numbers_for(varied, "bob")
+    assert ada == numbers_for(varied, " Ada") != bob
+    assert ada.keys() == plain.keys()
+    assert ada["g"] == plain["g"]
+    for name, value in ada.items():
+        assert 0.79 <= value / plain[name] <= 1.21
+    assert numbers_for(sheet(robot=robot, variation={"seed": 4}), "ada") != ada
+    robot_ada = robot_for(varied, "ada")
+    assert np.all(np.linalg.eigvalsh(kl.mass_matrix(robot_ada, np.zeros(robot_ada.n))) > 0)
+
+
+def test_the_varied_robot_is_the_one_with_these_numbers():
+    varied = sheet(variation={"seed": 3})
+    n, robot, q = numbers_for(varied, "ada"), robot_for(varied, "ada"), np.array([0.3, 0.8])
+    by_hand = (n["m1"] + n["m2"]) * n["l1"] ** 2 + n["m2"] * n["l2"] ** 2
+    by_hand += 2 * n["m2"] * n["l1"] * n["l2"] * np.cos(q[1])
+    assert kl.mass_matrix(robot, q)[0, 0] == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_handouts(tmp_path):
+    varied = sheet(title='Home"work', variation={"seed": 3, "names": ["l1"]})
+    ids = tmp_path / "ids.csv"
+    ids.write_text('id,name\nada,Ada\n"=x"y\\,B\n')
+    students = students_of(ids)
+    assert students == ["ada", '=x"y\\']
+    assert write_handouts(varied, students, tmp_path / "out") == 2
+    text = (tmp_path / "out" / "ada.toml").read_text()
+    assert f"l1 = {numbers_for(varied, 'ada')['l1']:g}" in text
+    assert "m1 = 2\n" in text
+    read = tomllib.loads(handout(varied, '=x"y\\'))
+    assert read == {"student": '=x"y\\', "answers": {"q1": ""}}
+    ids.write_text("ada\nADA\n")
+    with pytest.raises(FileError, match="'ADA' stands there twice"):
+        students_of(ids)

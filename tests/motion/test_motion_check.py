@@ -1,0 +1,84 @@
+"""What a motion meets on its way, beside what is known of the arm by hand."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.errors import StructureError
+from kinlab.motion.limits import read_limits
+
+ELBOW = kl.load("planar2r")
+PUMA = kl.load("puma560")
+
+
+def test_a_free_motion_is_shown_to_be_free():
+    """sigma_min of the two-link arm over a dense grid of times is above the bound."""
+    motion = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, 1.8]], acceleration=8)
+    found = kl.motion.check(ELBOW, motion)
+    assert found.ok and found.branches == ("elbow left", "elbow left")
+    jac = kl.jacobian(ELBOW, motion.sampled(1e-4).q)[:, :2]
+    length = np.sqrt(np.mean(jac**2))
+    least = np.linalg.svd(jac, compute_uv=False)[:, -1].min()
+    assert 0.1 * least / length < found.sigma < 10 * least / length
+    assert "no singularity on the way" in str(found)
+
+
+def test_a_crossing_is_found_when_and_where():
+    """The two-link arm is singular where q2 = 0 only."""
+    motion = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, -0.6]], acceleration=8)
+    found = kl.motion.check(ELBOW, motion)
+    singular, branch = found.findings
+    assert (singular.kind, branch.kind) == ("singularity", "branch")
+    q = motion.at(singular.t)[0]
+    assert abs(q[1]) < 1e-9 and not found.ok and found.sigma is None
+    np.testing.assert_allclose(singular.tool, kl.fk(ELBOW, q)[:3, 3], atol=1e-12)
+    assert found.branches == ("elbow left", "elbow right")
+    assert "'elbow left' to 'elbow right' through the singularity" in branch.sentence
+
+
+def test_the_wrist_and_the_elbow_of_the_puma():
+    wrist = kl.motion.joint(
+        PUMA, [[0, 0, 0, 0, 0.5, 0], [1, 0.5, -1, 0.3, -0.5, 0.2]], acceleration=8
+    )
+    found = kl.motion.check(PUMA, wrist)
+    (at,) = [one.t for one in found.findings if one.kind == "singularity"]
+    assert abs(wrist.at(at)[0][4]) < 1e-9
+    assert "wrist flip" in found.branches[0] and "wrist no flip" in found.branches[1]
+    free = kl.motion.joint(
+        PUMA, [[0, 0, 0, 0, 0.5, 0], [1, 0.5, -1, 0.3, 0.5, 0.2]], acceleration=8
+    )
+    assert kl.motion.check(PUMA, free).ok
+
+
+def test_a_touched_singularity_is_not_called_a_crossing():
+    """q2 comes to 0 and goes back: det J does not change its sign."""
+    motion = kl.motion.joint(ELBOW, [[0.4, 0.9], [0.7, 0.0], [1.0, 0.5]], acceleration=8)
+    found = kl.motion.check(ELBOW, motion)
+    (near,) = found.findings
+    assert near.kind == "near singularity" and "undecided" in near.sentence
+    assert near.t == pytest.approx(motion.knots[1], abs=1e-2)
+
+
+def test_limits_that_are_broken_are_named():
+    fast = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, 1.8]], velocity=50, duration=0.1)
+    kinds = {one.kind: one for one in kl.motion.check(ELBOW, fast, acceleration=100).findings}
+    assert {"velocity", "acceleration", "effort"} <= set(kinds)
+    peak = fast.peak_velocity
+    assert (
+        kinds["velocity"].t == pytest.approx(0.05)
+        and f"{peak.value[1]:.6g}" in kinds["velocity"].sentence
+    )
+    t = np.linspace(0, 4, 81)
+    q = np.column_stack([3.5 * np.sin(np.pi * t / 4), 1.0 + 0.1 * t])
+    wild = kl.motion.from_samples(ELBOW, t, q)
+    (position,) = [x for x in kl.motion.check(ELBOW, wild).findings if x.kind == "position"]
+    assert position.t == pytest.approx(2.0, abs=1e-4) and "joint_1" in position.sentence
+    assert read_limits(ELBOW).velocity.tolist() == [6.0, 6.0]
+
+
+def test_a_motion_of_another_arm_is_refused():
+    motion = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, 1.8]], acceleration=8)
+    with pytest.raises(StructureError, match="6 joints; the motion has 2"):
+        kl.motion.check(PUMA, motion)
