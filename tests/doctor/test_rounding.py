@@ -111,16 +111,16 @@ def test_equal_numbers_keep_their_order_whatever_their_last_bit():
 
 def test_pairs_are_found_whatever_the_last_bit():
     """Sixty rows of one effect: which fifty of them are tried must not hang on rounding."""
-    from kinlab.doctor.search import _pairs
+    from kinlab.doctor.search import pairs_adding_up
 
     rng = np.random.default_rng(1)
     one, goal = rng.standard_normal(24), rng.standard_normal(24)
     rows = np.array([one] * 60 + [goal - one])
-    plain = _pairs(rows, goal, 1e-9)
+    plain = pairs_adding_up(rows, goal, 1e-9)
     assert len(plain) >= 50
     for _ in range(20):
         moved = rows * (1.0 + 1e-15 * rng.standard_normal(rows.shape))
-        assert _pairs(moved, goal, 1e-9) == plain
+        assert pairs_adding_up(moved, goal, 1e-9) == plain
 
 
 SHAKEN = (0, 1)
