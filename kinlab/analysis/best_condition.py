@@ -21,6 +21,7 @@ from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import jacobian_derivative
 from kinlab.arrays import Array
 from kinlab.fast.stacks import jacobian
+from kinlab.host.progress import pulse
 from kinlab.structure.task_space import TaskSpace, search_box
 
 _TOGETHER = (1.0, 8.0, 64.0, 512.0)
@@ -128,6 +129,7 @@ def _descend_together(
     inverse = np.broadcast_to(np.eye(x.shape[1]), (len(x), *[x.shape[1]] * 2)).copy()
     size = np.full(len(x), 0.3)
     for _ in range(_ROUNDS):
+        pulse()
         held = ((x <= lower) & (slope > 0.0)) | ((x >= upper) & (slope < 0.0))
         free = np.where(held, 0.0, slope)
         step = -np.einsum("nij,nj->ni", inverse, free)

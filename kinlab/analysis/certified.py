@@ -19,6 +19,7 @@ import numpy as np
 
 from kinlab.analysis.minors import Enclosures, Factor
 from kinlab.arrays import Array
+from kinlab.host.progress import pulse
 
 GOAL = 1e-6
 """rad or m between distance and bound at which they count as one."""
@@ -73,6 +74,7 @@ def nearest_zero(
     bound, centre, half = search.bounds(centre, half)
     boxes = 1
     while len(bound) and boxes < most:
+        pulse()
         order = np.argsort(bound, kind="stable")
         bound, centre, half = bound[order], centre[order], half[order]
         if bound[0] > search.reach() - GOAL:

@@ -23,6 +23,7 @@ from kinlab.analysis.isotropy import (
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, seed_of, whole
+from kinlab.host.progress import takes_long
 from kinlab.model.dh import DHTable
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike
@@ -100,6 +101,7 @@ class DesignSearch:
         return self.designs[index]
 
 
+@takes_long("isotropic designs")
 def design_isotropic(
     table: ArmLike,
     free: Sequence[str],

@@ -23,6 +23,7 @@ from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, seed_of, whole
 from kinlab.fast.stacks import jacobian
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
+from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 
@@ -140,6 +141,7 @@ class IsotropySearch(Rows):
         return self.configurations[index]
 
 
+@takes_long("isotropic poses")
 def find_isotropic(
     robot: ArmLike,
     task: Any = "auto",

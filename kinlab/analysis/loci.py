@@ -22,6 +22,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
@@ -83,6 +84,7 @@ class Loci:
     evidence: Evidence = field(repr=False)
 
 
+@takes_long("singular curves")
 def singular_loci(
     robot: ArmLike,
     joints: Sequence[int | str],

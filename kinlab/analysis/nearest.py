@@ -25,6 +25,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
@@ -63,6 +64,7 @@ class NearestSingularity:
     evidence: Evidence = field(repr=False)
 
 
+@takes_long("nearest singularity")
 def nearest_singularity(
     robot: ArmLike,
     q: ArrayLike,
@@ -232,6 +234,7 @@ def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120)
     best = x.copy()
     size = np.ones(len(x))
     for _ in range(steps):
+        pulse()
         active = np.flatnonzero(size > 1e-9)
         if not len(active):
             break

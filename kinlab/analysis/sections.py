@@ -25,6 +25,7 @@ from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, frozen, number, seed_of
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk, jacobian
+from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import Axes
@@ -87,6 +88,7 @@ class WorkspaceSection:
         return _project(self.origin, self.axis, positions)
 
 
+@takes_long("section of the workspace")
 def workspace_section(robot: ArmLike, *, step: float = 0.05, seed: int = 0) -> WorkspaceSection:
     """Edges and internal boundaries of the tool's positions, in the half plane through axis 1.
 

@@ -19,6 +19,7 @@ from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
+from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.axes import name_singularity, structure
@@ -195,6 +196,7 @@ class SingularitySearch(Rows, Sequence[Singularity]):
         return iter(self.configurations)
 
 
+@takes_long("singularities")
 def find_singularities(
     robot: ArmLike, task: Any = "auto", *, points: int = 8, seed: int = 0, keep: int = 12
 ) -> SingularitySearch:
@@ -235,6 +237,7 @@ def find_singularities(
     states += list(system.states(x[good]))
     numbers = [0] * exact + [int(k) + 1 for k in np.flatnonzero(good)]
     for number, state in zip(numbers, states, strict=True):
+        pulse()
         sheet = next((one for one in known if one.has(space, state)), None)
         if sheet is None:
             held = supports(space, state)[0]

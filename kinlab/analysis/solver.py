@@ -14,6 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.host.progress import pulse
 
 System = Callable[[Array], tuple[Array, Array]]
 """x (N, k) to residuals (N, p) and their derivatives (N, p, k)."""
@@ -41,6 +42,7 @@ def solve(
     damping = np.full(len(x), 1e-2)
     stalled = np.zeros(len(x), dtype=np.int64)
     for _ in range(iterations):
+        pulse()
         active = np.flatnonzero((norm > goal) & (stalled < 8))
         if not len(active):
             break

@@ -142,7 +142,7 @@ class Diagnosis(Answer):
         verdict = f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"
         if self.agrees:
             text = f"{verdict}, largest relative error {self.error_before:.2g}"
-            return Introduction(text, self.remarks, mood="good")
+            return Introduction(text, tuple(self.remarks), mood="good")
         if self.causes:
             best = self.causes[0]
             errors = f"before {self.error_before:.3g}, after {best.error_after:.2g}"

@@ -39,7 +39,12 @@ class Task:
     @property
     def ships(self) -> bool:
         """Whether formula and mechanism come with kinlab, so that names say all."""
-        return not self.file and (isinstance(self.robot, str) or self.name in shipped())
+        if self.file:
+            return False
+        # a robot of a shipped name may be another one, such as the same arm with another tool
+        return isinstance(self.robot, str) or (
+            self.name in shipped() and self.robot is SERIAL.load(self.name)
+        )
 
     @property
     def label(self) -> str:

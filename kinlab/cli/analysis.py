@@ -137,8 +137,6 @@ def workspace(
     output: PICTURE = None,
 ) -> None:
     """Sample the workspace with a measure of dexterity; Ctrl-C keeps what was computed."""
-    from rich.progress import Progress
-
     from kinlab.model.library import load
     from kinlab.sweeps.workspace import sample_workspace
 
@@ -146,20 +144,17 @@ def workspace(
     if metric == "solutions":
         _solutions(robot, output)
         return
-    with Progress(console=screen(stderr=True), transient=True) as bar:
-        row = bar.add_task("sampling", total=samples)
-        chart = sample_workspace(
-            robot,
-            _task(task),
-            metric,
-            samples=samples,
-            sampling=sampling,
-            length=length,
-            seed=seed,
-            progress=lambda done, total: bar.update(row, completed=done, total=total),
-            workers=workers,
-            folder=folder,
-        )
+    chart = sample_workspace(
+        robot,
+        _task(task),
+        metric,
+        samples=samples,
+        sampling=sampling,
+        length=length,
+        seed=seed,
+        workers=workers,
+        folder=folder,
+    )
     console.print(tables.headline(robot, chart.task, task == "auto"), highlight=False)
     if not chart.complete:
         console.print(f"stopped after {len(chart.values)} samples", style="yellow")

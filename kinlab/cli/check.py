@@ -13,6 +13,7 @@ from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
 from kinlab.errors import KinlabError
+from kinlab.host.progress import progress
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -185,27 +186,23 @@ def _run(
     todo: Sequence[Task], samples: int, seed: int, helpers: Helpers | None, found: _Found
 ) -> None:
     """Runs the tasks; what they say stands in the order of the tasks."""
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
     from kinlab.check.catalogue import Row
     from kinlab.check.together import run_together
     from kinlab.check.unread import Unread
 
     def one(task: Task) -> Row | Diagnosis | Unread:
-        progress.update(bar, description=visible(task.label))
+        tell(len(done), visible(task.label))
         try:
             return _one(task, samples, seed)
         except KinlabError as problem:
             place = f"{task.file}: {task.record.key}" if task.file else task.name
             return Unread(place, problem)
 
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
     done: dict[int, Row | Diagnosis | Unread] = {}
-    with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
-        bar = progress.add_task("", total=len(todo))
+    with progress("check", len(todo)) as tell:
         for place, answer in run_together(todo, one, samples, seed, helpers):
             done[place] = answer
-            progress.advance(bar)
+            tell(len(done))
     for place in range(len(todo)):
         answer = done[place]
         if isinstance(answer, Row):

@@ -86,10 +86,10 @@ def ik(
         shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
         echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
     echo(
-        f"{answer.status}, task {answer.task}: "
+        f"{answer.status}: "
         f"position error {1e3 * answer.position_error:.3g} mm, rotation error "
         f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
-        f"{answer.restarts} restarts"
+        f"{answer.restarts} restarts, task {answer.task}"
     )
     for remark in answer.remarks:
         echo(f"note: {remark}")

@@ -7,8 +7,9 @@ from typing import Annotated
 
 import typer
 
-from kinlab.cli.screen import echo, screen, visible
+from kinlab.cli.screen import echo, visible
 from kinlab.errors import OptionError
+from kinlab.host.progress import progress
 
 SHEET = Annotated[Path, typer.Argument(help="The sheet: a TOML file of questions.")]
 SUBMISSIONS = Annotated[
@@ -58,14 +59,10 @@ def mark(
         return
     if submissions is None:
         raise OptionError("mark: submissions are missing; name their folder, or use --handout")
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-    columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}", markup=False))
-    with Progress(*columns, console=screen(stderr=True), transient=True) as progress:
-        bar = progress.add_task("", total=None)
+    with progress("mark") as tell:
 
         def show(done: int, total: int, name: str) -> None:
-            progress.update(bar, completed=done, total=total, description=visible(name))
+            tell(done, f"{done} of {total}  {visible(name)}")
 
         marks = mark_all(
             read,

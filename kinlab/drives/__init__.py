@@ -10,6 +10,8 @@ module       what it holds
 ``fitting``  Motors and gears against what a duty asks: pairs that can be bought, or the ratio that
              suits
 ``gears``    Gearboxes as data, and a drive: one motor behind one gearbox
+``laws``     Time laws along a way of length 1: trapezoid of the velocity, and the polynomial of
+             degree five
 ``motors``   Servomotors as data: the catalogue in ``robots/fivebar/motors.toml`` and files of
              one's own
 ``records``  Catalogues of one's own: TOML or CSV files of motors and gearboxes, read with every

@@ -25,6 +25,7 @@ from typing import Any
 from kinlab.arrays import whole
 from kinlab.errors import OptionError
 from kinlab.host.processes import cores
+from kinlab.host.progress import pulse
 
 VARIABLE = "KINLAB_THREADS"
 """Environment variable that limits the threads of a batch."""
@@ -151,6 +152,7 @@ def over_rows(
     waiting = [pool.submit(partial(function, *arguments, *each)) for each in ranges]
     for each, future in zip(ranges, waiting, strict=True):
         future.result()
+        pulse()
         if then is not None:
             then(*each)
 

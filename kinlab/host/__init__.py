@@ -8,7 +8,8 @@ module             what it holds
 ``files``          Files are read with a clear error and written whole or not at all
 ``introductions``  Answers introduce themselves: the verdict first, then the numbers that matter
 ``processes``      Processes of ours end with the process that started them, however that one ends
-``progress``       How far a long calculation is: one line on a terminal or in a notebook
+``progress``       How far a long calculation is: one line on a terminal or in a notebook, nothing
+                   elsewhere
 ``version``        The version of the package
 ``web``            What every page we write has in common: a policy that runs our own scripts and no
                    others

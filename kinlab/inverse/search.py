@@ -19,6 +19,7 @@ from kinlab.errors import OptionError
 from kinlab.fast.compiled import kernel as compiled
 from kinlab.fast.stacks import jacobian
 from kinlab.fast.threads import over_rows
+from kinlab.host.progress import takes_long
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.branch_names import matching
 from kinlab.inverse.branches import IKBranches, ik_branches
@@ -157,6 +158,7 @@ def ik(
     )
 
 
+@takes_long("inverse kinematics")
 def ik_batch(
     robot: ArmLike,
     Ts: ArrayLike,

@@ -17,8 +17,8 @@ from multiprocessing.connection import wait
 from pathlib import Path
 from typing import Any
 
-from kinlab.arrays import shown, whole
-from kinlab.errors import FileError, KinlabError, OptionError, near
+from kinlab.arrays import shown, whole, word
+from kinlab.errors import FileError, KinlabError
 from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
 from kinlab.host.processes import end_with_parent
@@ -27,7 +27,7 @@ from kinlab.marking.judge import Outcome, check_answers, judge, lost
 from kinlab.marking.marks import Mark, Marks, slug_of
 from kinlab.marking.program import judge_program
 from kinlab.marking.results import write_marks
-from kinlab.marking.sheet import FEEDBACK, Sheet, read_sheet, sheet_of
+from kinlab.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
 from kinlab.marking.submission import Submission, found_in, of_document, read_submission
 
 SECONDS = 90.0
@@ -65,13 +65,14 @@ def mark(
     Raises:
         SheetError: the sheet cannot be used.
         FileError: no submissions, or the output cannot be written.
-        OptionError: an unknown feedback, or workers below 1.
+        NameUnknownError: no such feedback.
+        OptionError: workers below 1.
     """
     read = _sheet(sheet)
     check_answers(read)
-    level = feedback or read.feedback
-    if level not in FEEDBACK:
-        raise OptionError(f"feedback is {level!r}; {near(str(level), FEEDBACK)}")
+    level = read.feedback if feedback is None else word(feedback, FEEDBACK, "feedback")
+    if output is not None and not isinstance(output, (str, Path)):
+        raise FileError(f"output is {shown(output)}; give a folder")
     count = whole(workers, "workers") if workers is not None else (os.cpu_count() or 1)
     if isinstance(submissions, Mapping):
         done = [_of_mapping(read, who, given, level) for who, given in submissions.items()]
@@ -88,6 +89,8 @@ def _sheet(sheet: str | Path | Mapping[str, Any] | Sheet) -> Sheet:
         return sheet
     if isinstance(sheet, Mapping):
         return sheet_of(sheet, "sheet", json.dumps(sheet, sort_keys=True, default=str))
+    if not isinstance(sheet, (str, Path)):
+        raise SheetError(f"sheet is {shown(sheet)}; give a path, or what its file would hold")
     return read_sheet(sheet)
 
 

@@ -148,7 +148,7 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
     _refuse_unknown(document, _SHEET, place)
     robot = _robot(document, place)
     feedback = document.get("feedback", "place")
-    if feedback not in FEEDBACK:
+    if not isinstance(feedback, str) or feedback not in FEEDBACK:
         raise SheetError(f"{place}: feedback is {feedback!r}; {near(str(feedback), FEEDBACK)}")
     slips = _slips(document.get("slips", {}), f"{place}: [slips]")
     rows = document.get("questions")

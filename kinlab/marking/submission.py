@@ -74,8 +74,12 @@ def found_in(folder: str | Path) -> list[Path]:
         FileError: no such folder, or nothing in it that could be a submission.
     """
     root = Path(folder)
-    if not root.is_dir():
-        raise FileError(f"{root}: no such folder of submissions")
+    try:
+        exists = root.is_dir()
+    except (OSError, ValueError):  # no name of a file
+        exists = False
+    if not exists:
+        raise FileError(f"{str(folder)!r}: no such folder of submissions")
     files = []
     for path in sorted(root.iterdir(), key=lambda p: p.name):
         if path.name.startswith("."):

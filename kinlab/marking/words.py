@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
+
+_WORDS = re.compile(r"[a-z]{3,}(?: [a-z]+){0,4}")
+"""A kind that speaks for itself, and surely is no formula."""
 
 KINDS: dict[str, str] = {
     "sign": "a sign is the other way",
@@ -29,6 +33,10 @@ KINDS: dict[str, str] = {
     "turning sense": "a joint is counted the other way round",
     "degrees": "degrees and radians are mixed",
     "absolute angles": "joint angles and angles from the base are mixed",
+    "order": "the transforms are multiplied in another order",
+    "slide as hinge": "a slide is treated as a hinge",
+    "hinge as slide": "a hinge is treated as a slide",
+    "slide left out": "a slide is left out",
     "joint order": "the joints are counted from the tool",
     "frame": "the frame or the point it refers to is another",
     "inverse": "it is the inverse of what is asked",
@@ -81,7 +89,12 @@ KINDS: dict[str, str] = {
 """Kinds of slips, as a sheet may name them, with what is said of them."""
 
 
+def _phrase(kind: str) -> str:
+    named = kind if _WORDS.fullmatch(kind) else KINDS["other"]
+    return KINDS.get(kind, named)
+
+
 def told(kinds: Iterable[str]) -> str:
     """Kinds of slips as one phrase."""
-    phrases = dict.fromkeys(KINDS.get(kind, KINDS["other"]) for kind in kinds)
+    phrases = dict.fromkeys(_phrase(kind) for kind in kinds)
     return "; ".join(phrases)

@@ -239,8 +239,8 @@ def remarks(robot: Robot) -> tuple[str, ...]:
     rough = [name for name, viscous, coulomb in losses if viscous or coulomb]
     if rough:
         said.append(
-            f"joint friction of {_listed(rough)}: counted in simulations, and in inverse_dynamics "
-            "and forward_dynamics with friction=True; left out otherwise"
+            f"joint friction of {_listed(rough)}: counted in simulations, in drives for motions, "
+            "and with friction=True in inverse_dynamics and forward_dynamics; left out otherwise"
         )
     bodies = list(_moving_bodies(robot))
     points = [name for name, mass, inertia in bodies if mass and not inertia.any()]

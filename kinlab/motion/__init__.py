@@ -5,12 +5,12 @@ module            what it holds
 ================  ================================================================================
 ``checks``        What a motion meets on its way: limits, singularities, changes of branch; said
                   where and when
+``follow``        Joint positions along a way of the tool: on one branch, clear of singularities,
+                  or refused
 ``jerk_limited``  Jerk-limited motions from point to point by ruckig (the optional extra
                   ``motion``)
 ``joint_space``   Motions between joint positions: trapezoid, quintic, spline, jerk-limited,
                   time-optimal
-``laws``          Time laws along a way of length 1: trapezoid of the velocity, and the polynomial
-                  of degree five
 ``limits``        Limits of a motion: read at the door, held exactly, and what would hold them
                   where they break
 ``record``        ``Motion``: joint positions, velocities and accelerations over time, exact

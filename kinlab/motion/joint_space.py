@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly, make_interp_spline
 
 from kinlab.arrays import Array, number, word
+from kinlab.drives import laws
 from kinlab.engine.states import joint_vector
 from kinlab.errors import LimitError, OptionError, StateError
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.motion import jerk_limited, laws, time_optimal
+from kinlab.motion import jerk_limited, time_optimal
 from kinlab.motion.limits import Limits, read_limits, require_limits, stretch_to
 from kinlab.motion.record import Motion, motion_of, pieces_of, stretch
 from kinlab.tolerances import TOLERANCES

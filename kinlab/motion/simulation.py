@@ -34,6 +34,8 @@ Torque = Callable[[float, Array, Array], ArrayLike]
 
 _MOST_CHANGES = 5_000
 """Instants at which joints stop or break loose before a simulation is given up."""
+_MOST_AT_ONCE = 60
+"""The same within a millionth of the duration."""
 _REST = 1e-10
 """rad/s or m/s below which a joint with friction counts as at rest where it turns round."""
 
@@ -182,7 +184,7 @@ class _Arm:
         self.mode = np.zeros(robot.n)
 
     def run(self, q: Array, v: Array, times: Array) -> Simulation:
-        n, here, changes = self.robot.n, times[0], 0
+        n, here, changes, at_once = self.robot.n, times[0], 0, 0
         state = np.concatenate([q, v, np.zeros(3)])
         rows: list[Array] = []
         modes: list[Array] = []
@@ -198,11 +200,12 @@ class _Arm:
             modes.extend([self.mode.copy()] * len(ran.rows[keep:]))
             if not ran.stopped or len(rows) == len(times):
                 break
+            at_once = at_once + 1 if ran.t - here < 1e-6 * times[-1] else 0
             here, state, changes = ran.t, ran.state.copy(), changes + 1
-            if changes > _MOST_CHANGES:
+            if changes > _MOST_CHANGES or at_once > _MOST_AT_ONCE:
                 raise OptionError(
-                    f"robot {self.robot.name!r}: joints stop and break loose more than "
-                    f"{_MOST_CHANGES} times by t = {here:.6g} s; soften the torque's gains"
+                    f"robot {self.robot.name!r}: joints stop and break loose without end at t = "
+                    f"{here:.6g} s ({changes} times so far); soften the torque's gains"
                 )
             turned = (self.mode != 0.0) & (self.mode * state[n : 2 * n] <= _REST)
             state[n : 2 * n][turned] = 0.0

@@ -8,33 +8,24 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, word
+from kinlab.drives import laws
 from kinlab.engine.kinematics import jacobian_dot
-from kinlab.errors import OptionError, SingularError, UnreachableError
+from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk, jacobian
-from kinlab.inverse.search import ik
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.motion import laws
+from kinlab.motion.follow import follow, pose_error
 from kinlab.motion.joint_space import STEP
 from kinlab.motion.limits import read_limits, require_limits
 from kinlab.motion.record import Motion, even_times, hermite, motion_of
 from kinlab.motion.ways import Leg, TimedWay, read_legs
-from kinlab.postures.path import IKPath, ik_path
 from kinlab.structure.task_space import TaskSpace, read_reachable_task
 
 _DENSE = 4001
 """Times at which the tool's speed and acceleration are compared with their limits."""
-_TOLERANCE = 1e-10
-"""m and rad of the inverse kinematics at the samples."""
-_LOST = 1e-4
-"""sigma_min / sigma_max of J, metres over the arm's length, at which a way is refused: joint
-rates are then 10⁴ times the tool's."""
-_ROWS = 20
-"""Poses that are followed at a time: a way that ends is not searched on beyond its end."""
 _LEAST = 200
 """Samples inside a motion, whatever its step: the joints' curve is fitted through them."""
 
@@ -116,7 +107,7 @@ def cartesian(
     space = read_reachable_task(robot, task)
     times = _sample_times(way, step)
     goals, _, _ = way.at(times)
-    q = _follow(robot, space, way, times, goals, q0, seed)
+    q = follow(robot, space, way, times, goals, q0, seed)
     curve = _joint_curve(space, way, times, q)
     require_limits(robot, curve, read_limits(robot, joint_velocity, joint_acceleration))
     miss, turn = _miss(space, way, times, curve)
@@ -223,125 +214,6 @@ def _sample_times(way: TimedWay, step: float) -> Array:
 # -------- Joints
 
 
-def _follow(
-    robot: Robot,
-    space: TaskSpace,
-    way: TimedWay,
-    times: Array,
-    goals: Array,
-    q0: ArrayLike | None,
-    seed: int,
-) -> Array:
-    """Joint positions at the times, (N, n), on one branch and clear of singularities."""
-    mask = [row in space.rows for row in range(6)]
-    begin = ik(robot, goals[0], q0, "lm", _TOLERANCE, _TOLERANCE, seed, task=mask)
-    if not begin.success:
-        raise UnreachableError(_unreachable(robot, goals[0], 0.0, begin, None))
-    if space.m < robot.n:
-        q = _with_spare_joints(robot, space, way, times, goals, begin.q)
-    else:
-        q = _on_one_branch(robot, space, times, goals, begin.q, seed)
-    _require_one_side(robot, space, times, goals, q)
-    return q
-
-
-def _on_one_branch(
-    robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, seed: int
-) -> Array:
-    """:func:`kinlab.ik_path` from q on, some rows at a time, up to the first that ends the way."""
-    mask = [row in space.rows for row in range(6)]
-    rows = [q[np.newaxis]]
-    for first in range(0, len(goals), _ROWS):
-        part = slice(first, first + _ROWS)
-        found = ik_path(robot, goals[part], rows[-1][-1], _TOLERANCE, _TOLERANCE, seed, task=mask)
-        ended = np.flatnonzero(found.conditioning < _LOST)
-        bad = np.union1d(np.flatnonzero(~found.success), found.jumps).astype(int)
-        if len(ended) and (not len(bad) or ended[0] < bad[0]):
-            row = first + int(ended[0])
-            raise SingularError(_singular(robot, space, times, goals, found.q[ended[0]], row))
-        if len(bad):
-            _refuse_row(robot, times, goals, found, int(bad[0]), first, mask)
-        rows.append(found.q)
-    return np.concatenate(rows[1:])
-
-
-def _refuse_row(
-    robot: Robot, times: Array, goals: Array, found: IKPath, bad: int, first: int, mask: list[bool]
-) -> None:
-    """Says why a row of a path cannot be had: another branch, or out of reach."""
-    row = first + bad
-    before = None if row == 0 else (float(times[row - 1]), goals[row - 1])
-    if bad in found.jumps and found.success[bad] and before is not None:
-        raise UnreachableError(
-            f"robot {robot.name!r}: {_place(times[row], goals[row])}, the way goes on only on "
-            f"another branch; {_until(*before)}"
-        )
-    answer = ik(robot, goals[row], found.q[max(bad - 1, 0)], task=mask)
-    raise UnreachableError(_unreachable(robot, goals[row], times[row], answer, before))
-
-
-def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array) -> None:
-    """Refuses a way whose det J changes its sign between samples, or that all but loses rank.
-
-    Raises:
-        SingularError: when and where.
-    """
-    jac = space.jacobian(q, space.scale)
-    values = np.linalg.svd(jac, compute_uv=False)
-    lost = values[:, -1] < _LOST * values[:, 0]
-    if space.m == robot.n:
-        sign = np.sign(np.linalg.det(jac))
-        lost |= np.concatenate([[False], sign[1:] != sign[:-1]])
-    if lost.any():
-        raise SingularError(
-            _singular(robot, space, times, goals, q[int(np.argmax(lost))], int(np.argmax(lost)))
-        )
-
-
-def _with_spare_joints(
-    robot: Robot, space: TaskSpace, way: TimedWay, times: Array, goals: Array, q: Array
-) -> Array:
-    """The least-norm motion qdot = J⁺ V from q on, kept on the poses by Newton steps."""
-    rows = [q]
-    for k in range(1, len(times)):
-        step = times[k] - times[k - 1]
-        middle = 0.5 * (times[k] + times[k - 1])
-        _, twists, _ = way.at(np.array([times[k - 1], middle, times[k]]))
-        k1 = _least(space, q, twists[0])
-        k2 = _least(space, q + 0.5 * step * k1, twists[1])
-        k3 = _least(space, q + 0.5 * step * k2, twists[1])
-        k4 = _least(space, q + step * k3, twists[2])
-        q = q + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
-        for _ in range(8):
-            error = pose_error(fk(robot, q), goals[k])[list(space.rows)]
-            if np.abs(error).max() <= _TOLERANCE:
-                break
-            q = q + np.linalg.pinv(jacobian(robot, q)[list(space.rows)]) @ error
-        else:
-            raise SingularError(_singular(robot, space, times, goals, rows[-1], k - 1))
-        outside = (q < robot.lower - 1e-9) | (q > robot.upper + 1e-9)
-        if outside.any():
-            name = robot.joint_names[int(np.argmax(outside))]
-            raise UnreachableError(
-                f"robot {robot.name!r}: {_place(times[k], goals[k])}, {name} reaches its limit "
-                f"when the spare joints move least; {_until(times[k - 1], goals[k - 1])}"
-            )
-        rows.append(q)
-    return np.array(rows)
-
-
-def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
-    rows = list(space.rows)
-    out: Array = np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
-    return out
-
-
-def pose_error(here: Array, goal: Array) -> Array:
-    """What moves one pose to another, (6,), linear first, in base axes."""
-    turn = here[:3, :3] @ np.asarray(pin.log3(here[:3, :3].T @ goal[:3, :3]))
-    return np.concatenate([goal[:3, 3] - here[:3, 3], turn])
-
-
 def _joint_curve(space: TaskSpace, way: TimedWay, times: Array, q: Array) -> Any:
     """Velocities J⁺ V and accelerations at the samples, on both sides of each, as one curve."""
     rows = list(space.rows)
@@ -371,42 +243,3 @@ def _miss(space: TaskSpace, way: TimedWay, times: Array, curve: Any) -> tuple[fl
     errors = np.abs([pose_error(one, two) for one, two in zip(have, goals, strict=True)])
     errors[:, [row for row in range(6) if row not in space.rows]] = 0.0
     return float(errors[:, :3].max()), float(errors[:, 3:].max())
-
-
-# -------- What is said where a way cannot be had
-
-
-def _place(t: float, pose: Array) -> str:
-    x, y, z = pose[:3, 3]
-    return f"at t = {t:.4g} s, tool at ({x:.4g}, {y:.4g}, {z:.4g}) m"
-
-
-def _until(t: float, pose: Array) -> str:
-    x, y, z = pose[:3, 3]
-    return f"the way can be had until t = {t:.4g} s, ({x:.4g}, {y:.4g}, {z:.4g}) m"
-
-
-def _unreachable(
-    robot: Robot, goal: Array, t: float, answer: Any, before: tuple[float, Array] | None
-) -> str:
-    near = fk(robot, answer.q)[:3, 3]
-    status = str(answer.status.value).replace("_", " ")
-    text = (
-        f"robot {robot.name!r}: {_place(t, goal)}, the pose cannot be had ({status}: "
-        f"{answer.position_error:.3g} m and {answer.rotation_error:.3g} rad off); the nearest "
-        f"found has the tool at ({near[0]:.4g}, {near[1]:.4g}, {near[2]:.4g}) m"
-    )
-    return text if before is None else f"{text}; {_until(*before)}"
-
-
-def _singular(
-    robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, row: int
-) -> str:
-    values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
-    text = (
-        f"robot {robot.name!r}: {_place(times[row], goals[row])}, the way meets a singularity of "
-        f"task {space.name}: sigma_min / sigma_max is {values[-1] / values[0]:.2g}"
-    )
-    if row == 0:
-        return f"{text}; start from another pose or branch (q0)"
-    return f"{text}; {_until(times[row - 1], goals[row - 1])}"

@@ -18,8 +18,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, rigid_transform, shaped
+from kinlab.drives import laws
 from kinlab.errors import OptionError
-from kinlab.motion import laws
 
 
 @dataclass(frozen=True)

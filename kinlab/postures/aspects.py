@@ -23,6 +23,7 @@ from kinlab.analysis.minors import Factor, factors
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.postures.cuspidality import square_task, yes_or_no
@@ -117,6 +118,7 @@ class Aspects:
         return numbers if len(numbers) == len(found) else None
 
 
+@takes_long("aspects")
 def aspects(robot: ArmLike, *, limits: bool = True) -> Aspects:
     """The regions of joint space that singularities do not cut.
 
@@ -258,6 +260,7 @@ def _signs(part: Factor, lower: Array, cell: Array, counts: Any) -> Any:
         value = np.empty(len(origins))
         reach = np.empty(len(origins))
         for i in range(0, len(origins), 4096):
+            pulse()
             some = origins[i : i + 4096]
             half = np.broadcast_to(0.5 * size * cell, some.shape)
             over = part.enclosures(lower + (some + 0.5 * size) * cell, half)

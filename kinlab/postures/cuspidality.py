@@ -26,6 +26,7 @@ from kinlab.arrays import Array, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
 from kinlab.fast.stacks import fk
+from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.branches import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -87,6 +88,7 @@ class _Pairs:
     sides: tuple[tuple[int, ...], ...]
 
 
+@takes_long("changes of posture")
 def is_cuspidal(
     robot: ArmLike,
     *,
@@ -126,7 +128,7 @@ def is_cuspidal(
     drawn = rng.uniform(draw_low, draw_high, (count, robot.n))
     special = _near_cusps(robot, rng)
     drawn = np.concatenate([drawn, np.clip(special, draw_low, draw_high)])
-    tell = progress or (lambda what, done, total: None)
+    tell = progress or (lambda what, done, total: pulse())
     tell("poses", 0, count)
     pairs = _pairs(space, parts, drawn, low, high)
     tell("poses", count, count)

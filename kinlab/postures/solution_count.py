@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import real_array, whole
+from kinlab.host.progress import takes_long
 from kinlab.inverse.branches import IKBranches, ik_branches
 from kinlab.inverse.families import IKFamily
 from kinlab.model.library import ArmLike, as_robot
@@ -64,6 +65,7 @@ class SolutionCounts:
         return _of_one(self._batch[row])
 
 
+@takes_long("solutions")
 def solution_count(robot: ArmLike, T: ArrayLike, *, threads: int | None = None) -> Any:
     """How many joint positions bring the tool to T.
 

@@ -11,6 +11,7 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import Array, number, whole
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk
+from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.postures.regional import (
@@ -79,6 +80,7 @@ class SolutionMap:
         )
 
 
+@takes_long("map of solutions")
 def solution_map(robot: ArmLike, *, cells: int = 160, angle: float = 0.0) -> SolutionMap:
     """Counts the solutions over a section of the workspace.
 

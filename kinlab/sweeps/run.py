@@ -5,9 +5,8 @@ from __future__ import annotations
 import hashlib
 import pickle
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor
-from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,7 @@ from kinlab.arrays import Array
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.fast.threads import available
 from kinlab.host.introductions import MOST_ROWS, Introduction, Rows, counted, numbered
+from kinlab.host.progress import progress as line
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.sweeps.measures import Measure, describe, read_measure
@@ -161,7 +161,7 @@ def sweep(
     workers: int | None = None,
     chunk: int = 4 * BLOCK,
     folder: str | Path | None = None,
-    progress: bool = False,
+    progress: bool | None = None,
 ) -> SweepResult:
     """Evaluates a measure over very many states or designs.
 
@@ -187,7 +187,8 @@ def sweep(
         chunk: states handed to a worker at once, rounded up to whole blocks.
         folder: keep finished chunks there as ``.npz`` parts. A sweep that was stopped goes on
             from them; memory is then bounded by the chunks in flight.
-        progress: show a bar on stderr.
+        progress: a line on stderr that says how far it is; left out, on a terminal and in a
+            notebook, after two seconds.
 
     Returns:
         The answers by name (``result["condition"]``; a plain array is named ``"value"``).
@@ -211,9 +212,9 @@ def sweep(
         chunk=chunk,
         folder=folder,
     )
-    with _bar(progress, work.samples.count) as show:
+    with line("sweep", work.samples.count, progress, unit="states") as tell:
         for done in work.steps:
-            show(done)
+            tell(done)
     runs = work.parts.runs()
     assert runs and not missing(runs, runs[-1][1], runs[-1][1])
     return SweepResult(tuple(work.parts.read(runs[0])), work.samples, work.parts)
@@ -357,25 +358,3 @@ def _whole(value: int, what: str, unit: int) -> int:
 
 def _rows(run: Run, count: int) -> int:
     return min(run[1] * BLOCK, count) - run[0] * BLOCK
-
-
-def _bar(show: bool, total: int) -> AbstractContextManager[Callable[[int], None]]:
-    return _rich_bar(total) if show else nullcontext(lambda _: None)
-
-
-@contextmanager
-def _rich_bar(total: int) -> Iterator[Callable[[int], None]]:
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeRemainingColumn,
-    )
-
-    console = Console(stderr=True)
-    columns = ("sweep", BarColumn(), MofNCompleteColumn(), TextColumn("states"))
-    with Progress(*columns, TimeRemainingColumn(), console=console) as bar:
-        task = bar.add_task("sweep", total=total)
-        yield lambda done: bar.update(task, completed=done)

@@ -19,6 +19,7 @@ from kinlab.engine.dynamics import mass_matrix
 from kinlab.errors import FileError, NameUnknownError, OptionError
 from kinlab.fast.stacks import fk
 from kinlab.host.files import write_bytes
+from kinlab.host.progress import progress as line
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.structure.task_space import TaskSpace, read_length, read_task, search_box
@@ -156,7 +157,8 @@ def sample_workspace(
         sampling: ``"random"`` (uniform in joint space) or ``"grid"`` (limits included).
         length: characteristic length in metres.
         seed: of the random states.
-        progress: called with (done, total).
+        progress: called with (done, total); left out, a line says how far it is, as in
+            :func:`kinlab.sweep`.
         workers, executor, folder: as in :func:`kinlab.sweep`.
 
     Raises:
@@ -173,9 +175,12 @@ def sample_workspace(
     measure = DexterityMeasure(space.rows, metric, size)
     sweep = plan(robot, measure, states, workers=workers, executor=executor, folder=folder)
     try:
-        for done in sweep.steps:
-            if progress is not None:
-                progress(done, len(states))
+        show = None if progress is None else False
+        with line("workspace", len(states), show, unit="samples") as tell:
+            for done in sweep.steps:
+                tell(done)
+                if progress is not None:
+                    progress(done, len(states))
     except KeyboardInterrupt:
         pass  # what was computed is the answer, and says that it is a part
     kept = [sweep.parts.read(run) for run in sweep.parts.runs()]

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
+from kinlab.drives.laws import rising
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot
@@ -178,8 +179,7 @@ def _tool_path(robot: Robot, corners: Array) -> Array:
         raise StructureError(
             f"robot {robot.name!r}: its tool cannot move freely in a plane; use the motion 'sweep'"
         )
-    pace = np.linspace(0.0, 1.0, _STEPS // (len(corners) - 1))
-    pace = pace**3 * (10.0 - 15.0 * pace + 6.0 * pace**2)  # at rest in every corner
+    pace, _, _ = rising(np.linspace(0.0, 1.0, _STEPS // (len(corners) - 1)))  # rests in corners
     legs = [one + pace[:, None] * (two - one) for one, two in pairwise(corners)]
     shape = np.vstack([legs[0], *(leg[1:] for leg in legs[1:])])
     for q in _comfortable(robot, rows):

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.check.targets import tasks
+from kinlab.check.targets import Task, tasks
 from kinlab.check.together import Helpers, run_together
 from kinlab.engine import lagrange
 from kinlab.host.answers import answers_kept, once
@@ -81,6 +81,8 @@ def test_a_users_own_table_is_never_handed_over(tmp_path):
     mine, shipped = tasks([str(tmp_path / "panda.toml")]), tasks(["panda"])
     assert not any(task.ships for task in mine)
     assert all(task.ships for task in shipped)
+    other = kl.with_payload(kl.load("panda"), 1.0)
+    assert not any(Task(task.record, other, "panda").ships for task in shipped)
 
 
 def test_what_is_kept_is_a_copy_and_ends_with_the_block():

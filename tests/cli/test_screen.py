@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import io
+from copy import deepcopy
+
 import pytest
 from console import kinlab
+from rich.table import Table
 
-from kinlab.cli.screen import visible
+from kinlab.cli.screen import screen, visible
 
 TABLE = """
 name = "[/bold]{x}"
@@ -47,3 +51,42 @@ def test_an_error_is_one_short_line(tmp_path):
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert "\x1b" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("list",), ("check", "--quantities"), ("fivebar", "list"),
+        ("info", "erd:ur5"), ("info", "panda"), ("info", "stanford"),
+    ],
+    ids=" ".join,
+)  # fmt: skip
+def test_no_table_cuts_a_name_at_80_columns(words, monkeypatch):
+    wide, narrow = (kinlab(*words, columns=columns) for columns in (400, 80))
+    assert wide.returncode == narrow.returncode == 0
+    assert "…" not in narrow.stdout
+    assert max(len(line) for line in narrow.stdout.splitlines()) <= 80
+    assert letters(narrow.stdout) == letters(wide.stdout)  # all of it, on more lines
+
+
+def letters(text):
+    return sorted(c for c in text if not c.isspace() and c not in "─")
+
+
+def test_a_table_is_broken_between_words_then_in_names_then_anywhere():
+    table = Table(box=None, pad_edge=False)
+    for name in ("joint", "size", "about"):
+        table.add_column(name, no_wrap=True, justify="right" if name == "size" else "left")
+    table.add_row("shoulder_pan_joint", "1.234e-05", "turns the whole arm about the vertical")
+    seen = {}
+    for width in (70, 40, 32, 12):
+        out = io.StringIO()
+        table = deepcopy(table)
+        screen(file=out, width=width).print(deepcopy(table))
+        seen[width] = out.getvalue()
+        assert "…" not in seen[width]
+        assert letters(seen[width]) == letters(
+            "joint size about shoulder_pan_joint 1.234e-05 turns the whole arm about the vertical"
+        )
+    assert "shoulder_pan_joint" in seen[40] and "1.234e-05" in seen[40]
+    assert "shoulder_" in seen[32].split() and "1.234e-05" in seen[32]

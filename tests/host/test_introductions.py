@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import sys
 from html.parser import HTMLParser
 
@@ -21,7 +22,13 @@ POSE = kl.fk(ARM, [0.3, -0.4, 0.5, 0.2, 0.7, 0.1])
 def evil_table() -> kl.DHTable:
     rod = kl.DHLink(a=0.5, mass=1.0, com=(-0.2, 0, 0), inertia=0.01 * np.eye(3))
     names = {"source": EVIL, "tool_name": EVIL}
-    return kl.DHTable(EVIL, "standard", [rod, rod], gravity=(0, -9.81, 0), **names)
+    return kl.DHTable(
+        EVIL,
+        "standard",
+        [dataclasses.replace(rod, name=EVIL + "1"), rod],
+        gravity=(0, -9.81, 0),
+        **names,
+    )
 
 
 def evil(q):

@@ -95,11 +95,13 @@ def test_a_given_duration_is_kept_and_refused_where_it_is_too_short():
     motion = planned("quintic", duration=5.0)
     assert motion.duration == pytest.approx(5.0, rel=1e-12)
     with pytest.raises(LimitError, match=r"the same way holds it in") as refused:
-        planned("quintic", duration=1.0)
+        planned("quintic", duration=1.0, velocity=1.7)  # no round number of seconds
     least = float(str(refused.value).split("holds it in ")[1].split(" s")[0])
-    assert planned("quintic", duration=least).duration == least
+    assert planned("quintic", duration=least, velocity=1.7).duration == pytest.approx(
+        least, rel=1e-12
+    )
     with pytest.raises(LimitError):
-        planned("quintic", duration=least * 0.9999)
+        planned("quintic", duration=least * 0.9999, velocity=1.7)
     alone = kl.motion.joint(PUMA, POINTS[:2], "trapezoid", duration=3.0)
     assert alone.duration == pytest.approx(3.0)
     assert alone.peak_velocity.value[0] == pytest.approx(1.5 / 3.0)  # a third of the time each

@@ -8,8 +8,8 @@ import pytest
 from scipy.spatial.transform import Rotation, Slerp
 
 import kinlab as kl
+from kinlab.drives.laws import quintic
 from kinlab.errors import KinlabError, LimitError, OptionError, SingularError, UnreachableError
-from kinlab.motion.laws import quintic
 from kinlab.motion.ways import TimedWay, read_legs
 
 STARTS = {
@@ -30,9 +30,10 @@ def corners(name):
     flat = name == "planar2r"
     second[:3, 3] += [-0.1, 0.05, 0.0 if flat else 0.02]
     third[:3, 3] += [-0.06, -0.05, 0.0]
+    other = Rotation.from_rotvec([-0.1, 0.4, 0.2]).as_matrix()  # about another axis
     if robot.n >= 6:
         second[:3, :3] = first[:3, :3] @ TURN
-        third[:3, :3] = second[:3, :3] @ TURN
+        third[:3, :3] = second[:3, :3] @ other
     return robot, [first, second, third]
 
 
@@ -62,6 +63,23 @@ def test_the_joints_move_as_their_derivatives_say_and_the_tool_as_asked(name, la
     )
     assert speed.max() <= 0.2 * (1 + 1e-4)
     assert np.abs(motion.v[[0, -1]]).max() < 1e-6
+
+
+@pytest.mark.parametrize("name", STARTS)
+def test_velocities_and_accelerations_belong_to_the_positions_far_apart(name):
+    """Differences over 50 ms, five times the distance of the samples that the curve runs through.
+
+    Inside one interval the curve agrees with itself, whatever the samples say.
+    """
+    robot, poses = corners(name)
+    motion = kl.motion.cartesian(robot, poses[:2], q0=STARTS[name], duration=4.0)
+    assert len(motion.knots) == 401
+    h, t = 0.0125, np.random.default_rng(2).uniform(0.1, 3.9, 200)
+    beside = [motion.at(t + k * h) for k in (-2, -1, 1, 2)]
+    for order in (0, 1):
+        low, near, up, far = (x[order] for x in beside)
+        slope = (low - far + 8 * (up - near)) / (12 * h)  # error h⁴ times the fifth derivative / 30
+        np.testing.assert_allclose(slope, motion.at(t)[order + 1], rtol=0, atol=1e-5)
 
 
 def test_a_straight_leg_is_a_line_with_slerp():

@@ -17,8 +17,7 @@ ARM_NAMES = ("robot", "table")
 """What the first parameter of a function is called where it is an arm."""
 
 NOT_ARMS = {"load", "diagnose_table", "hand_formula", "mark"}
-"""load makes the robot; diagnose_table judges a table; hand_formula marks a function; mark reads a
-sheet that names its robot."""
+"""load makes the robot; diagnose_table judges a table; hand_formula and mark are of formulas."""
 
 SMALL: dict[str, dict[str, object]] = {
     "compare": {"quantity": "gravity_torques", "samples": 3},
@@ -31,6 +30,7 @@ SMALL: dict[str, dict[str, object]] = {
     "posture_path": {"nodes": 40},
     "sample_workspace": {"samples": 20},
     "solution_map": {"cells": 8},
+    "simulate": {"duration": 0.02},
     "sweep": {"measure": "position", "samples": 10},
     "singular_loci": {"joints": [0, 7]},
 }
@@ -66,11 +66,10 @@ def arguments(name: str, robot: kl.Robot) -> dict[str, object]:
         "one": q,
         "two": q + 0.05,
         "function": lambda q: 0.0 * np.asarray(q),
-        "weights": None,
-        "duration": 0.02,
         "mass": 0.5,
-        "motion": kl.motion.joint(robot, [q, q + 0.2], duration=1.0),
     }
+    if name == "size_servos":
+        known["motion"] = kl.motion.joint(robot, [q, q + 0.3], duration=1.0)
     if name == "action":
         times = np.linspace(0.0, 1.0, 5)[:, None]
         known.update(q=times * q, v=np.tile(q, (5, 1)), weights=np.full(5, 0.2))
@@ -135,14 +134,23 @@ def test_the_list_is_whole():
     assert len(NAMES) >= 55
 
 
-@pytest.mark.parametrize("thing", [None, 5, b"puma560", ["puma560"], kl.Robot, np.eye(4)])
-@pytest.mark.parametrize("name", NAMES)
-def test_what_is_no_arm_is_refused_by_every_function(name, thing):
+@pytest.mark.parametrize("name", [n for n in NAMES if n != "sweep"])  # that is of any object
+def test_what_is_no_arm_is_refused_by_every_function(name):
     given = arguments(name, kl.load("planar2r"))
-    if name == "sweep":
-        return  # of any object: see test_a_sweep_of_anything
-    with pytest.raises(KinlabError, match=r"no serial arm; give a Robot, a DHTable"):
-        getattr(kl, name)(thing, **given)
+    for thing in (None, 5, b"puma560", ["puma560"], kl.Robot, np.eye(4)):
+        with pytest.raises(KinlabError, match=r"no serial arm; give a Robot, a DHTable"):
+            getattr(kl, name)(thing, **given)
+
+
+@pytest.mark.parametrize("of", ["joint", "cartesian"])
+def test_motions_are_of_any_arm(of):
+    robot = kl.load("planar2r")
+    q = np.array([[0.3, 0.4], [0.5, 0.6]])
+    points = q if of == "joint" else kl.fk(robot, q)
+    given = {"duration": 1.0, **({} if of == "joint" else {"q0": q[0]})}
+    want = getattr(kl.motion, of)(robot, points, **given).q
+    for arm in ("planar2r", shipped()["planar2r"].path, robot.table, robot.model):
+        assert np.array_equal(getattr(kl.motion, of)(arm, points, **given).q, want)
 
 
 def test_a_sweep_of_anything():

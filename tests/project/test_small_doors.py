@@ -95,3 +95,31 @@ def test_what_is_nearly_a_file_or_a_robot(text, error, said):
             call()
         assert said in str(problem.value)
         assert len(str(problem.value)) < 300  # not the list of all robots
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("d =", r"line 8: 'd' has no value: d = 0\.5, or d = \"pi/2\""),
+        ("d = # later", r"line 8: 'd' has no value"),
+        ("d = pi/2", r"line 8: 'd' cannot be pi/2; text stands in quotes"),
+    ],
+)
+@pytest.mark.parametrize("end", ["", "\n", "\n\n[[links]]\n"])
+def test_a_key_without_a_value_is_named_with_its_line(tmp_path, row, said, end):
+    file = tmp_path / "arm.toml"
+    above = 'name = "x"\nconvention = "standard"\n[[links]]\njoint = "revolute"\na = 1\nalpha = 0\n'
+    file.write_text(f"{above}theta = 0\n{row}{end}", encoding="utf-8")
+    with pytest.raises(kl.KinlabError, match=said):
+        kl.load(file)
+
+
+def test_a_position_jacobian_is_told_of_the_rows_that_it_is():
+    def mine(q):
+        return kl.jacobian("spatial3r", q)[:3]
+
+    told = r"'jacobian\[:3\]', the last 'jacobian\[3:\]'"
+    with pytest.raises(kl.KinlabError, match=rf"shape \(3, 3\).*shape \(6, 3\).*{told}"):
+        kl.compare("spatial3r", "jacobian", mine, samples=3)
+    assert "'jacobian[:3]'" in str(kl.diagnose("spatial3r", "jacobian", mine, samples=10))
+    assert kl.compare("spatial3r", "jacobian[:3]", mine, samples=3).agrees

@@ -129,7 +129,7 @@ def assert_all_in_the_picture(page, robot, poses):
 
 
 def test_the_whole_of_a_motion_is_in_the_picture(tab, tmp_path):  # noqa: F811
-    robot = kl.load("scara")
+    robot = kl.load("stanford")
     scene = Scene(robot)
     shown = motions.motion(robot, "pick", scene.q)
     scene.animate(shown.q, shown.duration, shown.name)

@@ -19,6 +19,17 @@ QUINTIC_SPEED, QUINTIC_ACCELERATION = 1.875, 10.0 / np.sqrt(3.0)
 """Peaks of 10 τ³ - 15 τ⁴ + 6 τ⁵ over 1 in 1 s."""
 
 
+QUINTIC = np.array([6.0, -15.0, 10.0, 0.0, 0.0, 0.0])
+"""Coefficients of 6 τ⁵ - 15 τ⁴ + 10 τ³, the highest first."""
+
+
+def rising(tau: Array) -> tuple[Array, Array, Array]:
+    """10 τ³ - 15 τ⁴ + 6 τ⁵ from 0 to 1 and its first two derivatives, of any shape."""
+    orders = (np.asarray(np.polyder(QUINTIC, m), dtype=np.float64) for m in range(3))
+    s, speed, gain = (np.asarray(np.polyval(c, tau), dtype=np.float64) for c in orders)
+    return s, speed, gain
+
+
 def completed(speed: float, acceleration: float, size: float) -> tuple[float, float]:
     """Finite V and A where one of them, or both, are infinite.
 
@@ -50,7 +61,7 @@ def trapezoid(speed: float, acceleration: float) -> Any:
 def quintic(speed: float, acceleration: float) -> Any:
     """10 τ³ - 15 τ⁴ + 6 τ⁵: speed and acceleration start and end at zero."""
     time = max(QUINTIC_SPEED / speed, float(np.sqrt(QUINTIC_ACCELERATION / acceleration)))
-    powers = np.array([6.0, -15.0, 10.0, 0.0, 0.0, 0.0]) / time ** np.arange(5, -1, -1.0)
+    powers = QUINTIC / time ** np.arange(5, -1, -1.0)
     return PPoly(powers[:, np.newaxis], np.array([0.0, time]))
 
 
