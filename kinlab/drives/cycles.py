@@ -16,14 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, shaped
+from kinlab.drives.laws import QUINTIC_ACCELERATION, QUINTIC_SPEED, rising
 from kinlab.errors import OptionError
 
 LIFT, TRAVEL = 0.025, 0.305
 """The Adept cycle, m."""
-
-PEAK_SPEED = 1.875
-PEAK_ACCELERATION = 10.0 / np.sqrt(3.0)
-"""Peaks of the fifth-degree law over 1 m in 1 s."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +100,9 @@ def pick_and_place(
     if samples < 101:
         raise OptionError(f"cycle: samples is {samples}; it must be at least 101")
     lengths = np.array([lift, travel, lift])
-    spans = np.maximum(PEAK_SPEED * lengths / v_max, np.sqrt(PEAK_ACCELERATION * lengths / a_max))
+    spans = np.maximum(
+        QUINTIC_SPEED * lengths / v_max, np.sqrt(QUINTIC_ACCELERATION * lengths / a_max)
+    )
     starts = np.concatenate(
         [[0.0], np.cumsum(spans[:-1] - blend * np.minimum(spans[:-1], spans[1:]))]
     )
@@ -125,7 +124,5 @@ def pick_and_place(
 def superpose(start: Array, moves: Array, begins: Array, spans: Array, t: Array) -> Path:
     """The sum of moves (M, d), each by the fifth-degree law from its begin over its span."""
     tau = np.clip((t[:, None] - begins) / spans, 0.0, 1.0)
-    s = tau**3 * (10.0 - 15.0 * tau + 6.0 * tau**2)
-    s1 = 30.0 * tau**2 * (1.0 - tau) ** 2 / spans
-    s2 = 60.0 * tau * (1.0 - tau) * (1.0 - 2.0 * tau) / spans**2
-    return Path(t, start + s @ moves, s1 @ moves, s2 @ moves)
+    s, s1, s2 = rising(tau)
+    return Path(t, start + s @ moves, (s1 / spans) @ moves, (s2 / spans**2) @ moves)

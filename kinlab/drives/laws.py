@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import PPoly
 
 from kinlab.arrays import Array
 
@@ -28,6 +27,11 @@ def rising(tau: Array) -> tuple[Array, Array, Array]:
     orders = (np.asarray(np.polyder(QUINTIC, m), dtype=np.float64) for m in range(3))
     s, speed, gain = (np.asarray(np.polyval(c, tau), dtype=np.float64) for c in orders)
     return s, speed, gain
+
+
+def quintic_time(speed: Any, acceleration: Any) -> Any:
+    """Least time of the polynomial over a way of length 1 under V and A, s; elementwise."""
+    return np.maximum(QUINTIC_SPEED / speed, np.sqrt(QUINTIC_ACCELERATION / acceleration))
 
 
 def completed(speed: float, acceleration: float, size: float) -> tuple[float, float]:
@@ -47,6 +51,8 @@ def trapezoid(speed: float, acceleration: float) -> Any:
 
     T = 1/V + V/A, or 2/sqrt(A) where V is never reached (V² >= A).
     """
+    from scipy.interpolate import PPoly  # a third of a second, and only motions need it
+
     ramp = min(speed / acceleration, 1.0 / np.sqrt(acceleration))
     top = acceleration * ramp
     cruise = max(1.0 / top - ramp, 0.0)
@@ -60,7 +66,9 @@ def trapezoid(speed: float, acceleration: float) -> Any:
 
 def quintic(speed: float, acceleration: float) -> Any:
     """10 τ³ - 15 τ⁴ + 6 τ⁵: speed and acceleration start and end at zero."""
-    time = max(QUINTIC_SPEED / speed, float(np.sqrt(QUINTIC_ACCELERATION / acceleration)))
+    from scipy.interpolate import PPoly
+
+    time = float(quintic_time(speed, acceleration))
     powers = QUINTIC / time ** np.arange(5, -1, -1.0)
     return PPoly(powers[:, np.newaxis], np.array([0.0, time]))
 
