@@ -17,7 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array, number, real_array, shown
 from kinlab.drives.cycles import LIFT, TRAVEL, Path, superpose
-from kinlab.drives.laws import QUINTIC_ACCELERATION, QUINTIC_SPEED
+from kinlab.drives.laws import quintic_time
 from kinlab.drives.records import csv_rows
 from kinlab.errors import ExpressionError, OptionError, near
 from kinlab.formulas.numbers import parse_number
@@ -177,9 +177,7 @@ class Cycle:
         hard = np.array(
             [self.a_max if end.acceleration is None else end.acceleration for _, end in moves]
         )
-        spans = np.maximum(
-            QUINTIC_SPEED * lengths / fast, np.sqrt(QUINTIC_ACCELERATION * lengths / hard)
-        )
+        spans = quintic_time(fast / lengths, hard / lengths)
         blends = [self.blend if end.blend is None else end.blend for _, end in moves[:-1]]
         overlap = np.array(blends) * np.minimum(spans[:-1], spans[1:])
         begins = np.concatenate([[0.0], np.cumsum(spans[:-1] - overlap)])
