@@ -9,6 +9,7 @@ piece of the text; the rest stays as the writer wrote it, in his names and his o
 from __future__ import annotations
 
 import ast
+import keyword
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -179,7 +180,7 @@ class Line:
         """Names of numbers that may stand in the text, with their values."""
         found: dict[str, Array] = {}
         for name in self.text.symbols:
-            if not self._turns(name):
+            if name.isidentifier() and not keyword.iskeyword(name) and not self._turns(name):
                 found[name] = self._named(name)
         mine = set(self.spelling)
         for name in self.names.parameters:

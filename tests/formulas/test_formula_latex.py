@@ -68,7 +68,7 @@ def test_in_a_file(tmp_path):
     assert examine_file(file)[0].agrees
     file.write_text(text.replace(r" + \theta_2", ""))
     found = examine_file(file)[0]
-    assert "cos(q1) should be cos(q1 + q2)" in found.sentence
+    assert "cos(theta1) should be cos(theta1 + theta2)" in found.sentence  # in the writer's names
     file.write_text(text + "[formulas]\ng2 = 'm2'\n")
     with pytest.raises(FileError, match="'g2' is given twice"):
         examine_file(file)

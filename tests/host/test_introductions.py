@@ -46,7 +46,7 @@ def answers():
     light = kl.FiveBar(0.25, 0.3, 0.1, payload=1.0, name=EVIL)
     box = (-0.05, 0.05, -0.4, -0.3)
     with pytest.warns(kl.errors.KinlabWarning, match="NO MASS"):
-        sizing = light.size_servo(box, 1.0, 10.0, motor="SGMAH-08A", gear_ratio=20.0)
+        sizing = light.size_servo(box, 1.0, 10.0, motor="SGMAH-08A", gear_ratio=20.0, massless=True)
     # the task that suits a planar arm; T is within its reach
     T = kl.fk(robot, [0.4, 0.9])
     return {

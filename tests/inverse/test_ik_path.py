@@ -69,7 +69,11 @@ def test_the_command_prints_the_solution(tmp_path):
         app, "ik puma560 --xyz .4 .1 .3 --rpy 0 pi 0 --history".split() + [str(figure)]
     )
     assert done.exit_code == 0, done.output
-    assert "converged, task pose: position error" in done.output and "mm" in done.output
+    assert (
+        "converged: position error" in done.output
+        and "task pose" in done.output
+        and "mm" in done.output
+    )
     assert figure.stat().st_size > 5000
     values = [float(line.split()[1]) for line in done.output.splitlines()[:6]]
     pose = kl.fk(kl.load("puma560"), values)
