@@ -11,12 +11,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from kinlab.errors import NameUnknownError, near
+from kinlab.host.introductions import Told
 from kinlab.marking.judge import Outcome
 from kinlab.marking.sheet import Sheet
 
 
 @dataclass(frozen=True)
-class Mark:
+class Mark(Told):
     """One submission, marked.
 
     Attributes:
@@ -60,9 +61,6 @@ class Mark:
             points = f"{one.points:g} of {one.of:g}"
             lines.append(f"  {one.question}: {one.verdict}, {points}{': ' if told else ''}{told}")
         return "\n".join(lines)
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{html.escape(str(self))}</pre>"
 
 
 @dataclass(frozen=True, eq=False)

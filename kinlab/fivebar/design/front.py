@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from html import escape
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +21,7 @@ from kinlab.fivebar.design.goals import GOALS
 from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.synthesis import FiveBarDesign, Range, finish, read_problem, solve
 from kinlab.host.files import read_text, write_text
+from kinlab.host.introductions import Told
 
 _NEXT = 45
 """Generations of a point that starts from its neighbour's design."""
@@ -34,7 +34,7 @@ _EASED = 1e-6
 
 
 @dataclass(frozen=True)
-class DesignFront:
+class DesignFront(Told):
     """Designs of which none is better than another in both goals.
 
     Attributes:
@@ -57,9 +57,6 @@ class DesignFront:
             each = ", ".join(f"{g} {design.goals[g].value:.5g} {GOALS[g].unit}" for g in self.goals)
             lines.append(f"  l1 {l1:.5g}, l2 {l2:.5g}, e {e:.5g} m: {each}".rstrip())
         return "\n".join(lines)
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
 
 
 def fivebar_front(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from kinlab.fivebar.design.problem import SLACK, Problem
 from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
+from kinlab.host.introductions import Told
 
 _AT_LIMIT = 1e-4
 """Part of a range within which a length counts as lying at its end."""
@@ -47,7 +47,7 @@ class Proved:
 
 
 @dataclass(frozen=True)
-class FiveBarDesign:
+class FiveBarDesign(Told):
     """A five-bar for a rectangle.
 
     Attributes:
@@ -104,9 +104,6 @@ class FiveBarDesign:
         if self.at_limit:
             lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
         return "\n".join(lines)
-
-    def _repr_html_(self) -> str:
-        return f"<pre>{escape(str(self))}</pre>"
 
 
 def design_fivebar(
