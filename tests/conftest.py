@@ -16,7 +16,14 @@ hypothesis.settings.load_profile("kinlab")
 
 
 def pytest_collection_modifyitems(items):
-    """Marks the tests that open a browser, whose arithmetic is its own."""
+    """Marks the tests that open a browser, whose arithmetic is its own; the files with them first.
+
+    A file stays on one worker, and these are the longest: begun last, they would leave the other
+    worker idle.
+    """
+    long = set()
     for item in items:
         if "chromium" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+            long.add(item.path)
+    items.sort(key=lambda item: item.path not in long)

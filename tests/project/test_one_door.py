@@ -71,6 +71,8 @@ def arguments(name: str, robot: kl.Robot) -> dict[str, object]:
     }
     if name == "size_servos":
         known["motion"] = kl.motion.joint(robot, [q, q + 0.3], duration=1.0)
+    if name == "size_servos":
+        known["motion"] = kl.motion.joint(robot, [q, q + 0.2], duration=1.0)
     if name == "action":
         times = np.linspace(0.0, 1.0, 5)[:, None]
         known.update(q=times * q, v=np.tile(q, (5, 1)), weights=np.full(5, 0.2))
