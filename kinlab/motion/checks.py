@@ -21,7 +21,7 @@ from kinlab.arrays import Array
 from kinlab.engine.dynamics import inverse_dynamics
 from kinlab.errors import StructureError
 from kinlab.fast.stacks import fk
-from kinlab.host.introductions import Told
+from kinlab.host.introductions import Told, counted
 from kinlab.inverse.branches import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -83,7 +83,7 @@ class MotionCheck(Told):
                 f"robot {self.robot!r}: within all limits; no singularity on the way "
                 f"(sigma_min above {self.sigma:.3g} at all times, task {self.task})"
             )
-        lines = [f"robot {self.robot!r}: {len(self.findings)} finding(s) on the way"]
+        lines = [f"robot {self.robot!r}: {counted(len(self.findings), 'finding')} on the way"]
         return "\n".join([*lines, *(f"  {one.sentence}" for one in self.findings)])
 
     __repr__ = __str__

@@ -174,7 +174,14 @@ def solve(
     some = {} if generations is None else {"generations": generations}
     x = evolve(problem, seed, starts, progress, file, **some)
     require_feasible(problem, x)
-    return finish(problem, exchange(problem, x), seed)
+    return finish(problem, _onto_bounds(problem, exchange(problem, x)), seed)
+
+
+def _onto_bounds(problem: Problem, x: Array) -> Array:
+    """Lengths that differ from a bound by rounding, on it: e is 0, not 1e-15 m."""
+    near = 1e-9 * (problem.high - problem.low)
+    x = np.where(x - problem.low < near, problem.low, x)
+    return np.where(problem.high - x < near, problem.high, x)
 
 
 def finish(problem: Problem, x: Array, seed: int) -> FiveBarDesign:
