@@ -36,6 +36,9 @@ _NARROW = 1e-7
 _SAME = 1e-4
 """Part of the duration within which two findings of one kind are one."""
 
+_BESIDE = 1e-3
+"""How far beside a singularity the branch is named, in parts of the duration."""
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -122,13 +125,7 @@ def check(
     found = _limit_findings(robot, motion, velocity, acceleration)
     sigma, singular = _singularities(space, motion)
     names = _branch(space, motion.q[0]), _branch(space, motion.q[-1])
-    found += singular
-    if _other_branch(*names):
-        crossing = [one.t for one in singular if one.kind == "singularity"]
-        when = f" through the singularity at t = {crossing[0]:.6g} s" if crossing else ""
-        at = crossing[0] if crossing else motion.duration
-        text = f"branch changes from {names[0]!r} to {names[1]!r}{when}"
-        found.append(_finding(robot, motion, "branch", at, text))
+    found += singular + _changes(space, motion, singular)
     found.sort(key=lambda one: one.t)
     return MotionCheck(robot.name, tuple(found), sigma, space.name, names)
 
@@ -169,6 +166,29 @@ def _limit_findings(
                 f"{names[joint]} needs {tau[row, joint]:.4g}, above its effort {effort[joint]:.4g}"
             )
             found.append(_finding(robot, motion, "effort", float(motion.t[row]), text))
+    return found
+
+
+def _changes(space: TaskSpace, motion: Motion, singular: list[Finding]) -> list[Finding]:
+    """Changes of branch: where a singularity is met, by the names close on both sides of it.
+
+    Names alone tell nothing: "elbow up" becomes "elbow down" without a singularity where the
+    wrist passes over the shoulder.
+    """
+    times = [one.t for one in singular]
+    found = []
+    for k, one in enumerate(singular):
+        before = times[k - 1] if k else 0.0
+        after = times[k + 1] if k + 1 < len(times) else motion.duration
+        low = one.t - min(_BESIDE * motion.duration, 0.5 * (one.t - before))
+        high = one.t + min(_BESIDE * motion.duration, 0.5 * (after - one.t))
+        names = [_branch(space, motion.at(t)[0]) for t in (low, high)]
+        if not _other_branch(*names):
+            continue
+        way = f"from {names[0]!r} to {names[1]!r} through the singularity at t = {one.t:.6g} s"
+        sure = one.kind == "singularity"
+        text = f"branch changes {way}" if sure else f"branch may change {way}: undecided"
+        found.append(_finding(space.robot, motion, "branch", one.t, text))
     return found
 
 
