@@ -132,6 +132,10 @@ def near(name: str, valid: Iterable[str], *, limit: int = 5) -> str:
     """
     names = list(dict.fromkeys(valid))
     close = difflib.get_close_matches(name, names, n=limit, cutoff=0.5)
+    if not close:  # capitals do not count
+        plain = {n.lower(): n for n in reversed(names)}
+        found = difflib.get_close_matches(name.lower(), plain, n=limit, cutoff=0.5)
+        close = [plain[n] for n in found]
     if close:
         return "did you mean " + ", ".join(repr(c) for c in close) + "?"
     shown = ", ".join(repr(n) for n in names[:40])

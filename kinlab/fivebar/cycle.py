@@ -96,6 +96,8 @@ def size_cycle(
             says where and when, and how far it must be moved.
         InertiaError: bars without mass, and ``massless`` not said. MotorError: a figure is missing.
     """
+    if gears is not None and gear_ratio is not None:
+        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
     require_masses(linkage, massless)
     return _sized(
         linkage, cycle, _slower(cycle, time), motors_of(motors), gears, gear_ratio, mode, efficiency

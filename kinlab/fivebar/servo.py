@@ -321,6 +321,8 @@ def size_servo(
     Warns:
         KinlabWarning: cranks or rods have no mass, and are meant to.
     """
+    if gears is not None and gear_ratio is not None:
+        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
         number(value, f"{linkage.name}: {name}")

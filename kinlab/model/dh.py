@@ -28,7 +28,7 @@ from kinlab.arrays import (
     shown,
     truth,
 )
-from kinlab.errors import StateError, TableError, already_said, warn
+from kinlab.errors import FileError, StateError, TableError, already_said, warn
 from kinlab.host.files import write_text
 from kinlab.host.introductions import Introduction, Rows, brief, counted, vector
 from kinlab.model import table_files as table_io
@@ -146,6 +146,22 @@ class DHTable(Rows):
             out[name] = [float(np.asarray(link.inertia)[i, j]) for link in links]
         whole = {"convention": str(self.convention), "unphysical": self.unphysical}
         return {"name": list(self.joint_names)} | out | {k: [x] * self.n for k, x in whole.items()}
+
+    def to_csv(self, path: str | Path) -> None:
+        """Writes the rows as CSV, numbers with every digit; warns of what has no place there.
+
+        Raises:
+            FileError: the file cannot be written; an old one stays whole.
+        """
+        plain = DHTable(self.name, self.convention, self.links, unphysical=self.unphysical)
+        kept = ("base", "tool", "gravity")
+        lost = [k for k in kept if not np.array_equal(getattr(self, k), getattr(plain, k))]
+        if lost:
+            warn(
+                f"{path}: CSV has no place for {' and '.join(lost)} of table {self.name!r}: loaded "
+                "again it is another arm; save() keeps the whole table"
+            )
+        super().to_csv(path)
 
     def introduction(self) -> Introduction:
         """The rows, with the joints' q in them."""
@@ -283,8 +299,14 @@ class DHTable(Rows):
         """Writes the table as TOML; loading it again gives the same table, bit for bit.
 
         Raises:
-            FileError: the file cannot be written; an old one stays whole.
+            FileError: the name ends in .csv or .urdf, which hold another text; or the file cannot
+                be written; an old one stays whole.
         """
+        if Path(path).suffix.lower() in (".csv", ".urdf", ".xml"):
+            raise FileError(
+                f"{path}: a table is saved as TOML; name a .toml file (to_csv writes the rows, "
+                "kl.to_urdf the URDF)"
+            )
         write_text(path, self.to_toml())
 
     def to_toml(self) -> str:

@@ -87,6 +87,11 @@ def joint(
     for name in planner.needs:
         if not np.isfinite(given[name]).all():
             raise OptionError(f"robot {robot.name!r}: law {law!r} needs {name}=, for every joint")
+    if jerk is not None and law in ("trapezoid", "optimal"):
+        raise OptionError(
+            f"robot {robot.name!r}: law {law!r} jumps in acceleration, so it holds no limit of "
+            "jerk; use 'quintic', 'spline' or 'jerk'"
+        )
     free = not np.isfinite(limits.acceleration).all()
     if duration is None and free:
         raise OptionError(

@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.fast.stacks import fk
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
 from kinlab.structure.axes import Axes
@@ -32,7 +33,7 @@ def arm_points(robot: Robot, q: Array) -> Array:
 
 
 def ellipses(
-    robot: Robot,
+    robot: ArmLike,
     q: ArrayLike,
     kinds: tuple[str, ...] = ("velocity", "force"),
     ax: Any = None,
@@ -55,6 +56,7 @@ def ellipses(
         OptionError: an arm that leaves the plane.
         StateError, NameUnknownError, MissingExtraError: bad q, unknown kind, no matplotlib.
     """
+    robot = as_robot(robot)
     if not stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
         raise OptionError(
             f"robot {robot.name!r} leaves the x-y plane; ellipses are drawn of planar arms"

@@ -20,7 +20,7 @@ from kinlab.structure.task_space import read_length, read_task
 
 
 def singular_values(
-    robot: Robot, path: ArrayLike, task: Any = "auto", length: float = 1.0, ax: Any = None
+    robot: ArmLike, path: ArrayLike, task: Any = "auto", length: float = 1.0, ax: Any = None
 ) -> Any:
     """Singular values of J along a path of configurations, on a logarithmic scale.
 
@@ -36,6 +36,7 @@ def singular_values(
     Raises:
         StateError, OptionError, NameUnknownError, MissingExtraError: bad path, task or length.
     """
+    robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
     states = joint_vector(robot, path, "path")
     if states.ndim != 2 or len(states) < 2:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.cycle import CycleSizing
 from kinlab.fivebar.dynamics import crank_inertia, rod_model
 from kinlab.fivebar.geometry import solve_pose
+from kinlab.fivebar.linkage import as_five_bar
 from kinlab.fivebar.servo import ServoSizing
 from kinlab.fivebar.workspace import Rectangle
 from kinlab.plots.canvas import figure_text, new_axes, new_figure
@@ -22,7 +24,7 @@ _WORST_SHOWN = 10.0
 
 
 def fivebar(
-    linkage: FiveBar,
+    linkage: FiveBar | str | Path,
     mode: Mode = HANGING,
     assembly: int = 1,
     resolution: int = 301,
@@ -44,6 +46,7 @@ def fivebar(
         MissingExtraError: matplotlib is not installed.
         StructureError: no pose in that mode and assembly.
     """
+    linkage = as_five_bar(linkage)
     axes = ax if ax is not None else new_axes(size=(8.4, 6.6))
     grid = linkage.workspace_map(mode, resolution)
     drawn = axes.pcolormesh(
@@ -109,7 +112,9 @@ def bars(axes: Any, linkage: FiveBar, xy: Array, mode: Mode) -> None:
         axes.plot(*chain.T, color=_LEGS[leg], lw=2.0, marker="o", ms=5, mec="black")
 
 
-def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing | CycleSizing, ax: Any = None) -> Any:
+def fivebar_cycle(
+    linkage: FiveBar | str | Path, sizing: ServoSizing | CycleSizing, ax: Any = None
+) -> Any:
     """The pick-and-place cycle in its workspace, with joint rates, torques and power.
 
     Args:
@@ -126,7 +131,7 @@ def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing | CycleSizing, ax: Any =
     four = new_figure((9.6, 6.4)).subplots(2, 2) if ax is None else ax
     where, rate, torque, power = np.ravel(four)
     figure = where.figure
-    path = sizing.path
+    path, linkage = sizing.path, as_five_bar(linkage)
     if isinstance(sizing, CycleSizing):
         cycle, mode, limits = sizing.demand, sizing.mode, f"cycle {figure_text(sizing.cycle.name)}"
     else:
@@ -156,7 +161,7 @@ def fivebar_cycle(linkage: FiveBar, sizing: ServoSizing | CycleSizing, ax: Any =
     return where
 
 
-def fivebar_gains(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
+def fivebar_gains(linkage: FiveBar | str | Path, sizing: ServoSizing, ax: Any = None) -> Any:
     """Torque per acceleration over the gain of J: I_A sigma + m / sigma, least at sqrt(eta).
 
     Args:
@@ -170,6 +175,7 @@ def fivebar_gains(linkage: FiveBar, sizing: ServoSizing, ax: Any = None) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
+    linkage = as_five_bar(linkage)
     axes = ax if ax is not None else new_axes(size=(7.2, 4.4))
     arms = crank_inertia(linkage, rod_model(linkage, "massless"))
     arms = arms - linkage.reflected_inertia

@@ -14,6 +14,7 @@ import numpy as np
 from kinlab.arrays import Array, shown
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.fast.stacks import fk, jacobian
+from kinlab.structure.task_space import suggest_rows
 
 Measure = Callable[[Any, Array], Any]
 """f(robot, q (m, n)) -> an array with m rows, or a dict of such arrays."""
@@ -45,7 +46,9 @@ class Named:
         if set(self.names) - {"pose", "position"}:
             out["jacobian"] = jacobian(robot, q)
         if set(self.names) - {"pose", "position", "jacobian"}:
-            sigma = out["singular_values"] = metrics.singular_values(out["jacobian"])
+            rows = list(suggest_rows(robot))
+            sigma = metrics.singular_values(out["jacobian"][:, rows])
+            out["singular_values"] = sigma
             out["condition"] = metrics.condition_number(sigma)
             out.update({name: metrics.KINDS[name](sigma) for name in _BY_SIGMA})
         return {name: out[name] for name in self.names}

@@ -173,7 +173,8 @@ def sweep(
             that can be pickled (text and paths always name a mechanism).
         measure: a name or names (``"pose"``, ``"position"``, ``"jacobian"``,
             ``"singular_values"``, ``"condition"``, ``"yoshikawa"``, ``"inverse_condition"``,
-            ``"min_singular"``, ``"isotropy"``, all of the full Jacobian in SI units), or a
+            ``"min_singular"``, ``"isotropy"``; the values from ``"singular_values"`` on are of the
+            task that suits the arm, as ``"auto"`` elsewhere, in SI units), or a
             function f(robot, q) that takes states (m, n) and answers an array with m rows, or a
             dict of such arrays. For worker processes it stands at the top of a module.
         samples: how many states to draw uniformly between ``lower`` and ``upper``, or the

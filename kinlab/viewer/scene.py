@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,8 @@ from kinlab.errors import NameUnknownError, StateError, near, warn
 from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
-from kinlab.model.robot import Robot
+from kinlab.fivebar.linkage import as_five_bar
+from kinlab.model.library import ArmLike, as_robot
 from kinlab.viewer import shapes
 from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
@@ -43,8 +45,8 @@ class Scene(Page):
         StateError: q of another shape, or not finite.
     """
 
-    def __init__(self, robot: Robot, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
-        self.robot = robot
+    def __init__(self, robot: ArmLike, q: ArrayLike | None = None, *, meshes: bool = True) -> None:
+        robot = self.robot = as_robot(robot)
         if q is None:
             start = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
         else:
@@ -162,7 +164,13 @@ class FiveBarScene(Page):
         StateError: theta of another shape, or not finite.
     """
 
-    def __init__(self, linkage: FiveBar, theta: ArrayLike | None = None, assembly: int = 1) -> None:
+    def __init__(
+        self,
+        linkage: FiveBar | str | Path,
+        theta: ArrayLike | None = None,
+        assembly: int = 1,
+    ) -> None:
+        linkage = as_five_bar(linkage)
         self.linkage, self.assembly = linkage, assembly
         if theta is None:
             start = linkage.ik(best_start(linkage, assembly))

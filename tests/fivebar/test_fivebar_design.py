@@ -232,3 +232,12 @@ def test_the_command(monkeypatch, capsys, tmp_path):
     ]:
         code, _, err = kinlab(*arguments)
         assert code == 2 and message in err and len(err.strip().splitlines()) == 1
+
+
+def test_what_is_not_proved_is_said():
+    """The crank torque alone drives the design into a singularity, where its bound is lost."""
+    found = kl.design_fivebar((-0.1, 0.1, -0.4, -0.3), "torque", payload=2.0)
+    goal = found.goals["torque"]
+    assert goal.bound > 1.001 * goal.value
+    assert "NOT proved" in str(found) and "near a singularity" in found.remarks[0]
+    assert kl.design_fivebar((-0.1, 0.1, -0.4, -0.3), "condition").remarks == ()

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.errors import StructureError
+from kinlab.errors import OptionError, StructureError
 from kinlab.motion.limits import read_limits
 
 ELBOW = kl.load("planar2r")
@@ -82,3 +82,34 @@ def test_a_motion_of_another_arm_is_refused():
     motion = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, 1.8]], acceleration=8)
     with pytest.raises(StructureError, match="6 joints; the motion has 2"):
         kl.motion.check(PUMA, motion)
+
+
+HOME = [0.3, -1.0, 1.2, 0.3, 0.8, 0.2]
+
+
+@pytest.mark.parametrize(
+    ("start", "end", "changes"),
+    [
+        (1.2, [-1.2, 0.8], [("elbow up", "elbow down")]),
+        (-0.3, [-1.2, 0.8], []),  # its name changes, no singularity is met
+        (1.2, [-0.9, -0.8], [("wrist flip", "wrist no flip"), ("elbow up", "elbow down")]),
+    ],
+)
+def test_branches_change_at_singularities_and_nowhere_else(start, end, changes):
+    """The oracle is the sign of q3 and of sin q5: the elbow and the wrist of the UR5."""
+    points = [HOME.copy(), HOME.copy()]
+    points[0][2] = start
+    points[1][2], points[1][4] = end
+    motion = kl.motion.joint("ur5", points, acceleration=3.0)
+    found = [one for one in kl.motion.check("ur5", motion).findings if one.kind == "branch"]
+    assert len(found) == len(changes)
+    for one, (before, after) in zip(found, changes, strict=True):
+        assert before in one.sentence.split(" to ")[0] and after in one.sentence.split(" to ")[1]
+        q = motion.at(one.t)[0]
+        assert min(abs(q[2]), abs(np.sin(q[4]))) < 1e-6
+
+
+@pytest.mark.parametrize("law", ["trapezoid", "optimal"])
+def test_a_law_that_jumps_holds_no_jerk(law):
+    with pytest.raises(OptionError, match="holds no limit of jerk"):
+        kl.motion.joint("planar2r", [[0, 0], [1, 1]], law, acceleration=3.0, jerk=3.0)

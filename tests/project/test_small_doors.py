@@ -123,3 +123,22 @@ def test_a_position_jacobian_is_told_of_the_rows_that_it_is():
         kl.compare("spatial3r", "jacobian", mine, samples=3)
     assert "'jacobian[:3]'" in str(kl.diagnose("spatial3r", "jacobian", mine, samples=10))
     assert kl.compare("spatial3r", "jacobian[:3]", mine, samples=3).agrees
+
+
+def test_a_table_is_not_saved_under_another_kind_of_file(tmp_path):
+    with pytest.raises(kl.errors.FileError, match=r"saved as TOML; name a \.toml"):
+        kl.load("planar2r").table.save(tmp_path / "p.csv")
+    with pytest.warns(kl.errors.KinlabWarning, match="no place for tool and gravity"):
+        kl.load("planar2r").table.to_csv(tmp_path / "p.csv")
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("UR5", "'ur5'"), ("PUMA560", "'puma560'")])
+def test_capitals_do_not_count_where_names_are_near(typed, meant):
+    with pytest.raises(kl.errors.NameUnknownError, match=f"did you mean {meant}"):
+        kl.load(typed)
+
+
+def test_scenes_and_figures_take_names():
+    assert kl.viewer.Scene("planar2r").robot.name == "planar2r"
+    assert kl.plots.ellipses("planar2r", [0.3, 0.6]) is not None
+    assert kl.plots.fivebar("isotropic", resolution=11) is not None

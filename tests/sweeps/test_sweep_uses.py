@@ -85,3 +85,14 @@ def rod_angle(l1, l2, e):
     arms = [np.array([e, 0]) + along * way + s * out * np.array([-way[1], way[0]]) for s in (1, -1)]
     elbow = max(arms, key=lambda p: p[0])  # both elbows outward
     return 2 * np.arctan2(elbow[0], elbow[1] + 0.7)
+
+
+@pytest.mark.parametrize("name", ["planar2r", "spatial3r", "ur5"])
+def test_named_measures_are_of_the_task_that_suits_the_arm(name):
+    result = kl.sweep(name, ("condition", "min_singular"), 30, workers=1, progress=False)
+    for q, condition, least in zip(
+        result.states, result["condition"], result["min_singular"], strict=True
+    ):
+        found = kl.dexterity(name, q)
+        assert condition == pytest.approx(found.condition, rel=1e-9)
+        assert least == pytest.approx(found.min_singular, rel=1e-9)

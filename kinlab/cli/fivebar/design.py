@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +13,7 @@ from kinlab.errors import OptionError
 
 if TYPE_CHECKING:
     from kinlab.fivebar.design.front import DesignFront
-    from kinlab.fivebar.design.synthesis import FiveBarDesign
+    from kinlab.fivebar.design.synthesis import FiveBarDesign, Proved
 
 _RANGE = "LEAST LARGEST"
 RANGE = tuple[float, float] | None
@@ -148,10 +149,16 @@ def _print_design(found: FiveBarDesign) -> None:
             sign = "≤" if GOALS[name].most else "≥"
             asked = f"{asked} {sign} {found.limits[name]:g}".strip()
         unit = f", {goal.unit}" if goal.unit else ""
-        table.add_row(GOALS[name].words + unit, f"{goal.value:.6g}", f"{goal.bound:.6g}", asked)
+        table.add_row(GOALS[name].words + unit, f"{goal.value:.6g}", _bound(goal), asked)
     console.print(table)
+    for line in found.remarks:
+        console.print(styled((line, "bold")))
     if found.at_limit:
         console.print(f"at the limit of {', '.join(found.at_limit)}: beyond it there is more")
+
+
+def _bound(goal: Proved) -> str:
+    return f"{goal.bound:.6g}" if math.isfinite(goal.bound) else "nothing"
 
 
 def _print_front(front: DesignFront) -> None:

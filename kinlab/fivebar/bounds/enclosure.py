@@ -47,7 +47,8 @@ class Enclosed(np.lib.mixins.NDArrayOperatorsMixin):
     @property
     def high(self) -> Array:
         """Upper bound over the cell; infinite where there is none."""
-        top = self.mid + self.radius
+        with np.errstate(invalid="ignore", over="ignore"):  # no bound: said by infinity
+            top = self.mid + self.radius
         return np.where(np.isnan(top), np.inf, top)
 
     @property

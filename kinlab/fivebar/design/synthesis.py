@@ -20,6 +20,9 @@ from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
 from kinlab.host.introductions import Told
 
+_PROVED = 1e-3
+"""Gap between bound and value, in parts of the value, up to which a goal counts as proved."""
+
 _AT_LIMIT = 1e-4
 """Part of a range within which a length counts as lying at its end."""
 
@@ -81,6 +84,18 @@ class FiveBarDesign(Told):
         return max(abs(g.bound - g.value) / max(abs(g.value), 1e-300) for g in self.goals.values())
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """Which goals are not proved: their bound is far from the value reached, or infinite."""
+        return tuple(
+            f"{GOALS[name].words}: NOT proved; {goal.value:.5g} {goal.unit} is what was found, and "
+            f"the bound is {goal.bound:.5g}: the design comes near a singularity; a limit such as "
+            "condition=10 keeps it away"
+            for name, goal in self.goals.items()
+            if not abs(goal.bound - goal.value) <= _PROVED * max(abs(goal.value), 1e-300)
+            and (name in self.weights or name in self.limits)
+        )
+
+    @property
     def sentence(self) -> str:
         """The verdict in a line."""
         l1, l2, e = self.lengths
@@ -101,6 +116,7 @@ class FiveBarDesign(Told):
                 for name, goal in self.goals.items()
             ),
         ]
+        lines += self.remarks
         if self.at_limit:
             lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
         return "\n".join(lines)
