@@ -23,6 +23,7 @@ from kinlab.analysis.isotropy import (
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.arrays import Array, seed_of, whole
+from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.dh import DHTable
 from kinlab.model.extract import as_table
@@ -66,8 +67,8 @@ class IsotropicDesign:
         return self.configurations[0].length
 
 
-@dataclass(frozen=True)
-class DesignSearch:
+@dataclass(frozen=True, repr=False)
+class DesignSearch(Answer):
     """Answer of :func:`design_isotropic`: designs, the one with the least changes first.
 
     Attributes:
@@ -90,6 +91,18 @@ class DesignSearch:
     converged: int
     seed: int
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """How many designs there are, and their values."""
+        count = counted(len(self.designs), "isotropic design")
+        told = f"{count}, task {self.task}"
+        if not self.designs:
+            told += f" found; least condition number met: {self.best_condition:.6g}"
+        rows = tuple(
+            (", ".join(f"{name} = {value:.6g}" for name, value in one.values.items()),)
+            for one in self.designs
+        )
+        return Introduction(told, (str(self.evidence),), ("values",) if rows else (), rows)
 
     def __len__(self) -> int:
         return len(self.designs)

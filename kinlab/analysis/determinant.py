@@ -17,6 +17,7 @@ from kinlab.analysis.solver import System, solve
 from kinlab.arrays import Array, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.introductions import Answer, Introduction
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -58,8 +59,8 @@ class SingularFactor:
     function: Callable[[ArrayLike], Array] = field(repr=False)
 
 
-@dataclass(frozen=True)
-class FactoredDeterminant:
+@dataclass(frozen=True, repr=False)
+class FactoredDeterminant(Answer):
     """det J of a square task as a product.
 
     Attributes:
@@ -79,6 +80,20 @@ class FactoredDeterminant:
     complete: bool
     function: Callable[[ArrayLike], Array] = field(repr=False)
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """The product, and what each factor means."""
+        whole = "" if self.complete else "; NOT complete: a block was too large to be factored"
+        rows = tuple(
+            (str(one.expression), one.meaning, "yes" if one.within_limits else "no")
+            for one in self.factors
+        )
+        return Introduction(
+            f"{self.robot}, task {self.task}: det J = {self.expression}{whole}",
+            (str(self.evidence),),
+            ("factor", "singularity", "within limits"),
+            rows,
+        )
 
     def at(self, q: ArrayLike) -> float:
         """det J at q (n,), by the formula."""

@@ -22,6 +22,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -64,8 +65,8 @@ class Locus:
     closed: bool
 
 
-@dataclass(frozen=True)
-class Loci:
+@dataclass(frozen=True, repr=False)
+class Loci(Answer):
     """Answer of :func:`singular_loci`.
 
     Attributes:
@@ -82,6 +83,15 @@ class Loci:
     held: Array
     curves: tuple[Locus, ...]
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """How many curves there are in the slice."""
+        one, two = (joint + 1 for joint in self.joints)
+        return Introduction(
+            f"{self.robot}, task {self.task}: {counted(len(self.curves), 'singular curve')} in the "
+            f"slice of joints {one} and {two}",
+            (str(self.evidence),),
+        )
 
 
 @takes_long("singular curves")

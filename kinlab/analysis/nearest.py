@@ -25,6 +25,7 @@ from kinlab.analysis.solver import solve
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -39,8 +40,8 @@ _LIMIT_DIGITS = 1e-9
 turn) do not hide a singularity that stands on them. The answer itself is within the limits."""
 
 
-@dataclass(frozen=True)
-class NearestSingularity:
+@dataclass(frozen=True, repr=False)
+class NearestSingularity(Answer):
     """Answer of :func:`nearest_singularity`.
 
     Attributes:
@@ -62,6 +63,18 @@ class NearestSingularity:
     sigma: Array
     length: float
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """How far the nearest singularity is, and how sure that is."""
+        if self.singularity is None:
+            sure = "none within the limits" if np.isinf(self.bound) else "none found"
+            return Introduction(f"nearest singularity: {sure}", (str(self.evidence),))
+        sure = "proved" if self.meets else f"found; proved: none nearer than {self.bound:.6g}"
+        at = ", ".join(f"{value:.5g}" for value in self.singularity.q)
+        return Introduction(
+            f"nearest singularity: {self.distance:.6g} away in joint space (rad, m), {sure}",
+            (f"{self.singularity.kind} at q = [{at}]", str(self.evidence)),
+        )
 
 
 @takes_long("nearest singularity")

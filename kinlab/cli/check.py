@@ -12,7 +12,7 @@ import typer
 from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
-from kinlab.errors import KinlabError
+from kinlab.errors import KinlabError, OptionError
 from kinlab.host.progress import progress
 
 if TYPE_CHECKING:
@@ -97,6 +97,8 @@ def check(
         found = _Found()
         todo: Sequence[Task] = ()
         rest = _formula_files(what or [], samples, seed, found)
+        if tool is not None and found.judged:
+            raise OptionError("--tool is of a robot that is named; a formula file names its own")
         if rest or not what:
             todo, unread = read_tasks(rest, tool)
             found.unread += unread

@@ -47,7 +47,7 @@ class JointMotion(Protocol):
         """Joint positions, velocities and accelerations at times."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ArmSizing(Told):
     """What a motion asks of the drives of an arm, joint by joint.
 

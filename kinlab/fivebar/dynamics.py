@@ -112,6 +112,20 @@ def crank_inertia(linkage: FiveBar, rods: RodModel) -> Array:
     return total
 
 
+def bars_as_points(linkage: FiveBar) -> str:
+    """Says which bars have mass and no inertia about their centres, or nothing."""
+    points = [
+        bar
+        for bar in ("crank", "rod")
+        if np.any(getattr(linkage, f"{bar}_mass"))
+        and not np.any(getattr(linkage, f"{bar}_inertia"))
+    ]
+    if not points:
+        return ""
+    bars = " and ".join(f"{bar}s" for bar in points)
+    return f"the {bars} have mass without inertia: they count as points at their centres"
+
+
 def bars_without_mass(linkage: FiveBar) -> str:
     """Says which bars have neither mass nor inertia, or nothing where all have one."""
     bare = [

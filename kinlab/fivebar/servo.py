@@ -36,6 +36,7 @@ from kinlab.fivebar.bounds.worst import (
     worst,
 )
 from kinlab.fivebar.dynamics import (
+    bars_as_points,
     bars_without_mass,
     crank_inertia,
     joint_mass,
@@ -177,8 +178,9 @@ def require_masses(linkage: FiveBar, massless: bool) -> tuple[str, ...]:
             f"{linkage.name}: {missing}; with_masses() and --crank-mass, --rod-mass take uniform "
             "bars; if bars without mass are meant, say so: massless=True, --massless"
         )
-    if missing:
-        warn(f"{linkage.name}: {missing}")
+    for said in (missing, bars_as_points(linkage)):
+        if said:
+            warn(f"{linkage.name}: {said}")
     return (missing,) if missing else ()
 
 

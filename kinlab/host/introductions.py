@@ -119,6 +119,9 @@ class Answer:
 class Told:
     """A result that says itself in its own ``__str__``, the verdict in the first line."""
 
+    def __repr__(self) -> str:
+        return str(self)
+
     def _repr_html_(self) -> str:
         verdict, *lines = str(self).splitlines()
         return Introduction(verdict, tuple(line.removeprefix("  ") for line in lines)).html()

@@ -142,3 +142,19 @@ def test_scenes_and_figures_take_names():
     assert kl.viewer.Scene("planar2r").robot.name == "planar2r"
     assert kl.plots.ellipses("planar2r", [0.3, 0.6]) is not None
     assert kl.plots.fivebar("isotropic", resolution=11) is not None
+
+
+def test_answers_about_singularities_introduce_themselves():
+    puma, q = "puma560", [0.1, 0.3, -0.8, 0.4, 0.7, 0.1]
+    near = kl.nearest_singularity(puma, q)
+    assert str(near).startswith("nearest singularity: 0.7 away") and "proved" in str(near)
+    assert repr(near) == str(near) and "<b>nearest" in near._repr_html_()
+    assert str(kl.factored_determinant(puma)).startswith("puma560, task pose: det J = a2*")
+    assert str(kl.design_isotropic("planar2r", ["a2", "tool.x"], seeds=5)).startswith("1 isotropic")
+    assert "4 singular curves in the slice of joints 2 and 3" in str(kl.singular_loci(puma, [1, 2]))
+
+
+def test_bars_that_count_as_points_are_said():
+    bars = {"crank_mass": 1.0, "rod_mass": 0.4, "rod_com": 0.2}
+    with pytest.warns(kl.errors.KinlabWarning, match="cranks and rods have mass without inertia"):
+        kl.FiveBar(0.3, 0.5, 0.1, **bars).size_servo((-0.1, 0.1, -0.6, -0.5), v_max=3.0, a_max=60.0)
