@@ -87,7 +87,8 @@ def test_five_bars_without_masses_say_so_loudly():
     with pytest.warns(KinlabWarning, match="cranks and rods have NO MASS"):
         sizing = light.size_servo(box, 1.0, 10.0, motor="SGMAH-08A", gear_ratio=20.0, massless=True)
     assert "NO MASS" in sizing.remarks[0]
-    heavy = kl.FiveBar(0.25, 0.3, 0.1, payload=1.0, crank_mass=1.0, crank_com=0.1, rod_mass=0.8)
+    bars = {"crank_mass": 1.0, "crank_com": 0.1, "crank_inertia": 0.005, "rod_mass": 0.8}
+    heavy = kl.FiveBar(0.25, 0.3, 0.1, payload=1.0, rod_inertia=0.006, **bars)
     full = silent(lambda: heavy.size_servo(box, 1.0, 10.0, motor="SGMAH-08A", gear_ratio=20.0))
     assert full.remarks == ()
     assert full.torque.largest > 1.5 * sizing.torque.largest  # why it has to be said
