@@ -99,6 +99,10 @@ _MIRRORED = ("mass_matrix",)
 """Quantities whose missing lower half is the upper one."""
 
 
+Answers = tuple[Case, Array, list[str], dict[str, Written], dict[str, Array]]
+"""A case, the engine's answers, every place there is, and the formulas with their values."""
+
+
 def formula_document(path: str | Path) -> dict[str, Any] | None:
     """The TOML document of a file of formulas (it names a robot); None of any other file.
 
@@ -150,7 +154,8 @@ def examine_formulas(
     wanted, titles = _claims(file, robot)
     done: list[Diagnosis] = []
     for plain, formulas in wanted.items():
-        done += _of_quantity(plain, formulas, titles, robot, file, samples, seed)
+        answers = _answers(plain, formulas, titles, robot, file, samples, seed)
+        done += _of_quantity(plain, answers, titles)
     return done
 
 
@@ -194,7 +199,7 @@ def _answers(
     file: FormulaFile,
     samples: int,
     seed: int,
-) -> tuple[Case, Array, list[str], dict[str, Written], dict[str, Array]]:
+) -> Answers:
     """The case, the engine's answers, every place there is, and the formulas with their values."""
     case, engine = prepare(robot, plain, (), samples, seed)
     shape = engine.shape[1:]
@@ -219,18 +224,8 @@ def _answers(
     return case, engine, labels, formulas, values
 
 
-def _of_quantity(
-    plain: str,
-    formulas: dict[str, Written],
-    titles: dict[str, str],
-    robot: Robot,
-    file: FormulaFile,
-    samples: int,
-    seed: int,
-) -> Iterable[Diagnosis]:
-    case, engine, labels, formulas, values = _answers(
-        plain, formulas, titles, robot, file, samples, seed
-    )
+def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterable[Diagnosis]:
+    case, engine, labels, formulas, values = answers
     if len(formulas) == len(labels):
         hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
         shown = ", ".join(titles[label] for label in labels if label in titles)

@@ -179,12 +179,7 @@ def _meant(value: float, at: Mapping[str, Array]) -> str:
     name = _parameter(value, at)
     if name is not None:
         return f"{name} = {float(at[name][0]):.10g}"
-    for unit, word in (
-        (1.0, ""),
-        (math.pi, "pi"),
-        (math.sqrt(2), "sqrt(2)"),
-        (math.sqrt(3), "sqrt(3)"),
-    ):
+    for word, unit in _UNITS.items():
         found = Fraction(value / unit).limit_denominator(_SIMPLE)
         if found and abs(float(found) * unit - value) <= TOLERANCES.same_relation * abs(value):
             above = word or str(found.numerator)

@@ -90,6 +90,10 @@ class Demand:
         q, v, a, tau = (values[:, one] for values in (self.q, self.v, self.a, self.tau))
         return Demand(self.t, q, v, a, tau, self.rotor[one])
 
+    def _parts_at(self, drive: Drive) -> tuple[Array, Array]:
+        """What load and rotors ask of the motors' shafts, losses left out, (K, n) each, N m."""
+        return self.load / drive.gear.ratio, drive.inertia * drive.gear.ratio * self.a
+
     def bound_at(self, drive: Drive) -> Array:
         """Torque at the motors' shafts, (K, n), N m: a bound that losses cannot exceed.
 
@@ -104,7 +108,7 @@ class Demand:
         Raises:
             MotorError: the motor states no rotor inertia.
         """
-        load, rotor = self.load / drive.gear.ratio, drive.inertia * drive.gear.ratio * self.a
+        load, rotor = self._parts_at(drive)
         driving, driven = (c * load + rotor for c in drive.gear.shares)
         return np.where(np.abs(driving) >= np.abs(driven), driving, driven)
 
@@ -121,7 +125,7 @@ class Demand:
         Raises:
             MotorError: the motor states no rotor inertia.
         """
-        load, rotor = self.load / drive.gear.ratio, drive.inertia * drive.gear.ratio * self.a
+        load, rotor = self._parts_at(drive)
         drives, driven = drive.gear.shares
         shaft = np.where(load * self.v > 0.0, drives, driven) * load + rotor
         still = np.abs(self.v) <= _STANDS_STILL * self.peak_rate
@@ -139,7 +143,7 @@ class Demand:
         Raises:
             MotorError: the motor states no rotor inertia.
         """
-        load, rotor = self.load / drive.gear.ratio, drive.inertia * drive.gear.ratio * self.a
+        load, rotor = self._parts_at(drive)
         drives, driven = drive.gear.shares
         before, after = self.v[:-1], self.v[1:]
         size = np.abs(before) + np.abs(after)

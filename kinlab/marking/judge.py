@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -219,11 +219,11 @@ def _of_diagnoses(
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
-    forms = {str(getattr(one, "form", "")) for one in asked}
+    forms = {one.form for one in asked}
     kind = next((form for form in ("unusual", "rounded") if form in forms), "")
     verdict = _GRADES[kind]
     share = question.slips.get(kind, 0.0) if kind else 0.0
-    remarks = [remark for one in asked for remark in getattr(one, "remarks", ())]
+    remarks = [remark for one in asked for remark in one.remarks]
     remark = "; ".join(dict.fromkeys(remarks))
     points = round(question.points * (1.0 - share), 6)
     return Outcome(
@@ -263,8 +263,7 @@ def _in_part(
 def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot: Robot) -> Outcome:
     best = found.causes[0] if found.causes else None
     kinds = best.kinds if best is not None else ("unknown",)
-    cost = math.fsum(question.slips.get(kind, question.slips.get("other", 1.0)) for kind in kinds)
-    points = round(question.points * max(0.0, 1.0 - cost), 6)
+    points = _points(question, kinds)
     places, formulas = _places(found, best, file, robot)
     answer: list[str] = []
     if best is not None:
@@ -281,6 +280,12 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
         tuple(answer),
         formulas,
     )
+
+
+def _points(question: Question, kinds: Iterable[str]) -> float:
+    """What is left of a question's points after slips of these kinds."""
+    cost = math.fsum(question.slips.get(kind, question.slips.get("other", 1.0)) for kind in kinds)
+    return round(question.points * max(0.0, 1.0 - cost), 6)
 
 
 def _places(
@@ -356,10 +361,7 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
     for name, right in model.formulas.items():
         error, kinds = _gap(file, model, name, right, words)
         if error > question.tolerance:
-            share = math.fsum(
-                question.slips.get(k, question.slips.get("other", 1.0)) for k in kinds
-            )
-            points = round(question.points * max(0.0, 1.0 - share), 6)
+            points = _points(question, kinds)
             place = name if len(model.formulas) > 1 else "the formula as a whole"
             right_one = (f"{name} = {right}",)
             return Outcome(
@@ -396,7 +398,11 @@ def check_answers(sheet: Sheet) -> None:
 def _gap(
     file: FormulaFile, model: FormulaFile, name: str, right: Node, words: Mapping[str, float]
 ) -> tuple[float, tuple[str, ...]]:
-    """How far a formula is from the model's, and whether a sign or a factor explains it."""
+    """How far a formula is from the model's, and whether a sign or a factor explains it.
+
+    Joints stand on both sides of zero: |q1| is not q1. States at which the model itself has no
+    value (a root of a negative number) say nothing.
+    """
     mine, theirs = _opened(file.formulas[name], file, name), _opened(right, model, name)
     strange = tree.names(mine) - tree.names(theirs) - set(words) - _joints()
     if strange:
@@ -407,9 +413,15 @@ def _gap(
     at = {}
     for one in sorted(tree.names(mine) | tree.names(theirs)):
         at[one] = np.full(_STATES, words[one]) if one in words else rng.uniform(0.3, 1.7, _STATES)
+        if one in _joints():
+            at[one] = at[one] * rng.choice([-1.0, 1.0], _STATES)
     with np.errstate(all="ignore"):
         hand = np.array(np.broadcast_to(tree.evaluate(mine, at), _STATES), dtype=float)
         truth = np.array(np.broadcast_to(tree.evaluate(theirs, at), _STATES), dtype=float)
+        there = np.isfinite(truth)
+        if not there.any():
+            raise SheetError(f"{name}: the sheet's own answer has no value at any state")
+        hand, truth = hand[there], truth[there]
         error = float(np.max(relative_errors(hand, truth)))
         ratio = hand / truth
     steady = np.all(np.isfinite(ratio)) and np.ptp(ratio) <= 1e-9 * abs(ratio[0])

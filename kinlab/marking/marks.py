@@ -16,7 +16,7 @@ from kinlab.marking.judge import Outcome
 from kinlab.marking.sheet import Sheet
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Mark(Told):
     """One submission, marked.
 

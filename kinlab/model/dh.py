@@ -153,9 +153,8 @@ class DHTable(Rows):
         Raises:
             FileError: the file cannot be written; an old one stays whole.
         """
-        plain = DHTable(self.name, self.convention, self.links, unphysical=self.unphysical)
-        kept = ("base", "tool", "gravity")
-        lost = [k for k in kept if not np.array_equal(getattr(self, k), getattr(plain, k))]
+        usual = {"base": np.eye(4), "tool": np.eye(4), "gravity": np.array(GRAVITY)}
+        lost = [k for k, value in usual.items() if not np.array_equal(getattr(self, k), value)]
         if lost:
             warn(
                 f"{path}: CSV has no place for {' and '.join(lost)} of table {self.name!r}: loaded "

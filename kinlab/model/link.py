@@ -141,6 +141,12 @@ def refuse_flaw(
     raise error(f"{place}: {flaw.told}; {flaw.remedy}" + (f"; {way_out}" if way_out else ""))
 
 
+def steiner(mass: float, lever: Array) -> Array:
+    """m (c² 1 - c c^T), (3, 3): what the parallel-axis theorem adds at a distance c, kg m²."""
+    out: Array = mass * (float(lever @ lever) * np.eye(3) - np.outer(lever, lever))
+    return out
+
+
 def tensor_text(inertia: Array) -> str:
     """A tensor in a message: its moments, and its products where it has any."""
     entries = {

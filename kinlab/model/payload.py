@@ -13,7 +13,7 @@ from kinlab.errors import InertiaError, OptionError, StructureError, already_sai
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHLink, DHTable, with_links
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.link import check_inertia
+from kinlab.model.link import check_inertia, steiner
 from kinlab.model.robot import Robot
 from kinlab.model.urdf_engine import write_inertial
 from kinlab.model.urdf_records import Inertial
@@ -84,15 +84,9 @@ def _merged(link: DHLink, mass: float, com: Array, inertia: Array) -> DHLink:
     if total == 0.0:
         return replace(link, inertia=np.asarray(link.inertia) + inertia)
     centre = (link.mass * np.asarray(link.com) + mass * com) / total
-    tensor = _about(link.mass, np.asarray(link.com) - centre, np.asarray(link.inertia))
-    tensor = tensor + _about(mass, com - centre, inertia)
+    tensor = np.asarray(link.inertia) + steiner(link.mass, np.asarray(link.com) - centre)
+    tensor = tensor + inertia + steiner(mass, com - centre)
     return replace(link, mass=total, com=centre, inertia=0.5 * (tensor + tensor.T))
-
-
-def _about(mass: float, arm: Array, inertia: Array) -> Array:
-    """The tensor of a body about a point that its centre of mass is ``arm`` away from."""
-    moved: Array = inertia + mass * ((arm @ arm) * np.eye(3) - np.outer(arm, arm))
-    return moved
 
 
 def _loaded_urdf(robot: Robot, mass: float, com: Array, inertia: Array) -> str:

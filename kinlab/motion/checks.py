@@ -18,7 +18,7 @@ from scipy.optimize import brentq
 
 from kinlab.analysis.nearest import slope_bound
 from kinlab.arrays import Array
-from kinlab.engine.dynamics import inverse_dynamics
+from kinlab.drives.arm import demand_of
 from kinlab.errors import StructureError
 from kinlab.fast.stacks import fk
 from kinlab.host.introductions import Told, counted
@@ -57,7 +57,7 @@ class Finding:
     sentence: str
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MotionCheck(Told):
     """What :func:`check` found.
 
@@ -67,6 +67,7 @@ class MotionCheck(Told):
             the arm's own length); ``None``: not shown.
         task: coordinates that singularities are judged by.
         branches: name of the branch at the start and at the end; empty where the arm has no names.
+        instants: at how many the efforts were compared; 0 where the arm states none.
     """
 
     robot: str
@@ -74,6 +75,7 @@ class MotionCheck(Told):
     sigma: float | None
     task: str
     branches: tuple[str, str]
+    instants: int = 0
 
     @property
     def ok(self) -> bool:
@@ -82,14 +84,13 @@ class MotionCheck(Told):
 
     def __str__(self) -> str:
         if self.ok:
+            efforts = f" (efforts compared at {self.instants:,} instants)" if self.instants else ""
             return (
-                f"robot {self.robot!r}: within all limits; no singularity on the way "
+                f"robot {self.robot!r}: within all limits{efforts}; no singularity on the way "
                 f"(sigma_min above {self.sigma:.3g} at all times, task {self.task})"
             )
         lines = [f"robot {self.robot!r}: {counted(len(self.findings), 'finding')} on the way"]
         return "\n".join([*lines, *(f"  {one.sentence}" for one in self.findings)])
-
-    __repr__ = __str__
 
 
 def check(
@@ -110,7 +111,8 @@ def check(
         task: coordinates that singularities are judged by, as in :func:`kinlab.manipulability`.
 
     Returns:
-        The findings. Efforts are compared at the samples, the rest at all times.
+        The findings. Efforts are compared at instants of :func:`kinlab.drives.arm.demand_of`,
+        whatever the samples of the motion, the rest at all times.
 
     Raises:
         StructureError: the motion has another number of joints.
@@ -123,11 +125,13 @@ def check(
         )
     space = read_reachable_task(robot, task)
     found = _limit_findings(robot, motion, velocity, acceleration)
+    over, instants = _effort_findings(robot, motion)
+    found += over
     sigma, singular = _singularities(space, motion)
     names = _branch(space, motion.q[0]), _branch(space, motion.q[-1])
     found += singular + _changes(space, motion, singular)
     found.sort(key=lambda one: one.t)
-    return MotionCheck(robot.name, tuple(found), sigma, space.name, names)
+    return MotionCheck(robot.name, tuple(found), sigma, space.name, names, instants)
 
 
 def _finding(robot: Robot, motion: Motion, kind: str, t: float, text: str) -> Finding:
@@ -156,17 +160,23 @@ def _limit_findings(
         for joint in map(int, np.flatnonzero(peak.value > bounds * (1.0 + 1e-9))):
             text = f"{kind} of {names[joint]} is {peak.value[joint]:.6g}, above {bounds[joint]:.6g}"
             found.append(_finding(robot, motion, kind, float(peak.when[joint]), text))
+    return found
+
+
+def _effort_findings(robot: Robot, motion: Motion) -> tuple[list[Finding], int]:
+    """Joints that need more than their effort, and at how many instants that was looked at."""
     effort = np.array(robot.model.upperEffortLimit)
     known = (effort > 0.0) & (effort < 1e100)
-    if known.any() and not robot.singular_mass:
-        tau = np.abs(inverse_dynamics(robot, motion.q, motion.v, motion.a, friction=True))
-        for joint in map(int, np.flatnonzero(known & (tau.max(axis=0) > effort * (1.0 + 1e-9)))):
-            row = int(tau[:, joint].argmax())
-            text = (
-                f"{names[joint]} needs {tau[row, joint]:.4g}, above its effort {effort[joint]:.4g}"
-            )
-            found.append(_finding(robot, motion, "effort", float(motion.t[row]), text))
-    return found
+    if not known.any() or robot.singular_mass:
+        return [], 0
+    demand, _ = demand_of(robot, motion)
+    tau, found = np.abs(demand.tau), []
+    for joint in map(int, np.flatnonzero(known & (tau.max(axis=0) > effort * (1.0 + 1e-9)))):
+        row = int(tau[:, joint].argmax())
+        name = robot.joint_names[joint]
+        text = f"{name} needs {tau[row, joint]:.4g}, above its effort {effort[joint]:.4g}"
+        found.append(_finding(robot, motion, "effort", float(demand.t[row]), text))
+    return found, len(demand.t)
 
 
 def _changes(space: TaskSpace, motion: Motion, singular: list[Finding]) -> list[Finding]:
@@ -256,7 +266,6 @@ def _met(space: TaskSpace, motion: Motion, times: Array) -> list[Finding]:
         wide = max(2e-6 * motion.duration, 0.05 * float(group[-1] - group[0]))
         low = max(0.0, float(group[0]) - wide)
         high = min(motion.duration, float(group[-1]) + wide)
-        values = _sigma(space, motion, np.array([low, high]))
         where = _crossing(space, motion, low, high)
         if where is not None:
             text = f"det J changes its sign (task {space.name}): a singularity"

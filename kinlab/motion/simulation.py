@@ -40,7 +40,7 @@ _REST = 1e-10
 """rad/s or m/s below which a joint with friction counts as at rest where it turns round."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Simulation(Told):
     """A simulated motion, K samples.
 
@@ -88,8 +88,6 @@ class Simulation(Told):
             f"up to {self.miss:.2g} J"
         )
         return "\n".join([text, *self.remarks])
-
-    __repr__ = __str__
 
 
 def simulate(

@@ -53,10 +53,10 @@ def plan(rows: Array, limits: Limits) -> Any:
     solver = algorithm.TOPPRA(
         bounds, toppra.SplineInterpolator(way, rows, bc_type=path_ends(rows)), gridpoints=grid
     )
-    gains, speeds, _ = solver.compute_parameterization(0.0, 0.0)
-    if gains is None or speeds is None or not np.isfinite(speeds).all():
+    _, speeds, _ = solver.compute_parameterization(0.0, 0.0)
+    if speeds is None or not np.isfinite(speeds).all():
         raise OptionError("time-optimal motion: toppra finds no speed that holds the limits")
-    return within_time_limits(_in_time(path, grid, np.asarray(speeds), np.asarray(gains)), limits)
+    return within_time_limits(_in_time(path, grid, np.asarray(speeds)), limits)
 
 
 def path_ends(rows: Array) -> str:
@@ -64,7 +64,7 @@ def path_ends(rows: Array) -> str:
     return "natural" if len(rows) > 2 else "not-a-knot"
 
 
-def _in_time(path: Any, grid: Array, speeds: Array, gains: Array) -> Any:
+def _in_time(path: Any, grid: Array, speeds: Array) -> Any:
     """q(s(t)) with constant path acceleration between grid points, as pieces of fifth degree."""
     steps = 2.0 * np.diff(grid) / (speeds[:-1] + speeds[1:])
     times = np.concatenate([[0.0], np.cumsum(steps)])

@@ -374,3 +374,14 @@ def test_an_endless_program_is_ended(monkeypatch):
     )
     assert "signal" in outcomes[0].remark or "did not come back" in outcomes[0].remark
     assert "processor time" in enforced
+
+
+@pytest.mark.parametrize(
+    "answer",
+    ["m1*g*l1*abs(sin(q1))", "m1*g*l1*sqrt(sin(q1)**2)", "m1*g*l1*sin(abs(q1))",
+     "m1*g*l1*sin(q1) + 0*log(q1)"],
+)  # fmt: skip
+def test_a_formula_that_is_right_for_positive_angles_only_is_wrong(answer):
+    """The sheet's own answer is m1*g*l1*sin(q1); no engine stands beside it."""
+    found = marked({**RIGHT, "q4": answer})
+    assert [one.verdict for one in found.outcomes] == ["right", "right", "right", "wrong"]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -113,3 +115,20 @@ def test_branches_change_at_singularities_and_nowhere_else(start, end, changes):
 def test_a_law_that_jumps_holds_no_jerk(law):
     with pytest.raises(OptionError, match="holds no limit of jerk"):
         kl.motion.joint("planar2r", [[0, 0], [1, 1]], law, acceleration=3.0, jerk=3.0)
+
+
+def test_efforts_are_not_judged_by_the_samples_of_the_motion():
+    """Two samples, both at the ends: what the joints need in the middle is seen all the same."""
+    table = kl.load("planar2r").table
+    points = [[-1.2, 0.9], [1.2, 0.9]]
+    fine = kl.motion.joint(table, points, duration=0.9, step=1e-3)
+    tau = np.abs(kl.inverse_dynamics(table, fine.q, fine.v, fine.a))
+    limits = 0.5 * (tau.max(axis=0) + np.maximum(tau[0], tau[-1]))
+    links = [replace(k, effort=float(x)) for k, x in zip(table.links, limits, strict=True)]
+    weak = replace(table, links=links)
+    for step in (0.9, 1e-3):
+        found = kl.motion.check(weak, kl.motion.joint(weak, points, duration=0.9, step=step))
+        assert not found.ok and {one.kind for one in found.findings} == {"effort"}
+        assert found.instants > 100
+    plenty = kl.motion.check(table, fine)
+    assert plenty.ok and f"efforts compared at {plenty.instants:,} instants" in str(plenty)

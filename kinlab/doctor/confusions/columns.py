@@ -20,9 +20,9 @@ from kinlab.doctor.confusions.recursion import (
     centre_of,
     geometry,
     mixed,
-    steiner,
 )
 from kinlab.engine.kinematics import fk
+from kinlab.model.link import steiner
 from kinlab.model.robot import Robot
 
 _COLUMN: tuple[tuple[str, str, dict[str, float], float], ...] = (

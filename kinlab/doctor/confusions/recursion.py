@@ -18,7 +18,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.model.dh import DHTable
-from kinlab.model.link import Convention
+from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot, scratch
 
 _STANDARD = {
@@ -419,12 +419,6 @@ def centre_of(at: Any, g: Geometry, i: int) -> Any:
     return mixed(at, terms, (
         g.c[:, i], offset + lever, offset + np.einsum("nkj,k->nj", turn, lever), offset,
         offset - turned))  # fmt: skip
-
-
-def steiner(mass: float, lever: Array) -> Array:
-    """m (c² 1 - c c^T)."""
-    moved: Array = mass * (lever @ lever * np.eye(3) - np.outer(lever, lever))
-    return moved
 
 
 def _flat(weight: Any) -> Any:

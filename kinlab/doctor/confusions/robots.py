@@ -14,7 +14,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.changes import Confusion
 from kinlab.errors import already_said
 from kinlab.model.dh import DHLink, DHTable
-from kinlab.model.link import Convention
+from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
 
 _DIRECTIONS = {
@@ -141,18 +141,12 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
             yield _inertial(kind, words.format(f"link {i + 1}"), i, change, cost + extra)
 
 
-def _steiner(old: Any) -> Array:
-    c = old.lever
-    moved: Array = old.mass * (np.dot(c, c) * np.eye(3) - np.outer(c, c))
-    return moved
-
-
 def _about_joint(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, old.inertia + _steiner(old)
+    return old.mass, old.lever, old.inertia + steiner(old.mass, old.lever)
 
 
 def _about_centre(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, old.inertia - _steiner(old)
+    return old.mass, old.lever, old.inertia - steiner(old.mass, old.lever)
 
 
 def _no_tensor(old: Any) -> tuple[float, Array, Array]:

@@ -19,6 +19,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import Chain, frames, inverse
 from kinlab.doctor.tables.words import Cause, number
 from kinlab.model.dh import DHLink, DHTable, with_links
+from kinlab.model.link import steiner
 from kinlab.tolerances import TOLERANCES
 
 
@@ -327,12 +328,6 @@ def _inertia_cause(one: _Link) -> Cause:
         if shift.any() and one.alike(written, meant + shift):
             return cause("origin", f"is about the origin of {name}", 1.1)
     return cause("value", "is wrong", 2.0)
-
-
-def steiner(mass: float, lever: Array) -> Array:
-    """Inertia of a point mass about the origin, (3, 3)."""
-    out: Array = mass * (float(lever @ lever) * np.eye(3) - np.outer(lever, lever))
-    return out
 
 
 def _products(one: _Link) -> str:

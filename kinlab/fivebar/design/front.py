@@ -33,7 +33,7 @@ _EASED = 1e-6
 """Part by which a bound is eased, so that the end it comes from still meets it."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class DesignFront(Told):
     """Designs of which none is better than another in both goals.
 

@@ -49,7 +49,7 @@ class Proved:
     unit: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FiveBarDesign(Told):
     """A five-bar for a rectangle.
 
