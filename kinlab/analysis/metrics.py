@@ -50,6 +50,7 @@ from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
+from kinlab.tolerances import TOLERANCES
 
 
 def yoshikawa(sigma: Array) -> Array:
@@ -258,13 +259,9 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
     )
 
 
-SINGULAR = 1e-10
-"""sigma_min / sigma_max at and below which a configuration counts as singular."""
-
-
 def regular(sigma: Array) -> Any:
     """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
-    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
+    return sigma > max(TOLERANCES.singular * float(sigma[0]), float(np.finfo(np.float64).tiny))
 
 
 OPTIMAL = "optimal"

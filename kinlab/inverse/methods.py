@@ -20,8 +20,9 @@ from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.inverse import kernel
 from kinlab.inverse.result import IKHistory
-from kinlab.inverse.setup import DAMPING, FLOOR, Setup, beyond_reach
+from kinlab.inverse.setup import DAMPING, Setup, beyond_reach
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _RUNAWAY = 1e6
 """Radians (or lengths of the arm) in one step, beyond which q has lost its digits."""
@@ -69,9 +70,10 @@ def gradient_exact(jac: Array, error: Array) -> Array:
 
 
 def lm(jac: Array, error: Array) -> Array:
-    """(J^T J + mu 1) dq = J^T e with mu = DAMPING ||e||^2 / 2 + FLOOR (Sugihara 2011)."""
+    """(J^T J + mu 1) dq = J^T e with mu = DAMPING ||e||^2 / 2 + damping_floor (Sugihara 2011)."""
     damped = jac.T @ jac
-    damped[np.diag_indices_from(damped)] += 0.5 * DAMPING * float(error @ error) + FLOOR
+    mu = 0.5 * DAMPING * float(error @ error) + TOLERANCES.damping_floor
+    damped[np.diag_indices_from(damped)] += mu
     return _solve(damped, jac.T @ error)
 
 
