@@ -25,6 +25,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "sphinx_copybutton",
     "sphinx_design",
+    "docstrings",
     "mathml",
     "made_pages",
     "notebooks",
@@ -32,6 +33,8 @@ extensions = [
 exclude_patterns = ["_build", "_ext", "**/.ipynb_checkpoints"]
 # one kind of page holds code that is run, the other does not: both are Markdown
 source_suffix = {".rst": "restructuredtext", ".md": "myst-nb"}
+
+suppress_warnings = ["ref.python"]  # the Arc of a motion and the Arc of a boundary
 
 html_theme = "furo"
 html_title = "kinlab"
@@ -67,8 +70,7 @@ copybutton_prompt_is_regexp = True
 copybutton_exclude = ".linenos, .gp, .go"
 
 autodoc_member_order = "bysource"
-autodoc_typehints = "description"
-autodoc_typehints_description_target = "documented"
+autodoc_typehints = "signature"
 autodoc_typehints_format = "short"
 autodoc_preserve_defaults = True
 autodoc_class_signature = "mixed"

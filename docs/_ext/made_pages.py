@@ -13,7 +13,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-GENERATORS = ("note_pages", "bench_pages", "drawings", "robot_pages")
+GENERATORS = ("reference_pages", "note_pages", "bench_pages", "drawings", "robot_pages")
 
 
 def write_all(app: Sphinx) -> None:
