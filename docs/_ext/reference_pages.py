@@ -231,9 +231,9 @@ def hints_of(thing: Any) -> dict[str, Any]:
 
 
 def classes(hint: Any) -> Iterator[type]:
-    if inspect.isclass(hint) and not isinstance(hint, types.GenericAlias):
-        if hint.__module__.startswith("kinlab."):
-            yield hint
+    own = inspect.isclass(hint) and not isinstance(hint, types.GenericAlias)
+    if own and hint.__module__.startswith("kinlab."):
+        yield hint
     for inner in typing.get_args(hint):
         yield from classes(inner)
 
