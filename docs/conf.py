@@ -30,7 +30,13 @@ extensions = [
     "made_pages",
     "notebooks",
 ]
-exclude_patterns = ["_build", "_ext", "**/generated/summary.md", "**/.ipynb_checkpoints"]
+exclude_patterns = [
+    "_build",
+    "_ext",
+    "**/generated/summary.md",
+    "benchmarks/generated",
+    "**/.ipynb_checkpoints",
+]
 # one kind of page holds code that is run, the other does not: both are Markdown
 source_suffix = {".rst": "restructuredtext", ".md": "myst-nb"}
 
