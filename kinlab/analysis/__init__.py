@@ -37,5 +37,6 @@ module              what it holds
 ``singularity``     Singular configurations: found from many seeds, grouped into families, each
                     with its meaning
 ``solver``          A batched Levenberg-Marquardt for many small systems at once, square or not
+``structure/``      What kind of arm it is: tasks, search boxes, the geometry of the joint axes
 ==================  ==============================================================================
 """

@@ -19,10 +19,10 @@ import numpy as np
 
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import jacobian_derivative
+from kinlab.analysis.structure.task_space import TaskSpace, search_box
 from kinlab.arrays import Array
-from kinlab.fast.stacks import jacobian
+from kinlab.engine.fast.stacks import jacobian
 from kinlab.host.progress import pulse
-from kinlab.structure.task_space import TaskSpace, search_box
 
 _TOGETHER = (1.0, 8.0, 64.0, 512.0)
 """Powers through which all starts go."""

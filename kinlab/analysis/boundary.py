@@ -15,13 +15,13 @@ from itertools import pairwise, product
 import numpy as np
 
 from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.task_space import search_box
 from kinlab.arrays import Array, frozen
+from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.axes import Axes
-from kinlab.structure.task_space import search_box
 
 _SIDE = 1e-3
 """Of the arm's reach: how far beside a piece its sides are tried. Islands and gaps thinner than

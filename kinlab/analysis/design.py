@@ -22,6 +22,7 @@ from kinlab.analysis.isotropy import (
 )
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
+from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
@@ -29,7 +30,6 @@ from kinlab.model.dh import DHTable
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 
 _SAME = 1e-5
 """Relative difference of open numbers below which two designs are one."""

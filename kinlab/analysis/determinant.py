@@ -14,6 +14,7 @@ from kinlab import symbolic
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
+from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
 from kinlab.arrays import Array, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -21,7 +22,6 @@ from kinlab.host.introductions import Answer, Introduction
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import TaskSpace, read_task, search_box, wrap
 
 _ZERO = 1e-12
 """Value of a factor, over its size in general position, at which it counts as zero."""

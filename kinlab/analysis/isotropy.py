@@ -20,12 +20,18 @@ from kinlab.analysis.best_condition import ENOUGH, LeastCondition, least_conditi
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
+from kinlab.analysis.structure.task_space import (
+    TaskSpace,
+    read_reachable_task,
+    revolute,
+    search_box,
+    wrap,
+)
 from kinlab.arrays import Array, frozen, seed_of, whole
-from kinlab.fast.stacks import jacobian
+from kinlab.engine.fast.stacks import jacobian
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
 
 ISOTROPIC = 1e-8
 """Condition number - 1 at and below which a configuration is isotropic."""

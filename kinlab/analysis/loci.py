@@ -19,6 +19,7 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.solver import solve
+from kinlab.analysis.structure.task_space import read_reachable_task, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
@@ -26,7 +27,6 @@ from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import read_reachable_task, revolute, search_box, wrap
 
 _LINES = 64
 """Scan lines along each joint of a slice, stratified over the others' ranges: an arc that spans

@@ -43,13 +43,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.task_space import TaskSpace, read_length, read_task
 from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
-from kinlab.structure.task_space import TaskSpace, read_length, read_task
 
 
 def yoshikawa(sigma: Array) -> Array:

@@ -17,9 +17,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box
 from kinlab.arrays import Array
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import TaskSpace, revolute, search_box
 
 _SAMPLES = 17
 """Samples along one joint that show its degree, which is at most 6."""

@@ -22,6 +22,7 @@ from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.minors import Factor, factors
 from kinlab.analysis.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
+from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, revolute
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -29,7 +30,6 @@ from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""

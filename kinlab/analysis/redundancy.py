@@ -17,11 +17,11 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR, regular
+from kinlab.analysis.structure.task_space import read_task
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.structure.task_space import read_task
 
 
 @dataclass(frozen=True)

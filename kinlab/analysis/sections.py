@@ -22,14 +22,14 @@ from kinlab.analysis import singular_set as sets
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
+from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen, number, seed_of
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.axes import Axes
-from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
 
 _STARTS = 240
 """Starts for the curves of one set of locked joints; a curve needs one of them."""

@@ -25,9 +25,9 @@ from itertools import combinations
 import numpy as np
 
 from kinlab.analysis.solver import jacobian_derivative, solve
+from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array
-from kinlab.fast.stacks import jacobian
-from kinlab.structure.task_space import TaskSpace, revolute, search_box, wrap
+from kinlab.engine.fast.stacks import jacobian
 
 CONVERGED = 1e-12
 """Norm of the residual, in the arm's own length unit, below which a solution is accepted; far

@@ -15,6 +15,15 @@ from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.minors import factors
 from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
+from kinlab.analysis.structure.axes import name_singularity, structure
+from kinlab.analysis.structure.task_space import (
+    TaskSpace,
+    read_reachable_task,
+    revolute,
+    search_box,
+    wrap,
+)
+from kinlab.analysis.structure.tasks import COORDINATES
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -22,9 +31,6 @@ from kinlab.host.introductions import Introduction, Rows, counted, numbered, vec
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.structure.axes import name_singularity, structure
-from kinlab.structure.task_space import TaskSpace, read_reachable_task, revolute, search_box, wrap
-from kinlab.structure.tasks import COORDINATES
 
 _SAME_ANGLE = 1e-6
 """rad or m: two values of a pinned joint closer than this are one. Solutions agree to 1e-9."""
@@ -51,7 +57,8 @@ class Singularity:
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
             ``boundary`` (the tool cannot pass on in the lost direction), ``interior`` or
             ``undecided``.
-        task: the task. rows: its rows. length: metres, see :mod:`kinlab.structure.task_space`.
+        task: the task. rows: its rows.
+        length: metres, see :mod:`kinlab.analysis.structure.task_space`.
     """
 
     q: Array

@@ -174,7 +174,7 @@ def _solutions(robot: Robot, output: Path | None) -> None:
     """How many solutions the points of a section have, as a table and a picture."""
     import numpy as np
 
-    from kinlab.postures.solution_map import solution_map
+    from kinlab.inverse.postures.solution_map import solution_map
 
     console = screen()
     chart = solution_map(robot)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy import IsotropySearch
+    from kinlab.inverse.postures.solution_map import SolutionMap
     from kinlab.model.robot import Robot
-    from kinlab.postures.solution_map import SolutionMap
     from kinlab.sweeps.workspace import WorkspaceMap
 
 
@@ -29,10 +29,10 @@ def singular(robot: Robot, task: Any, joints: str | None, seed: int, path: Path)
 
 def isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
     """The best conditioned pose with its ellipses, or where a spatial arm is well conditioned."""
+    from kinlab.analysis.structure.task_space import TaskSpace
     from kinlab.plots.arms import ellipses
     from kinlab.plots.canvas import save
     from kinlab.plots.maps import workspace_map
-    from kinlab.structure.task_space import TaskSpace
     from kinlab.sweeps.workspace import sample_workspace, stays_in_plane
 
     if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):

@@ -21,7 +21,7 @@ def headline(robot: Robot, task: str, suggested: bool) -> Any:
 
 def print_determinant(console: Any, robot: Robot, task: Any) -> None:
     from kinlab.analysis.determinant import factored_determinant
-    from kinlab.structure.task_space import read_task
+    from kinlab.analysis.structure.task_space import read_task
 
     if read_task(robot, task).m != robot.n or robot.table is None:
         return  # no determinant, or one made of 17-digit numbers
@@ -138,7 +138,7 @@ def _degrees(robot: Robot, q: Any) -> str:
     """Revolute joints in degrees, prismatic ones in metres."""
     import numpy as np
 
-    from kinlab.structure.task_space import revolute
+    from kinlab.analysis.structure.task_space import revolute
 
     shown = np.where(revolute(robot), np.degrees(q), q)
     return ", ".join(f"{round(v, 4) + 0.0:g}" for v in shown.tolist())

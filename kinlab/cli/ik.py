@@ -65,7 +65,7 @@ def ik(
     if branches:
         _print_branches(robot, pose)
         return
-    from kinlab.fast.arrays import chain
+    from kinlab.engine.fast.arrays import chain
     from kinlab.inverse.search import ik as solve
 
     start = None if q0 is None else [parse_angle(text) for text in q0.split(",")]
@@ -135,6 +135,6 @@ def _announce_compilation() -> None:
     """Lets the message about compiling through to stderr: the first run takes some seconds."""
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(logging.Formatter("kinlab: %(message)s"))
-    logger = logging.getLogger("kinlab.fast.compiled")
+    logger = logging.getLogger("kinlab.engine.fast.compiled")
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)

@@ -48,9 +48,9 @@ def mark(
     A run that was stopped goes on where it was. Below `answer` nothing that is written holds a
     right formula.
     """
-    from kinlab.marking.handout import students_of, write_handouts
-    from kinlab.marking.run import mark as mark_all
-    from kinlab.marking.sheet import read_sheet
+    from kinlab.doctor.marking.handout import students_of, write_handouts
+    from kinlab.doctor.marking.run import mark as mark_all
+    from kinlab.doctor.marking.sheet import read_sheet
 
     read = read_sheet(sheet)
     if handout is not None:

@@ -58,7 +58,7 @@ def motion(
     if len({len(row) for row in rows}) > 1:
         raise OptionError("motion: the points have different numbers of joints")
     if line:
-        from kinlab.fast.stacks import fk
+        from kinlab.engine.fast.stacks import fk
 
         if jerk is not None:
             raise OptionError("motion --line: lines have no jerk limit; leave --jerk out")

@@ -110,7 +110,7 @@ def _open(
         raise NameUnknownError(f"{problem}; five-bars: {', '.join(presets())}") from None
     scene = Scene(robot, start, meshes=meshes)
     if branches:
-        from kinlab.fast.stacks import fk
+        from kinlab.engine.fast.stacks import fk
         from kinlab.inverse.branches import ik_branches
 
         found = ik_branches(robot, fk(robot, scene.q))

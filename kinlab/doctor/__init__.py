@@ -29,5 +29,6 @@ module              what it holds
                     if one does
 ``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
                     table is wrong?
+``marking/``        The formulas of a class, judged and marked
 ==================  ==============================================================================
 """

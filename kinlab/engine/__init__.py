@@ -13,5 +13,7 @@ module          what it holds
 ``links``       The single links, by Pinocchio: their motion, the wrenches on them, their energies
 ``states``      Joint vectors at the door: cheap on the good path, exact about what is wrong on
                 the other
+``fast/``       The engine's functions with a faster road for long stacks: compiled kernels and
+                threads; check and doctor never take it
 ==============  ==================================================================================
 """

@@ -2,8 +2,8 @@
 
 tau = M(q) qddot + C(q, qdot) qdot + g(q): the equation of the notes. Armatures are part of M. The
 joints' own friction, B qdot + tau_c sign(qdot) with sign(0) = 0, is a term beside it that counts
-where it is asked for: ``friction=True``. :mod:`kinlab.fast.stacks` has a faster road for long
-stacks.
+where it is asked for: ``friction=True``. :mod:`kinlab.engine.fast.stacks` has a faster road for
+long stacks.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Forward kinematics, Jacobians and statics, by Pinocchio, for any number of states.
 
-A stack is looped over; :mod:`kinlab.fast.stacks` has the same functions with a faster road for long
-stacks.
+A stack is looped over; :mod:`kinlab.engine.fast.stacks` has the same functions with a faster road
+for long stacks.
 The one place that knows ``pin.ReferenceFrame``. Twists and wrenches are linear first, (v, w)
 and (f, n); see :data:`FRAMES` for the three frames a Jacobian can be in.
 """

@@ -26,5 +26,7 @@ module            what it holds
 ``setup``         What a search needs to know about an arm and a task, worked out once and kept
 ``structures``    Which closed form an arm has: from the lines of its joint axes, whatever it was
                   read from
+``postures/``     Counts of solutions, aspects, cuspidality, changes of posture and paths along
+                  branches
 ================  ================================================================================
 """

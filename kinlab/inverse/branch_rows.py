@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fast.compiled import kernel
-from kinlab.fast.kinematics_kernels import columns, frames
-from kinlab.fast.threads import over_rows
+from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.threads import over_rows
 from kinlab.inverse.closed_forms import (
     in_the_plane,
     inverse,

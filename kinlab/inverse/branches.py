@@ -12,9 +12,9 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, real_array, whole
+from kinlab.engine.fast.arrays import chain
+from kinlab.engine.fast.compiled import kernel
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
-from kinlab.fast.arrays import chain
-from kinlab.fast.compiled import kernel
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse import branch_rows
 from kinlab.inverse.branch_names import distinct, words_of

@@ -22,7 +22,7 @@ import math
 
 import numpy as np
 
-from kinlab.fast.compiled import kernel
+from kinlab.engine.fast.compiled import kernel
 from kinlab.inverse.equations import add_square, circle_pair, half_angle, joint_roots, linear_trig
 
 PARALLEL = 1e-9

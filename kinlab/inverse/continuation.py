@@ -31,8 +31,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fast.compiled import kernel
-from kinlab.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.fast.kinematics_kernels import columns, frames
 
 FOLLOWED, SINGULAR_END, LOST = 0, 1, 2
 """How a path ended: at a regular solution; where solutions run together; not at all."""

@@ -13,7 +13,7 @@ import math
 
 import numpy as np
 
-from kinlab.fast.compiled import kernel
+from kinlab.engine.fast.compiled import kernel
 
 _NEAR_REAL = 1e-4
 """How far from the real line, or from the unit circle, a root may lie and still be offered: a

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.branch_rows import miss
 from kinlab.inverse.kernel import pose_error
 from kinlab.inverse.structures import POINTING, POSITION, Form

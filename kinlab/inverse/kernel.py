@@ -23,8 +23,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fast.compiled import kernel
-from kinlab.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.fast.kinematics_kernels import columns, frames
 
 CONVERGED, OUTSIDE, STALLED, RUNNING = 0, 1, 2, 3
 """How the best search ended: tolerance met; met, but outside the limits; no more progress;
@@ -39,7 +39,7 @@ class Search(NamedTuple):
     """What a search of one arm for one task works with; do not write to the arrays.
 
     Attributes:
-        fixed, prismatic: the chain (:mod:`kinlab.fast.kinematics_kernels`).
+        fixed, prismatic: the chain (:mod:`kinlab.engine.fast.kinematics_kernels`).
         lower, upper: limits, (n,).
         wide: joints left free inside the iteration, (n,), bool.
         weight: of the squared error, (6,), zero for what is not asked for.

@@ -16,8 +16,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from kinlab.arrays import Array, real_array
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.inverse import kernel
 from kinlab.inverse.result import IKHistory
 from kinlab.inverse.setup import DAMPING, FLOOR, Setup, beyond_reach

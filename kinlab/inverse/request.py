@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import LARGEST, Array, number, real_array, rigid_transform, seed_of, whole
+from kinlab.engine.fast.compiled import kernel
 from kinlab.engine.states import warn_far
 from kinlab.errors import StateError
-from kinlab.fast.compiled import kernel
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 

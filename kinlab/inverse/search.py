@@ -15,10 +15,10 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, truth
+from kinlab.engine.fast.compiled import kernel as compiled
+from kinlab.engine.fast.stacks import jacobian
+from kinlab.engine.fast.threads import over_rows
 from kinlab.errors import OptionError
-from kinlab.fast.compiled import kernel as compiled
-from kinlab.fast.stacks import jacobian
-from kinlab.fast.threads import over_rows
 from kinlab.host.progress import takes_long
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.branch_names import matching
@@ -93,7 +93,7 @@ def ik(
         tol_rotation: radians, of the rotation vector log(R_d R^T) in the base's axes, in the
             coordinates of the task.
         seed: of the table of starts.
-        task: a name of :data:`kinlab.structure.tasks.TASKS`, a mask of six booleans, or
+        task: a name of :data:`kinlab.analysis.structure.tasks.TASKS`, a mask of six booleans, or
             ``"auto"``: as many coordinates as the arm can move independently (the answer's
             ``task`` says which), and the rest of T too where one of the solutions is found to
             meet it. With ``"pose"``, an arm of fewer than six joints meets only those T on its

@@ -8,13 +8,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from kinlab.analysis.structure.task_space import ENDLESS, TaskSpace, read_task
+from kinlab.analysis.structure.tasks import TASKS, require_task, task_rows
 from kinlab.arrays import Array, seed_of
-from kinlab.fast.arrays import chain
-from kinlab.fast.stacks import fk, jacobian
+from kinlab.engine.fast.arrays import chain
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.inverse.kernel import Search
 from kinlab.model.robot import Robot
-from kinlab.structure.task_space import ENDLESS, TaskSpace, read_task
-from kinlab.structure.tasks import TASKS, require_task, task_rows
 
 STARTS = 256
 """States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to

@@ -7,14 +7,14 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from kinlab.analysis.structure.axes import Axes, meeting_point
 from kinlab.arrays import Array
+from kinlab.engine.fast.arrays import Chain, chain
+from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.errors import StructureError
-from kinlab.fast.arrays import Chain, chain
-from kinlab.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.closed_forms import PARALLEL, reversed_chain
 from kinlab.inverse.continuation import BOUNDS, generic_solutions
 from kinlab.model.robot import Robot
-from kinlab.structure.axes import Axes, meeting_point
 from kinlab.tolerances import TOLERANCES
 
 WRIST, TRIPLE, POINT, PLANE, GENERAL = 0, 1, 2, 3, 4

@@ -17,17 +17,17 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array
 from kinlab.drives.arm import demand_of
+from kinlab.engine.fast.stacks import fk
 from kinlab.errors import StructureError
-from kinlab.fast.stacks import fk
 from kinlab.host.introductions import Told, counted
 from kinlab.inverse.branches import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.motion.limits import positions_outside, read_limits
 from kinlab.motion.record import Motion, peak_of
-from kinlab.structure.task_space import TaskSpace, read_reachable_task
 
 _MOST = 20_000
 """Pieces of time looked at before what is left counts as undecided."""

@@ -11,14 +11,14 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import SingularError, UnreachableError
-from kinlab.fast.stacks import fk, jacobian
+from kinlab.inverse.postures.path import IKPath, ik_path
 from kinlab.inverse.search import ik
 from kinlab.model.robot import Robot
 from kinlab.motion.ways import TimedWay
-from kinlab.postures.path import IKPath, ik_path
-from kinlab.structure.task_space import TaskSpace
 
 _TOLERANCE = 1e-10
 """m and rad of the inverse kinematics at the samples."""

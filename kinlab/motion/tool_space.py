@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array, number, word
 from kinlab.drives import laws
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.engine.kinematics import jacobian_dot
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.motion.follow import follow, pose_error
@@ -22,7 +23,6 @@ from kinlab.motion.joint_space import STEP
 from kinlab.motion.limits import read_limits, require_limits
 from kinlab.motion.record import Motion, even_times, hermite, motion_of
 from kinlab.motion.ways import Leg, TimedWay, read_legs
-from kinlab.structure.task_space import TaskSpace, read_reachable_task
 
 _DENSE = 4001
 """Times at which the tool's speed and acceleration are compared with their limits."""

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import ellipsoid
+from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array
+from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
-from kinlab.structure.axes import Axes
-from kinlab.structure.task_space import TaskSpace
 from kinlab.sweeps.workspace import stays_in_plane
 
 _STYLES = {"velocity": (GREEN, "-"), "force": (RED, "--"), "dynamic": (GREY, "-.")}

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.inverse.postures.solution_map import SolutionMap
 from kinlab.plots.canvas import RED, new_axes
-from kinlab.postures.solution_map import SolutionMap
 
 _LABELS = {
     "rho": "distance from the first axis [m]",

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from kinlab.analysis import metrics
 from kinlab.analysis.loci import Loci
 from kinlab.analysis.loci import singular_loci as traced
+from kinlab.analysis.structure.task_space import read_length, read_task
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, RED, degree_ticks, figure_text, new_axes, spread_labels
-from kinlab.structure.task_space import read_length, read_task
 
 
 def singular_values(

@@ -11,7 +11,7 @@ from kinlab.analysis.boundary import PlanarBoundary, planar_boundary
 from kinlab.analysis.loci import singular_loci
 from kinlab.analysis.sections import WorkspaceSection, takes_limits, workspace_section
 from kinlab.arrays import Array
-from kinlab.fast.stacks import fk
+from kinlab.engine.fast.stacks import fk
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.plots.canvas import RED, new_axes, spread_labels

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.structure.task_space import suggest_rows
 from kinlab.arrays import Array, shown
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.fast.stacks import fk, jacobian
-from kinlab.structure.task_space import suggest_rows
 
 Measure = Callable[[Any, Array], Any]
 """f(robot, q (m, n)) -> an array with m rows, or a dict of such arrays."""

@@ -21,8 +21,8 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.engine.fast.threads import one_thread
 from kinlab.errors import OptionError, SweepError
-from kinlab.fast.threads import one_thread
 from kinlab.host.processes import end_with_parent
 from kinlab.sweeps.measures import Measure, evaluate
 from kinlab.sweeps.parts import Columns, Run

@@ -16,8 +16,8 @@ import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
+from kinlab.engine.fast.threads import available
 from kinlab.errors import NameUnknownError, OptionError, near
-from kinlab.fast.threads import available
 from kinlab.host.introductions import MOST_ROWS, Introduction, Rows, counted, numbered
 from kinlab.host.progress import progress as line
 from kinlab.model.dh import DHTable

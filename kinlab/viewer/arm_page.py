@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from kinlab.analysis.structure.tasks import TASKS, generic_rank
 from kinlab.arrays import Array
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import StructureError
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.extract import as_table
 from kinlab.model.robot import Robot
-from kinlab.structure.tasks import TASKS, generic_rank
 from kinlab.tolerances import TOLERANCES
 from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
 from kinlab.viewer.dh_picture import columns, draw_dh, frames_only

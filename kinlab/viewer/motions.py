@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
 from kinlab.drives.laws import rising
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm import reach
 from kinlab.viewer.arm_page import judged_rows
@@ -145,7 +145,7 @@ def posture(robot: Robot, start: Array) -> ShownMotion:
         StructureError: no such change was found.
         OptionError: the arm's task leaves joints free.
     """
-    from kinlab.postures.cuspidality import is_cuspidal
+    from kinlab.inverse.postures.cuspidality import is_cuspidal
 
     found = is_cuspidal(robot)
     if found.path is None:
@@ -213,7 +213,7 @@ def _track(robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array)
     """Follows a path of positions by IK; None where it cannot be had on one branch."""
     goals = np.tile(pose, (len(offsets), 1, 1))
     goals[:, :3, 3] += offsets
-    from kinlab.postures.path import ik_path
+    from kinlab.inverse.postures.path import ik_path
 
     task = [r in rows for r in range(6)]
     for pick in (goals[::10], goals):  # a few first: most paths that fail do so there

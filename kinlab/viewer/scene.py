@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array, shaped
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.engine.states import joint_vector, warn_far
 from kinlab.errors import NameUnknownError, StateError, near, warn
-from kinlab.fast.stacks import fk, jacobian
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.linkage import as_five_bar

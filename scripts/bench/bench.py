@@ -34,8 +34,8 @@ import bench_parties as parties
 import numpy as np
 
 import kinlab as kl
-from kinlab.fast import stacks
-from kinlab.fast.threads import cores
+from kinlab.engine.fast import stacks
+from kinlab.engine.fast.threads import cores
 from kinlab.host.files import read_text, write_text
 
 RESULTS = Path(__file__).parent / "results"

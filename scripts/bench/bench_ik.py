@@ -25,7 +25,7 @@ import ik_peers as peers
 import numpy as np
 
 import kinlab as kl
-from kinlab.fast.threads import wanted_threads
+from kinlab.engine.fast.threads import wanted_threads
 from kinlab.host.files import write_text
 from kinlab.model.rotations import rpy_matrix
 

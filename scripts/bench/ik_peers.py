@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 import kinlab as kl
-from kinlab.fast.arrays import chain
+from kinlab.engine.fast.arrays import chain
 
 Solver = Callable[[np.ndarray], np.ndarray | None]
 MIDDLE_SHARE = 0.5

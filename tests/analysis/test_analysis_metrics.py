@@ -12,8 +12,8 @@ from random_tables import random_table
 import kinlab as kl
 from kinlab.analysis import metrics
 from kinlab.analysis.solver import jacobian_derivative
+from kinlab.analysis.structure.task_space import read_task
 from kinlab.errors import NameUnknownError, OptionError, StateError
-from kinlab.structure.task_space import read_task
 
 KINDS = ("yoshikawa", "inverse_condition", "min_singular", "asada", "isotropy")
 

@@ -10,8 +10,8 @@ import pytest
 
 import kinlab as kl
 from kinlab.analysis.determinant import vanishing_factors
+from kinlab.analysis.structure.task_space import read_task
 from kinlab.errors import NameUnknownError, OptionError
-from kinlab.structure.task_space import read_task
 
 ARMS = ("planar2r", "planar3r", "spatial3r", "scara", "stanford", "puma560", "puma560_modified",
         "ur5", "panda")  # fmt: skip

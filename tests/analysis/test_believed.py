@@ -10,7 +10,7 @@ import kinlab as kl
 from kinlab.analysis import minors
 from kinlab.analysis.certified import nearest_zero
 from kinlab.analysis.nearest import slope_bound
-from kinlab.structure.task_space import read_task
+from kinlab.analysis.structure.task_space import read_task
 
 PI = np.pi
 

@@ -12,7 +12,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.engine import dynamics, kinematics
-from kinlab.fast import stacks
+from kinlab.engine.fast import stacks
 
 CHECK = """
 import sys

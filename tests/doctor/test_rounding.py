@@ -186,7 +186,7 @@ def analysis_verdicts(name):
 @pytest.mark.parametrize("name", ["planar2r", "planar3r", "spatial3r", "stanford", "puma560"])
 def test_the_analysis_says_the_same(shake, name):
     from kinlab.analysis import edge, singular_set
-    from kinlab.structure import axes, task_space
+    from kinlab.analysis.structure import axes, task_space
 
     plain = analysis_verdicts(name)
     assert plain

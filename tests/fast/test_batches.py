@@ -11,9 +11,9 @@ import pytest
 from random_tables import random_table
 
 import kinlab as kl
+from kinlab.engine.fast import stacks as fast_road
+from kinlab.engine.fast import threads
 from kinlab.errors import OptionError, StateError
-from kinlab.fast import stacks as fast_road
-from kinlab.fast import threads
 
 FUNCTIONS = {
     "fk": (kl.fk, 1),

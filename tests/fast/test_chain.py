@@ -7,11 +7,11 @@ import pytest
 from random_models import random_model
 
 import kinlab as kl
+from kinlab.engine.fast import compiled
+from kinlab.engine.fast import kinematics_kernels as kernels
+from kinlab.engine.fast.arrays import chain
+from kinlab.engine.fast.threads import over_rows, wanted_threads
 from kinlab.errors import OptionError
-from kinlab.fast import compiled
-from kinlab.fast import kinematics_kernels as kernels
-from kinlab.fast.arrays import chain
-from kinlab.fast.threads import over_rows, wanted_threads
 
 ARMS = ["puma560", "stanford", "planar2r", "scara", "erd:talos_arm", "erd:xarm7", "erd:hextilt"]
 
@@ -96,10 +96,10 @@ def test_bad_wanted_threadss(threads):
 
 def test_compiling_is_announced_once_and_only_when_asked(caplog, monkeypatch):
     monkeypatch.setattr(compiled.event_announcer, "said", False)
-    with caplog.at_level("WARNING", logger="kinlab.fast.compiled"):
+    with caplog.at_level("WARNING", logger="kinlab.engine.fast.compiled"):
         numba.njit(lambda x: x + 1)(1)
     assert not caplog.records
-    with caplog.at_level("INFO", logger="kinlab.fast.compiled"):
+    with caplog.at_level("INFO", logger="kinlab.engine.fast.compiled"):
         numba.njit(lambda x: x + 2)(1)
         numba.njit(lambda x: x + 3)(1)
     assert [r.message for r in caplog.records].count(caplog.records[0].message) == 1

@@ -7,7 +7,7 @@ import pickle
 
 import pytest
 
-from kinlab.fast.compiled import _Forgiving
+from kinlab.engine.fast.compiled import _Forgiving
 
 
 class Cache:

@@ -8,7 +8,7 @@ import pytest
 from arms import HALF, random_arm, table
 
 import kinlab as kl
-from kinlab.fast.arrays import chain
+from kinlab.engine.fast.arrays import chain
 from kinlab.inverse.branch_rows import all_branches
 from kinlab.inverse.continuation import generic_solutions
 from kinlab.inverse.structures import GENERAL, known_form

@@ -7,8 +7,8 @@ from arms import crx10ia, jaco2, xarm6
 from regional_arms import orthogonal
 
 import kinlab as kl
-from kinlab.postures.cuspidality import changes_without_singularity
-from kinlab.postures.posture_change import posture_changes
+from kinlab.inverse.postures.cuspidality import changes_without_singularity
+from kinlab.inverse.postures.posture_change import posture_changes
 
 
 def jacobian_by_pinocchio(robot, q, length, rows):

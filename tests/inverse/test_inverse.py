@@ -13,8 +13,8 @@ from random_models import random_model
 from random_tables import random_table
 
 import kinlab as kl
+from kinlab.engine.fast import arrays as chain_arrays
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError
-from kinlab.fast import arrays as chain_arrays
 from kinlab.inverse import kernel, methods
 from kinlab.inverse.result import IKStatus
 

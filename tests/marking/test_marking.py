@@ -13,12 +13,12 @@ import pytest
 import sympy
 
 import kinlab as kl
-from kinlab.marking import run
-from kinlab.marking.marks import slug_of
-from kinlab.marking.program import judge_program
-from kinlab.marking.results import as_csv, gradescope
-from kinlab.marking.sheet import sheet_of
-from kinlab.marking.submission import Submission, read_submission
+from kinlab.doctor.marking import run
+from kinlab.doctor.marking.marks import slug_of
+from kinlab.doctor.marking.program import judge_program
+from kinlab.doctor.marking.results import as_csv, gradescope
+from kinlab.doctor.marking.sheet import sheet_of
+from kinlab.doctor.marking.submission import Submission, read_submission
 
 G1 = "(m1+m2)*g*l1*c1 + m2*g*l2*c12"
 M = "[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2; m2*l2^2 + m2*l1*l2*c2, m2*l2^2]"
@@ -81,7 +81,7 @@ def test_levels_of_feedback():
 
 def test_numbers_of_each_student():
     sheet = sheet_of({**SHEET, "variation": {"seed": 1, "names": ["l1", "l2"]}}, "s")
-    from kinlab.marking.variation import numbers_for
+    from kinlab.doctor.marking.variation import numbers_for
 
     ada, bob = numbers_for(sheet, "ada"), numbers_for(sheet, "bob")
     own = {"q1": f"{ada['l1']}*c1 + {ada['l2']}*c12"}
@@ -367,7 +367,7 @@ def test_a_hostile_program_costs_only_itself(program, message):
 
 
 def test_an_endless_program_is_ended(monkeypatch):
-    monkeypatch.setattr("kinlab.marking.program.SECONDS", 1.0)
+    monkeypatch.setattr("kinlab.doctor.marking.program.SECONDS", 1.0)
     sheet = sheet_of(SHEET, "s")
     outcomes, enforced = judge_program(
         sheet, Submission("a.py", "ada", program="while 1: pass"), "cause"

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.marking.handout import handout, students_of, write_handouts
+from kinlab.doctor.marking.sheet import SheetError, read_sheet, sheet_of
+from kinlab.doctor.marking.variation import numbers_for, robot_for
 from kinlab.errors import FileError
-from kinlab.marking.handout import handout, students_of, write_handouts
-from kinlab.marking.sheet import SheetError, read_sheet, sheet_of
-from kinlab.marking.variation import numbers_for, robot_for
 
 ASKED = {"id": "q1", "entry": "tau1", "points": 4}
 

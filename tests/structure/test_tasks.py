@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from kinlab.analysis.structure import tasks
 from kinlab.errors import KinlabError, NameUnknownError, OptionError
-from kinlab.structure import tasks
 
 RNG = np.random.default_rng(0)
 

@@ -1,6 +1,7 @@
 """Kernels of a serial chain on plain arrays: pose, Jacobian, singular values; one or many.
 
-Importing this module imports numba. A chain is two arrays (:func:`kinlab.fast.arrays.chain`):
+Importing this module imports numba. A chain is two arrays
+(:func:`kinlab.engine.fast.arrays.chain`):
 
 - ``fixed`` (k + 1, 12): for each joint the fixed transform in front of it, rows of [R | p], and
   last the tool's. Every joint turns about or slides along the z axis of its own frame.
@@ -15,7 +16,7 @@ import math
 
 import numpy as np
 
-from kinlab.fast.compiled import kernel
+from kinlab.engine.fast.compiled import kernel
 
 _SWEEPS = 30
 """Jacobi sweeps at most; 6 x n matrices of arms converge in 4 to 8."""

@@ -17,11 +17,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+from kinlab.doctor.marking.judge import Outcome
+from kinlab.doctor.marking.marks import Mark, Marks
+from kinlab.doctor.marking.pages import class_page, student_page
 from kinlab.errors import FileError
 from kinlab.host.files import write_text
-from kinlab.marking.judge import Outcome
-from kinlab.marking.marks import Mark, Marks
-from kinlab.marking.pages import class_page, student_page
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "|", "%")
 """What a spreadsheet would take for the beginning of a formula or a command."""

@@ -18,7 +18,7 @@ from typing import Any
 import numba
 from numba.core import event
 
-LOGGER = logging.getLogger("kinlab.fast.compiled")
+LOGGER = logging.getLogger("kinlab.engine.fast.compiled")
 """Says at level INFO when kernels are being compiled (once per machine, then cached)."""
 
 _OPTIONS: dict[str, Any] = {

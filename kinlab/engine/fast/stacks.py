@@ -22,6 +22,8 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, truth
 from kinlab.engine import dynamics, kinematics
 from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
+from kinlab.engine.fast.arrays import chain
+from kinlab.engine.fast.threads import over_rows, thread_count
 from kinlab.engine.kinematics import (
     each_state,
     frame_jacobian,
@@ -32,8 +34,6 @@ from kinlab.engine.kinematics import (
     wrench_for,
 )
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors
-from kinlab.fast.arrays import chain
-from kinlab.fast.threads import over_rows, thread_count
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, model_pool, require_inertia
 
@@ -173,7 +173,7 @@ def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
     Returns:
         (N, min(r, n)).
     """
-    from kinlab.fast.kinematics_kernels import singular_value_rows
+    from kinlab.engine.fast.kinematics_kernels import singular_value_rows
 
     out = np.empty((len(q), min(len(rows), robot.n)))
     _on_threads(singular_value_rows, *chain(robot), q, np.ascontiguousarray(rows), out)
@@ -196,7 +196,7 @@ def _long(*values: Any) -> bool:
 
 def _poses(robot: Robot, q: Array) -> Array:
     """Tool pose of each row, (N, 4, 4)."""
-    from kinlab.fast.kinematics_kernels import fk_rows
+    from kinlab.engine.fast.kinematics_kernels import fk_rows
 
     out = np.empty((len(q), 4, 4))
     _on_threads(fk_rows, *chain(robot), q, out)
@@ -205,7 +205,7 @@ def _poses(robot: Robot, q: Array) -> Array:
 
 def _jacobians(robot: Robot, q: Array, frame: str) -> Array:
     """Jacobian of each row in a named frame, (N, 6, n)."""
-    from kinlab.fast.kinematics_kernels import jacobian_rows
+    from kinlab.engine.fast.kinematics_kernels import jacobian_rows
 
     out = np.empty((len(q), 6, robot.n))
     _on_threads(jacobian_rows, *chain(robot), q, out)

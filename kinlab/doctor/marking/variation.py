@@ -9,7 +9,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from kinlab.marking.sheet import Sheet, Variation
+from kinlab.doctor.marking.sheet import Sheet, Variation
 from kinlab.model.dh import DHTable
 from kinlab.model.link import DHLink
 from kinlab.model.robot import Robot

@@ -11,10 +11,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from kinlab.check.report import html as report
+from kinlab.doctor.marking.marks import Mark, Marks
+from kinlab.doctor.marking.words import KINDS
 from kinlab.host.version import __version__
 from kinlab.host.web import page_text, policy
-from kinlab.marking.marks import Mark, Marks
-from kinlab.marking.words import KINDS
 
 _FOLDER = Path(__file__).parent
 _REPORT = Path(report.__file__).parent

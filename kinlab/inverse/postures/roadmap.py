@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.structure.task_space import TaskSpace, revolute
 from kinlab.arrays import Array
-from kinlab.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
-from kinlab.structure.task_space import TaskSpace, revolute
+from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
 
 _NEIGHBOURS = 12
 _SAMPLES = 16

@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, seed_of
+from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import NameUnknownError
-from kinlab.fast.stacks import jacobian
+from kinlab.inverse.postures.posture_change import PostureChange, posture_changes
 from kinlab.inverse.request import read_guess, read_targets
 from kinlab.inverse.result import BRANCH, IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.postures.posture_change import PostureChange, posture_changes
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""

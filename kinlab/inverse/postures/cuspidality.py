@@ -3,7 +3,7 @@
 Two solutions of one pose on one side of every factor of det J may lie in one aspect. Between such
 pairs a path is sought, along straight lines first and then through a roadmap of sampled joint
 positions; it counts only when it is shown to stay clear of singularities between its samples
-(:mod:`kinlab.postures.nonsingular`). Nothing is concluded from signs of det J at samples.
+(:mod:`kinlab.inverse.postures.nonsingular`). Nothing is concluded from signs of det J at samples.
 
 Wenger, "Uniqueness domains and regions of feasible paths for cuspidal manipulators", IEEE Trans.
 Robotics 20(4), 2004; Salunkhe, Spartalis, Capco, Chablat & Wenger, "Necessary and sufficient
@@ -22,18 +22,18 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.structure.task_space import TaskSpace, read_task, revolute, search_box
 from kinlab.arrays import Array, seed_of, shown, whole
+from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
-from kinlab.fast.stacks import fk
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.branches import ik_branches
+from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
+from kinlab.inverse.postures.regional import Regional, first_axis, is_regional, singular_points
+from kinlab.inverse.postures.roadmap import Roadmap
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
-from kinlab.postures.regional import Regional, first_axis, is_regional, singular_points
-from kinlab.postures.roadmap import Roadmap
-from kinlab.structure.task_space import TaskSpace, read_task, revolute, search_box
 
 CUSPIDAL, NONE_FOUND = "cuspidal", "none found"
 

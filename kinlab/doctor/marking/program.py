@@ -22,11 +22,11 @@ from typing import Any
 import numpy as np
 
 from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.doctor.marking.judge import Outcome, lost, missing, of_values, states_of
+from kinlab.doctor.marking.sheet import Question, Sheet
+from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
-from kinlab.marking.judge import Outcome, lost, missing, of_values, states_of
-from kinlab.marking.sheet import Question, Sheet
-from kinlab.marking.submission import Submission
 
 SECONDS = 10.0
 """Processor and clock time of one program."""

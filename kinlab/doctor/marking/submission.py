@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.doctor.file import quantity_of
+from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.terms import split_name
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
 from kinlab.host.files import read_text, read_toml
-from kinlab.marking.sheet import Question, Sheet
 
 LARGEST = 256 * 1024
 """Bytes of a submission above which it is not read."""

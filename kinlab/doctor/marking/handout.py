@@ -6,11 +6,11 @@ import tomllib
 from collections.abc import Iterable
 from pathlib import Path
 
+from kinlab.doctor.marking.marks import slug_of
+from kinlab.doctor.marking.sheet import Sheet
+from kinlab.doctor.marking.variation import numbers_for
 from kinlab.errors import FileError
 from kinlab.host.files import read_text, write_text
-from kinlab.marking.marks import slug_of
-from kinlab.marking.sheet import Sheet
-from kinlab.marking.variation import numbers_for
 
 _STUDENTS = 5000
 

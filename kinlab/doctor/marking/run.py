@@ -18,17 +18,17 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import shown, whole, word
+from kinlab.doctor.marking.judge import Outcome, check_answers, judge, lost
+from kinlab.doctor.marking.marks import Mark, Marks, slug_of
+from kinlab.doctor.marking.program import judge_program
+from kinlab.doctor.marking.results import write_marks
+from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
+from kinlab.doctor.marking.submission import Submission, found_in, of_document, read_submission
 from kinlab.errors import FileError, KinlabError
 from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
 from kinlab.host.processes import end_with_parent
 from kinlab.host.version import __version__ as VERSION
-from kinlab.marking.judge import Outcome, check_answers, judge, lost
-from kinlab.marking.marks import Mark, Marks, slug_of
-from kinlab.marking.program import judge_program
-from kinlab.marking.results import write_marks
-from kinlab.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
-from kinlab.marking.submission import Submission, found_in, of_document, read_submission
 
 SECONDS = 90.0
 """Clock time of one submission, after which it is given up."""

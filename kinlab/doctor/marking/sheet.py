@@ -33,11 +33,11 @@ from typing import Any
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.file import quantity_of
+from kinlab.doctor.marking.words import KINDS
 from kinlab.doctor.terms import split_name
 from kinlab.errors import FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
-from kinlab.marking.words import KINDS
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
 

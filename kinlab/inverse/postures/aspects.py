@@ -20,14 +20,14 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.structure.task_space import revolute
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.host.progress import pulse, takes_long
+from kinlab.inverse.postures.cuspidality import square_task, yes_or_no
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.postures.cuspidality import square_task, yes_or_no
-from kinlab.structure.task_space import revolute
 
 _MOST_JOINTS = 3
 """Joints of one group up to which boxes are few enough."""

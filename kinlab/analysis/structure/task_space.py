@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 from kinlab.arrays import Array, real_array
+from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import jacobian
 from kinlab.model.robot import Robot
-from kinlab.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 
 AUTO = "auto"
 """The task that suits the arm: as many coordinates as it can move independently."""
@@ -113,10 +113,11 @@ def read_task(robot: Robot, task: Any) -> TaskSpace:
 
     Args:
         robot: the robot.
-        task: a name of :data:`kinlab.structure.tasks.TASKS`, six booleans, ``"auto"`` or ``None``.
+        task: a name of :data:`kinlab.analysis.structure.tasks.TASKS`, six booleans, ``"auto"`` or
+            ``None``.
 
     Raises:
-        NameUnknownError, OptionError: as :func:`kinlab.structure.tasks.task_rows`.
+        NameUnknownError, OptionError: as :func:`kinlab.analysis.structure.tasks.task_rows`.
     """
     if task is None or (isinstance(task, str) and task == AUTO):
         rows = suggest_rows(robot)

@@ -7,11 +7,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk
+from kinlab.inverse.postures.cuspidality import differ, square_task
+from kinlab.inverse.postures.nonsingular import NonsingularPath, show_nonsingular
 from kinlab.model.robot import Robot
-from kinlab.postures.cuspidality import differ, square_task
-from kinlab.postures.nonsingular import NonsingularPath, show_nonsingular
 
 _SAME_POSE = 1e-5
 """Metres, and entries of the rotation, within which two poses are one."""

@@ -22,12 +22,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk
 from kinlab.errors import OptionError
 from kinlab.model.robot import Robot
-from kinlab.structure.axes import Axes
-from kinlab.structure.task_space import read_task, revolute
 
 _DEPTH = 12
 """Halvings of the torus' 8 x 8 boxes before the boxes that are left are solved in."""

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.fast.stacks import fk, jacobian
+from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array, number, whole
+from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
-from kinlab.fast.stacks import fk
 from kinlab.host.progress import takes_long
-from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot
-from kinlab.postures.regional import (
+from kinlab.inverse.postures.regional import (
     Regional,
     collapsed_points,
     first_axis,
@@ -23,9 +23,9 @@ from kinlab.postures.regional import (
     singular_points,
     singular_segments,
 )
-from kinlab.postures.solution_count import SolutionCounts, solution_count
-from kinlab.structure.axes import Axes
-from kinlab.structure.task_space import read_task, revolute
+from kinlab.inverse.postures.solution_count import SolutionCounts, solution_count
+from kinlab.model.library import ArmLike, as_robot
+from kinlab.model.robot import Robot
 
 _DRAWN = 400
 """Random joint positions whose tool positions are counted beside the cells."""

@@ -10,10 +10,10 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from kinlab.doctor.marking.judge import Outcome
+from kinlab.doctor.marking.sheet import Sheet
 from kinlab.errors import NameUnknownError, near
 from kinlab.host.introductions import Told
-from kinlab.marking.judge import Outcome
-from kinlab.marking.sheet import Sheet
 
 
 @dataclass(frozen=True, repr=False)

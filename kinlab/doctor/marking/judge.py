@@ -16,6 +16,10 @@ from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of
+from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
+from kinlab.doctor.marking.submission import Submission, as_entries
+from kinlab.doctor.marking.variation import robot_for
+from kinlab.doctor.marking.words import told
 from kinlab.doctor.terms import split_name
 from kinlab.errors import ExpressionError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
@@ -23,10 +27,6 @@ from kinlab.formulas.marks import differences
 from kinlab.formulas.text import FormulaFile, canonical, formula_file, parse
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import Marks, equation
-from kinlab.marking.sheet import FEEDBACK, Question, Sheet, SheetError
-from kinlab.marking.submission import Submission, as_entries
-from kinlab.marking.variation import robot_for
-from kinlab.marking.words import told
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 
