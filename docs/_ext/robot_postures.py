@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import kinlab as kl
-from kinlab.viewer.fivebar_page import best_start
+from kinlab.viewer.drawing.fivebar import best_start
 
 POSTURES: dict[str, tuple[float, ...]] = {
     "planar2r": (35, 50),
