@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from kinlab.viewer.fivebar_page import best_start
+from kinlab.viewer.drawing.fivebar import best_start
 from numpy.typing import NDArray
 
 import kinlab as kl
