@@ -179,7 +179,7 @@ def search(
         elif best_end != kernel.OUTSIDE:
             _wrap(arm, q, q0)
             q = np.clip(q, arm.lower, arm.upper)
-            energy = _energy(_weighted(arm, _error(robot, q, target)))
+            energy = _energy(_weighted(arm, pose_error(fk(robot, q), target)))
             if energy < best:
                 best, best_q, best_end = energy, q, end
     return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
@@ -204,7 +204,7 @@ def _one_search(
     mark = math.inf
     outside: Array | None = None
     for count in range(limits.iterations):
-        error = _error(robot, q, target)
+        error = pose_error(fk(robot, q), target)
         asked = np.where(arm.weight > 0.0, error, 0.0)
         position, rotation = float(np.linalg.norm(asked[:3])), float(np.linalg.norm(asked[3:]))
         record.append((q.copy(), position, rotation, number))
@@ -246,10 +246,10 @@ def _one_search(
     return (kernel.STALLED, q) if outside is None else (kernel.OUTSIDE, outside)
 
 
-def _error(robot: Robot, q: Array, target: Array) -> Array:
-    """(p_d - p, log(R_d R^T)) in the base's axes, (6,)."""
+def pose_error(here: Array, goal: Array) -> Array:
+    """(p_d - p, log(R_d R^T)) in the base's axes, (6,), between two poses (4, 4)."""
     error, turned = np.empty(6), np.empty(9)
-    kernel.pose_error(fk(robot, q)[:3].ravel(), target[:3].ravel(), turned, error)
+    kernel.pose_error(here[:3].ravel(), goal[:3].ravel(), turned, error)
     return error
 
 

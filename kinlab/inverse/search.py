@@ -11,13 +11,13 @@ import math
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, truth
 from kinlab.engine.fast.compiled import kernel as compiled
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.engine.fast.threads import over_rows
+from kinlab.engine.kinematics import tool_poses
 from kinlab.errors import OptionError
 from kinlab.host.progress import takes_long
 from kinlab.inverse import kernel, methods
@@ -36,7 +36,7 @@ from kinlab.inverse.setup import (
     setup,
 )
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot, scratch
+from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 _GRAIN = 32
@@ -449,17 +449,8 @@ def _errors_of_rows(poses, targets, weight, errors):  # type: ignore[no-untyped-
 def _measure(robot: Robot, q: Array, targets: Array, weight: Array, errors: Array) -> None:
     """Position and rotation error of each row, metres and radians, by Pinocchio: the last word.
 
-    ``pin.forwardKinematics`` is called on purpose, not :func:`kinlab.fk`, whose batches may run on
-    the same compiled chain as the search.
-
     Args:
         robot: the robot. q: (N, n). targets: (N, 4, 4).
         weight: (6,), zero for coordinates not asked for. errors: (N, 2), written.
     """
-    model, data, tool = robot.model, scratch(robot), robot.tool
-    forward, place = pin.forwardKinematics, pin.updateFramePlacement
-    poses = np.empty((len(q), 4, 4))
-    for row, values in enumerate(q):
-        forward(model, data, values)
-        poses[row] = place(model, data, tool).homogeneous
-    _errors_of_rows(poses, targets, weight, errors)
+    _errors_of_rows(tool_poses(robot, q), targets, weight, errors)

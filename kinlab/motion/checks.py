@@ -233,7 +233,7 @@ def _singularities(space: TaskSpace, motion: Motion) -> tuple[float | None, list
     while len(centre):
         looked += len(centre)
         q, v, _ = motion.at(centre)
-        values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+        values = space.sigma(q)
         least = values[:, -1] - 1e-12 * values[:, 0]
         reach = slope * (np.linalg.norm(v, axis=1) * half + 0.5 * push * half**2)
         good = reach <= 0.5 * least
@@ -278,7 +278,7 @@ def _met(space: TaskSpace, motion: Motion, times: Array) -> list[Finding]:
 
 
 def _sigma(space: TaskSpace, motion: Motion, t: Array) -> Array:
-    values = np.linalg.svd(space.jacobian(motion.at(t)[0], space.scale), compute_uv=False)
+    values = space.sigma(motion.at(t)[0])
     out: Array = values[:, -1] / values[:, 0]
     return out
 

@@ -8,13 +8,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array, between
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import SingularError, UnreachableError
+from kinlab.inverse.methods import pose_error
 from kinlab.inverse.postures.path import IKPath, ik_path
 from kinlab.inverse.search import ik
 from kinlab.model.robot import Robot
@@ -150,12 +150,6 @@ def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
     return out
 
 
-def pose_error(here: Array, goal: Array) -> Array:
-    """What moves one pose to another, (6,), linear first, in base axes."""
-    turn = here[:3, :3] @ np.asarray(pin.log3(here[:3, :3].T @ goal[:3, :3]))
-    return np.concatenate([goal[:3, 3] - here[:3, 3], turn])
-
-
 # -------- What is said where a way cannot be had
 
 
@@ -185,7 +179,7 @@ def _unreachable(
 def _singular(
     robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, row: int
 ) -> str:
-    values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+    values = space.sigma(q)
     text = (
         f"robot {robot.name!r}: {_place(times[row], goals[row])}, the way meets a singularity of "
         f"task {space.name}: sigma_min / sigma_max is {values[-1] / values[0]:.2g}"

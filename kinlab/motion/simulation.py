@@ -25,13 +25,12 @@ from kinlab.errors import OptionError, StateError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar import simulation as fivebar_simulation
 from kinlab.fivebar.linkage import as_mechanism
+from kinlab.fivebar.simulation import Torque
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot, require_inertia, scratch
 from kinlab.motion.record import even_times
 from kinlab.tolerances import TOLERANCES
-
-Torque = Callable[[float, Array, Array], ArrayLike]
 
 _MOST_CHANGES = 5_000
 """Instants at which joints stop or break loose before a simulation is given up."""

@@ -224,7 +224,7 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     lower, upper = search_box(system.space.robot)
     drawn = np.random.default_rng(2).uniform(lower, upper, (8, system.space.robot.n))
     states = system.states(drawn[:, list(system.moving)])
-    sigma = np.linalg.svd(system.space.jacobian(states, system.space.scale), compute_uv=False)
+    sigma = system.space.sigma(states)
     return bool(np.all(sigma[:, -1] <= TOLERANCES.singular * sigma[:, 0]))
 
 

@@ -178,7 +178,7 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
         system = sets.SingularSystem(space, moving, guess)
         x, _ = solve(system, system.start(guess[np.newaxis]))
         state: Array = np.clip(system.states(x)[0], robot.lower, robot.upper)
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
+        values = space.sigma(state)
         if values[-1] <= TOLERANCES.singular * values[0] and np.linalg.norm(state - guess) < 1e-4:
             return state
     return None
@@ -203,7 +203,7 @@ def _from_many_starts(
     distance = np.linalg.norm(x[:, : robot.n] - here, axis=1)
     for number in np.argsort(distance, kind="stable"):
         state = x[number, : robot.n]
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
+        values = space.sigma(state)
         if values[-1] <= TOLERANCES.singular * values[0]:
             return state, bound, searched
     return None, bound, searched

@@ -151,8 +151,7 @@ def seeds(system: SingularSystem, rng: np.random.Generator, points: int, steps: 
         grid = np.linspace(lower[j], upper[j], steps)
         line = np.repeat(base, steps, axis=0)
         line[:, j] = np.tile(grid, points)
-        matrix = system.space.jacobian(line, system.space.scale)
-        least = np.linalg.svd(matrix, compute_uv=False)[:, -1].reshape(points, steps)
+        least = system.space.sigma(line)[:, -1].reshape(points, steps)
         padded = np.pad(least, ((0, 0), (1, 1)), constant_values=np.inf)
         dip = (least <= padded[:, :-2]) & (least <= padded[:, 2:])
         found.append(line.reshape(points, steps, robot.n)[dip])
@@ -325,6 +324,6 @@ def _all_singular(space: TaskSpace, states: Array) -> bool:
 
 
 def _ratio(space: TaskSpace, states: Array) -> Array:
-    sigma = np.linalg.svd(space.jacobian(states, space.scale), compute_uv=False)
+    sigma = space.sigma(states)
     ratio: Array = sigma[:, -1] / np.maximum(sigma[:, 0], 1e-300)
     return ratio

@@ -340,7 +340,7 @@ def describe_singularity(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Si
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     found = _describe(space, state)
     if found is None:
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
+        values = space.sigma(state)
         raise OptionError(
             f"robot {robot.name!r}: q is not singular for task {space.name}: sigma_min/sigma_max "
             f"is {values[-1] / values[0]:.3g} (at most {TOLERANCES.singular:g}); see "

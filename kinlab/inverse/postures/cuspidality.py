@@ -290,7 +290,7 @@ def _pairs(
     for row, number in enumerate(found.counts):
         q = found.q[row, :number]
         q = q[((q >= low) & (q <= high)).all(axis=1)]
-        least = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)[:, -1]
+        least = space.sigma(q)[:, -1]
         q = q[least > 1e-4]
         side = _sides(space, parts, q)
         for i, j in combinations(range(len(q)), 2):
@@ -348,9 +348,7 @@ def _straight(
         return None
     share = np.linspace(0.0, 1.0, 33)[:, np.newaxis]
     states = one[:, np.newaxis] + share * (two - one)[:, np.newaxis]
-    values = np.linalg.svd(
-        space.jacobian(states.reshape(-1, one.shape[1]), space.scale), compute_uv=False
-    )[:, -1].reshape(len(one), -1)
+    values = space.sigma(states.reshape(-1, one.shape[1]))[:, -1].reshape(len(one), -1)
     order = np.argsort(-values.min(axis=1), kind="stable")
     for done, row in enumerate(order):
         tell("straight lines", done, len(order))

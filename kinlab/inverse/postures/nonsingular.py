@@ -77,7 +77,7 @@ def show_nonsingular(space: TaskSpace, corners: Array) -> NonsingularPath | None
         looked += len(centre)
         if looked > _MOST:
             return None
-        values = np.linalg.svd(space.jacobian(centre, space.scale), compute_uv=False)
+        values = space.sigma(centre)
         least = values[:, -1] - TOLERANCES.singular_value_rounding * values[:, 0]
         if not np.all(least > TOLERANCES.path_singular):
             return None
