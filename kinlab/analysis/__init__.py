@@ -17,8 +17,6 @@ module              what it holds
                     :mod:`kinlab.symbolic`
 ``edge``            Whether a singular configuration lies on the edge of the workspace, or the
                     tool passes on
-``evidence``        What the answer of a search rests on: what was searched, how often it was met,
-                    what is proved
 ``isotropy``        Isotropic configurations: J J^T = a 1, where the tool moves equally well in
                     every direction
 ``loci``            Curves of the singular set in a slice of joint space, by pseudo-arclength

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.certified import GOAL, nearest_zero
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.minors import Factor, factors
 from kinlab.analysis.singularity import Singularity, describe_singularity
@@ -26,6 +25,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task,
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot

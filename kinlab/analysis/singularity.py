@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis import singular_set as sets
 from kinlab.analysis.edge import edge
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.minors import factors
 from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
@@ -27,6 +26,7 @@ from kinlab.analysis.structure.tasks import COORDINATES
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
