@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array
 from kinlab.doctor.tables.bodies import Bodies
 from kinlab.doctor.tables.chain import Chain, frames, inverse
-from kinlab.doctor.tables.target import Target
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import KinlabError, StateError, StructureError, TableError
 from kinlab.model.dh import DHTable
@@ -161,7 +161,7 @@ def poses_of(against: Any, n: int) -> tuple[ArrayLike, ArrayLike] | None:
     if isinstance(against, tuple) and len(against) == 2:
         return against
     if isinstance(against, (str, Path)) and str(against).lower().endswith(".csv"):
-        from kinlab.doctor.tables.poses import is_poses_file, read_poses
+        from kinlab.doctor.tables.reference.poses import is_poses_file, read_poses
 
         if is_poses_file(against):
             return read_poses(against, n)

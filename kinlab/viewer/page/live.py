@@ -37,7 +37,7 @@ _HOST = re.compile(r"(?:\[([0-9a-f:.]+)\]|([a-z0-9._-]+))(?::[0-9]{1,5})?")
 
 
 class Served(Protocol):
-    """What the server asks of a :class:`kinlab.viewer.page.Page`."""
+    """What the server asks of a :class:`kinlab.viewer.page.page.Page`."""
 
     revision: int
 

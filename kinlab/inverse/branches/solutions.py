@@ -16,12 +16,12 @@ from kinlab.engine.fast.arrays import chain
 from kinlab.engine.fast.compiled import kernel
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
-from kinlab.inverse import branch_rows
-from kinlab.inverse.branch_names import distinct, words_of
-from kinlab.inverse.branch_rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
-from kinlab.inverse.families import IKFamily, families_at
+from kinlab.inverse.branches import rows as branch_rows
+from kinlab.inverse.branches.families import IKFamily, families_at
+from kinlab.inverse.branches.names import distinct, words_of
+from kinlab.inverse.branches.rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
+from kinlab.inverse.branches.structures import GENERAL, Known, known_form
 from kinlab.inverse.request import read_target, read_targets
-from kinlab.inverse.structures import GENERAL, Known, known_form
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, scratch
 

@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.design_model import OpenChain, open_chain
-from kinlab.analysis.isotropy import (
+from kinlab.analysis.isotropy.configurations import (
     ISOTROPIC,
     IsotropicConfiguration,
     IsotropySystem,
     isotropic_families,
     isotropy_equations,
 )
+from kinlab.analysis.isotropy.design_model import OpenChain, open_chain
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap

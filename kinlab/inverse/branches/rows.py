@@ -15,7 +15,7 @@ from kinlab.arrays import Array
 from kinlab.engine.fast.compiled import kernel
 from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.engine.fast.threads import over_rows
-from kinlab.inverse.closed_forms import (
+from kinlab.inverse.branches.closed_forms import (
     in_the_plane,
     inverse,
     onto_plane,
@@ -23,9 +23,14 @@ from kinlab.inverse.closed_forms import (
     spherical_wrist,
     three_parallel,
 )
-from kinlab.inverse.continuation import LOST, SINGULAR_END, back_substitute, factorise, follow_all
-from kinlab.inverse.kernel import pose_error, wrap
-from kinlab.inverse.structures import (
+from kinlab.inverse.branches.continuation import (
+    LOST,
+    SINGULAR_END,
+    back_substitute,
+    factorise,
+    follow_all,
+)
+from kinlab.inverse.branches.structures import (
     GENERAL,
     PLANE,
     POINT,
@@ -36,6 +41,7 @@ from kinlab.inverse.structures import (
     WRIST,
     Form,
 )
+from kinlab.inverse.kernel import pose_error, wrap
 
 MOST = 16
 """Branches of one pose at most: the degree of the general six-joint arm."""
@@ -144,7 +150,7 @@ def _side(value):  # type: ignore[no-untyped-def]
 def posture(form, axes, pose, q, target):  # type: ignore[no-untyped-def]
     """Shoulder, elbow and wrist of a branch as one number, 9 (s + 1) + 3 (e + 1) + (w + 1).
 
-    See :mod:`kinlab.inverse.branch_names` for what they mean.
+    See :mod:`kinlab.inverse.branches.names` for what they mean.
     """
     n = form.real
     shoulder, elbow, wrist = 0, 0, 0
@@ -256,7 +262,7 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
     """All branches of rows first to last - 1, each on its own.
 
     Args:
-        form: :class:`~kinlab.inverse.structures.Form`.
+        form: :class:`~kinlab.inverse.branches.structures.Form`.
         lower, upper, centre: (n,), limits, and where angles are wrapped to.
         targets: (N, 12), rows of [R | p].
         goals: (N, 12), written: the targets, put into the plane for an arm of parallel axes.
@@ -407,7 +413,7 @@ def all_branches(
     """All branches of many poses on all processors, without names and without Pinocchio.
 
     Args:
-        form: from :func:`~kinlab.inverse.structures.known_form`.
+        form: from :func:`~kinlab.inverse.branches.structures.known_form`.
         limits: lower, upper and centre, (n,) each, of the joints that are solved for: angles
             are turned by whole turns into the limits where that is possible.
         targets: (N, 12), rows of [R | p], rigid.

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.best_condition import ENOUGH, LeastCondition, least_condition
+from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import (

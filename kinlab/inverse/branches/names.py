@@ -20,15 +20,15 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from kinlab.errors import NameUnknownError
-from kinlab.inverse.closed_forms import PARALLEL
-from kinlab.inverse.structures import PLANE, Form
+from kinlab.inverse.branches.closed_forms import PARALLEL
+from kinlab.inverse.branches.structures import PLANE, Form
 
 _SHOULDER, _ELBOW = ("left", "over", "right"), ("down", "straight", "up")
 _BEND, _WRIST = ("right", "straight", "left"), ("flip", "aligned", "no flip")
 
 
 def words_of(form: Form) -> tuple[str, ...]:
-    """The name of each of the 27 codes of :func:`~kinlab.inverse.branch_rows.posture`."""
+    """The name of each of the 27 codes of :func:`~kinlab.inverse.branches.rows.posture`."""
     bent = form.family == PLANE or (
         form.real > 1 and bool(np.hypot(form.arm_fixed[1, 2], form.arm_fixed[1, 6]) < PARALLEL)
     )

@@ -9,9 +9,9 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.kinematics_kernels import columns, frames
-from kinlab.inverse.branch_rows import miss
+from kinlab.inverse.branches.rows import miss
+from kinlab.inverse.branches.structures import POINTING, POSITION, Form
 from kinlab.inverse.kernel import pose_error
-from kinlab.inverse.structures import POINTING, POSITION, Form
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 

@@ -12,8 +12,8 @@ from kinlab.arrays import Array
 from kinlab.engine.fast.arrays import Chain, chain
 from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.errors import StructureError
-from kinlab.inverse.closed_forms import PARALLEL, reversed_chain
-from kinlab.inverse.continuation import BOUNDS, generic_solutions
+from kinlab.inverse.branches.closed_forms import PARALLEL, reversed_chain
+from kinlab.inverse.branches.continuation import BOUNDS, generic_solutions
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
@@ -52,7 +52,8 @@ class Form(NamedTuple):
         centre, centre_tool: a spherical wrist's centre behind joint 3 and in the tool's frame;
             for a point of three joints the first; (3,).
         marker: a point in the tool's frame, (3,), that names the shoulder.
-        poses, starts, length: of :class:`~kinlab.inverse.continuation.Starts`; empty otherwise.
+        poses, starts, length: of :class:`~kinlab.inverse.branches.continuation.Starts`; empty
+            otherwise.
     """
 
     fixed: Array

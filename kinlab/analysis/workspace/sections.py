@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis import singular_set as sets
-from kinlab.analysis.loci import trace_from
+from kinlab.analysis.singularities import singular_set as sets
+from kinlab.analysis.singularities.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap

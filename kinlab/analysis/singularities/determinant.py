@@ -11,7 +11,7 @@ import sympy
 from numpy.typing import ArrayLike
 
 from kinlab import symbolic
-from kinlab.analysis.singularity import Singularity, describe_singularity
+from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
 from kinlab.arrays import Array, seed_of

@@ -16,9 +16,9 @@ from kinlab.arrays import Array
 from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
-from kinlab.viewer import shapes
-from kinlab.viewer.arm import joint_paths, reach
-from kinlab.viewer.shapes import Label
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.arm import joint_paths, reach
+from kinlab.viewer.drawing.shapes import Label
 
 
 @dataclass

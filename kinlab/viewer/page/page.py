@@ -13,13 +13,13 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, real_array, rigid_transform, shaped
 from kinlab.errors import OptionError, StateError
 from kinlab.host.files import write_text
-from kinlab.viewer import shapes
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.shapes import Label
 from kinlab.viewer.motions import motion_json
-from kinlab.viewer.shapes import Label
-from kinlab.viewer.static_page import Recorder, page_html
+from kinlab.viewer.page.static_page import Recorder, page_html
 
 if TYPE_CHECKING:
-    from kinlab.viewer.live import LiveServer
+    from kinlab.viewer.page.live import LiveServer
 
 COLORS = (0x8E24AA, 0xEF6C00, 0x00897B, 0xC62828, 0x1565C0, 0x6D4C41)
 """Given out in turn to what asks for no colour."""
@@ -172,10 +172,10 @@ class Page:
         """Serves the page in the background until the program ends.
 
         Returns:
-            The :class:`kinlab.viewer.live.LiveServer`, already running; its ``url`` and
+            The :class:`kinlab.viewer.page.live.LiveServer`, already running; its ``url`` and
             ``stop()`` are there.
         """
-        from kinlab.viewer.live import LiveServer
+        from kinlab.viewer.page.live import LiveServer
 
         return LiveServer(self, host, port).start()
 

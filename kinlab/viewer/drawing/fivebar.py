@@ -14,8 +14,8 @@ from kinlab.errors import StructureError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.geometry import solve_pose
-from kinlab.viewer import shapes
-from kinlab.viewer.shapes import Label, add_ellipsoids, empty_spec, look_at, set_stage
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.shapes import Label, add_ellipsoids, empty_spec, look_at, set_stage
 
 HOME = "/meshcat/fivebar"
 """Its frame is the mechanism's plane: x to the right, y up, z towards the viewer."""

@@ -105,10 +105,10 @@ def page_html(spec: dict[str, Any], commands: Sequence[bytes]) -> str:
     """The page as text.
 
     Args:
-        spec: what the page must know, see :mod:`kinlab.viewer.page`.
+        spec: what the page must know, see :mod:`kinlab.viewer.page.page`.
         commands: packed meshcat commands that build the scene.
     """
-    ours = resources.files("kinlab.viewer")
+    ours = resources.files("kinlab.viewer.page")
     # meshcat's script stands in the page as it is; ours and the data are kept from closing it
     data = json.dumps(spec, allow_nan=False).replace("<", "\\u003c")
     packed = json.dumps([base64.b64encode(c).decode("ascii") for c in commands])

@@ -16,8 +16,8 @@ from pinocchio.visualize import MeshcatVisualizer
 from kinlab.arrays import Array
 from kinlab.model.library import example_robots
 from kinlab.model.robot import Robot
-from kinlab.viewer import shapes
-from kinlab.viewer.bodies import DrawnBodies
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.bodies import DrawnBodies
 
 ROOT = "/meshcat/robot"
 _STAND_IN = (0.57, 0.64, 0.68, 1.0)

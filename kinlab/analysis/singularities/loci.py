@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis import singular_set as sets
 from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import read_reachable_task, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
@@ -202,8 +202,8 @@ def trace_from(system: Any, x: Array, step: float) -> list[Array]:
     """Every curve that some solution (N, k) of a system lies on, each once, as unknowns (K, k).
 
     Args:
-        system: as :class:`kinlab.analysis.singular_set.SingularSystem`, with one equation less
-            than unknowns.
+        system: as :class:`kinlab.analysis.singularities.singular_set.SingularSystem`, with one
+            equation less than unknowns.
         x: solutions.
         step: length of a step.
     """

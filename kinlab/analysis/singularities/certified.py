@@ -1,11 +1,12 @@
 """The nearest common zero of a few functions, by branch and bound: a point, and a proved bound.
 
 Boxes of joint space are kept by the least distance that a zero in them can have. In a box each
-function is its linear part and a rest that is bounded (:meth:`kinlab.analysis.minors.Factor.
-enclosures`), so that a zero lies in a slab; box and slab give the distance (a quadratic program
-with one constraint, bounded from below by its dual), and the slab cuts the box down. The box with
-the least distance is split next, hence the bound only grows and the search stops where it meets
-the best zero found. Nothing depends on random numbers.
+function is its linear part and a rest that is bounded
+(:meth:`kinlab.analysis.singularities.minors.Factor.enclosures`), so that a zero lies in a slab; box
+and slab give the distance (a quadratic program with one constraint, bounded from below by its
+dual), and the slab cuts the box down. The box with the least distance is split next, hence the
+bound only grows and the search stops where it meets the best zero found. Nothing depends on random
+numbers.
 
 Neumaier, "Complete search in continuous global optimization and constraint satisfaction", Acta
 Numerica 13, 2004, sections 11 and 14.
@@ -17,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinlab.analysis.minors import Enclosures, Factor
+from kinlab.analysis.singularities.minors import Enclosures, Factor
 from kinlab.arrays import Array
 from kinlab.host.progress import pulse
 

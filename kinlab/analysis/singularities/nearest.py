@@ -1,10 +1,11 @@
 """How far a configuration is from the nearest singular one, where that is, and what is proved.
 
-The minors of J are trigonometric polynomials (:mod:`kinlab.analysis.minors`); the singular set is
-a union of their factors' zeros, each a problem in a few joints that branch and bound solves with a
-lower bound (:mod:`kinlab.analysis.certified`). Where the polynomials would be too large, points of
-the set slide towards q from many starts, and the bound is Weyl's: sigma_min(J(q')) >=
-sigma_min(J(q)) - K |q' - q| with K a bound of J's slope from the lengths of the arm.
+The minors of J are trigonometric polynomials (:mod:`kinlab.analysis.singularities.minors`); the
+singular set is a union of their factors' zeros, each a problem in a few joints that branch and
+bound solves with a lower bound (:mod:`kinlab.analysis.singularities.certified`). Where the
+polynomials would be too large, points of the set slide towards q from many starts, and the bound is
+Weyl's: sigma_min(J(q')) >= sigma_min(J(q)) - K |q' - q| with K a bound of J's slope from the
+lengths of the arm.
 """
 
 from __future__ import annotations
@@ -15,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis import singular_set as sets
-from kinlab.analysis.certified import GOAL, nearest_zero
 from kinlab.analysis.metrics import SINGULAR, singular_values
-from kinlab.analysis.minors import Factor, factors
-from kinlab.analysis.singularity import Singularity, describe_singularity
+from kinlab.analysis.singularities import singular_set as sets
+from kinlab.analysis.singularities.certified import GOAL, nearest_zero
+from kinlab.analysis.singularities.minors import Factor, factors
+from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, revolute
 from kinlab.arrays import Array, seed_of, whole

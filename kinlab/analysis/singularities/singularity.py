@@ -9,11 +9,11 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis import singular_set as sets
-from kinlab.analysis.edge import edge
 from kinlab.analysis.metrics import SINGULAR
-from kinlab.analysis.minors import factors
-from kinlab.analysis.singular_set import holds, pinned, pinned_pairs, supports
+from kinlab.analysis.singularities import singular_set as sets
+from kinlab.analysis.singularities.edge import edge
+from kinlab.analysis.singularities.minors import factors
+from kinlab.analysis.singularities.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.analysis.structure.axes import name_singularity, structure
 from kinlab.analysis.structure.task_space import (
     TaskSpace,
@@ -97,8 +97,8 @@ class SingularFamily:
         pinned: values of the deciding joints where each is fixed on this sheet; empty where
             they vary together along a curve or surface.
         beyond: whether the tool can pass on in the lost direction at the representative, see
-            :mod:`kinlab.analysis.edge`: ``True``, ``False`` on the edge of the workspace, ``None``
-            undecided.
+            :mod:`kinlab.analysis.singularities.edge`: ``True``, ``False`` on the edge of the
+            workspace, ``None`` undecided.
         members: found configurations, the representative first.
         evidence: how the free joints were moved, and what the edge rests on.
     """
@@ -209,13 +209,14 @@ def find_singularities(
 ) -> SingularitySearch:
     """Configurations on the singular set within the joint limits, sheet by sheet.
 
-    A sheet is told by the joints that hold it (:func:`kinlab.analysis.singular_set.supports`): its
-    free joints were moved, far, and the arm stayed singular. Points where two sheets cross, and
-    extrema of one, are members of a sheet and no families. Starts are the dips of sigma_min along
-    the line of every joint through several points, each solved to rounding by Newton on the
-    bordered system of :mod:`kinlab.analysis.singular_set`; zeros of factors of one joint are exact,
-    and of a redundant arm every pair of joints is scanned for values that suffice alone. Such an
-    arm is singular where its rank drops below the number of task rows.
+    A sheet is told by the joints that hold it
+    (:func:`kinlab.analysis.singularities.singular_set.supports`): its free joints were moved, far,
+    and the arm stayed singular. Points where two sheets cross, and extrema of one, are members of a
+    sheet and no families. Starts are the dips of sigma_min along the line of every joint through
+    several points, each solved to rounding by Newton on the bordered system of
+    :mod:`kinlab.analysis.singularities.singular_set`; zeros of factors of one joint are exact, and
+    of a redundant arm every pair of joints is scanned for values that suffice alone. Such an arm is
+    singular where its rank drops below the number of task rows.
 
     Args:
         robot: the robot.

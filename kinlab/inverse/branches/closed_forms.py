@@ -23,7 +23,13 @@ import math
 import numpy as np
 
 from kinlab.engine.fast.compiled import kernel
-from kinlab.inverse.equations import add_square, circle_pair, half_angle, joint_roots, linear_trig
+from kinlab.inverse.branches.equations import (
+    add_square,
+    circle_pair,
+    half_angle,
+    joint_roots,
+    linear_trig,
+)
 
 PARALLEL = 1e-9
 """sin of the angle between two axes below which they are parallel."""
