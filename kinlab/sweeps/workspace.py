@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.analysis.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.arrays import Array, frozen, seed_of, whole, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import FileError, NameUnknownError, OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.files import write_bytes
 from kinlab.host.progress import progress as line
 from kinlab.model.library import ArmLike, as_robot

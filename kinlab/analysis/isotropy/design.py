@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.configurations import (
     ISOTROPIC,
     IsotropicConfiguration,
@@ -24,6 +23,7 @@ from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choic
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 from kinlab.arrays import Array, seed_of, whole
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.dh import DHTable

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.solver import jacobian_derivative
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk, jacobian
+from kinlab.host.evidence import Evidence
 
 _STEPS = (1e-3, 1e-2)
 """Of the arm's length: how far ahead the tool is asked to go. A fold leaves a gap as large as the

@@ -15,7 +15,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.solver import solve
@@ -23,6 +22,7 @@ from kinlab.analysis.structure.task_space import read_reachable_task, revolute, 
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot

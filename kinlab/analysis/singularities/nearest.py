@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR, singular_values
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.certified import GOAL, nearest_zero
@@ -27,6 +26,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task,
 from kinlab.arrays import Array, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot

@@ -9,7 +9,6 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import SINGULAR
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.edge import edge
@@ -27,6 +26,7 @@ from kinlab.analysis.structure.tasks import COORDINATES
 from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot

@@ -14,12 +14,12 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import search_box
 from kinlab.arrays import Array, frozen
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 
