@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import read_reachable_task, revolute, search_box, wrap
@@ -227,7 +227,7 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     drawn = np.random.default_rng(2).uniform(lower, upper, (8, system.space.robot.n))
     states = system.states(drawn[:, list(system.moving)])
     sigma = np.linalg.svd(system.space.jacobian(states, system.space.scale), compute_uv=False)
-    return bool(np.all(sigma[:, -1] <= SINGULAR * sigma[:, 0]))
+    return not bool(counting(sigma)[:, -1].any())
 
 
 def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.metrics import SINGULAR, singular_values
+from kinlab.analysis.metrics import counting, singular_values
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.certified import GOAL, nearest_zero
 from kinlab.analysis.singularities.minors import Factor, factors
@@ -182,7 +182,7 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
         x, _ = solve(system, system.start(guess[np.newaxis]))
         state: Array = np.clip(system.states(x)[0], robot.lower, robot.upper)
         values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
-        if values[-1] <= SINGULAR * values[0] and np.linalg.norm(state - guess) < 1e-4:
+        if not counting(values)[-1] and np.linalg.norm(state - guess) < 1e-4:
             return state
     return None
 
@@ -207,7 +207,7 @@ def _from_many_starts(
     for number in np.argsort(distance, kind="stable"):
         state = x[number, : robot.n]
         values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
-        if values[-1] <= SINGULAR * values[0]:
+        if not counting(values)[-1]:
             return state, bound, searched
     return None, bound, searched
 
