@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.boundary import PlanarBoundary, planar_boundary
-from kinlab.analysis.loci import singular_loci
-from kinlab.analysis.sections import WorkspaceSection, takes_limits, workspace_section
+from kinlab.analysis.singularities.loci import singular_loci
+from kinlab.analysis.workspace.boundary import PlanarBoundary, planar_boundary
+from kinlab.analysis.workspace.sections import WorkspaceSection, takes_limits, workspace_section
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import fk
 from kinlab.model.library import ArmLike, as_robot
