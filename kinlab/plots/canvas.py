@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -30,7 +31,26 @@ def new_figure(size: tuple[float, float] = (6.4, 5.2)) -> Any:
         ) from None
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
+    _shown_by_notebooks(Figure)
     return figure
+
+
+def _shown_by_notebooks(kind: type) -> None:
+    """Has IPython show figures as pictures, as it does of itself only once pyplot is imported."""
+    asked = getattr(sys.modules.get("IPython"), "get_ipython", None)
+    shell = asked() if asked is not None else None
+    if shell is None or not hasattr(shell, "kernel"):
+        return
+    formatter = shell.display_formatter.formatters["image/png"]
+    if kind not in formatter.type_printers:
+        formatter.for_type(kind, _png)
+
+
+def _png(figure: Any) -> bytes:
+    """A figure as a notebook shows it."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=100, bbox_inches="tight")
+    return buffer.getvalue()
 
 
 def figure_text(text: str) -> str:
