@@ -51,6 +51,7 @@ from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.host.introductions import Answer, Introduction, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
+from kinlab.tolerances import TOLERANCES
 
 
 def yoshikawa(sigma: Array) -> Array:
@@ -272,21 +273,17 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
     )
 
 
-SINGULAR = 1e-10
-"""sigma_min / sigma_max at and below which a configuration counts as singular."""
-
-
 def regular(sigma: Array) -> Any:
     """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
-    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
+    return sigma > max(TOLERANCES.singular * float(sigma[0]), float(np.finfo(np.float64).tiny))
 
 
-def counting(sigma: Any, share: float = SINGULAR) -> Any:
+def counting(sigma: Any, share: float = TOLERANCES.singular) -> Any:
     """Which singular values (..., m), descending, of a J in the arm's own length unit count.
 
     Those above a share of the greatest; of a J that is rounding altogether, none.
     """
-    largest = np.where(sigma[..., :1] > SINGULAR, sigma[..., :1], np.inf)
+    largest = np.where(sigma[..., :1] > TOLERANCES.singular, sigma[..., :1], np.inf)
     return sigma > share * largest
 
 
