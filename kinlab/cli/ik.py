@@ -115,7 +115,7 @@ def ik(
 def _print_branches(robot: object, pose: object) -> None:
     import numpy as np
 
-    from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.branches.solutions import ik_branches
 
     found = ik_branches(robot, pose)  # type: ignore[arg-type]
     for q, name, inside in zip(found.q, found.names, found.within_limits, strict=True):

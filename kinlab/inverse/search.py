@@ -21,8 +21,8 @@ from kinlab.engine.fast.threads import over_rows
 from kinlab.errors import OptionError
 from kinlab.host.progress import takes_long
 from kinlab.inverse import kernel, methods
-from kinlab.inverse.branch_names import matching
-from kinlab.inverse.branches import IKBranches, ik_branches
+from kinlab.inverse.branches.names import matching
+from kinlab.inverse.branches.solutions import IKBranches, ik_branches
 from kinlab.inverse.request import RESTARTS, Request, read_request
 from kinlab.inverse.result import BRANCH, IKBatch, IKHistory, IKResult, IKStatus
 from kinlab.inverse.setup import (

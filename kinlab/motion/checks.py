@@ -2,9 +2,10 @@
 
 Limits are compared with exact extremes. For singularities the time is cut into pieces: on one of
 half-length h about its middle, |q - q_mid| <= |v_mid| h + A h²/2 with A the largest acceleration,
-and sigma_min(J) changes by at most K |q - q_mid| (:func:`kinlab.analysis.nearest.slope_bound`), so
-that a piece is free for certain, or is cut again. What is left at the end is either a change of
-sign of det J, which is a singularity for certain, or is said to be undecided.
+and sigma_min(J) changes by at most K |q - q_mid|
+(:func:`kinlab.analysis.singularities.nearest.slope_bound`), so that a piece is free for certain, or
+is cut again. What is left at the end is either a change of sign of det J, which is a singularity
+for certain, or is said to be undecided.
 """
 
 from __future__ import annotations
@@ -16,14 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array
 from kinlab.drives.arm import demand_of
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import StructureError
 from kinlab.host.introductions import Told, counted
-from kinlab.inverse.branches import ik_branches
+from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.motion.limits import positions_outside, read_limits

@@ -107,8 +107,8 @@ def test_installed_wheel_finds_its_robots(tmp_path):
     files = (
         "py.typed",
         "__init__.pyi",
-        "viewer/page.js",
-        "viewer/page.css",
+        "viewer/page/page.js",
+        "viewer/page/page.css",
         "check/report/base.html.j2",
     )
     for file in files:

@@ -11,7 +11,7 @@ from tornado.websocket import WebSocketClosedError
 
 import kinlab as kl
 from kinlab.errors import OptionError
-from kinlab.viewer.live import LiveServer
+from kinlab.viewer.page.live import LiveServer
 from kinlab.viewer.scene import Scene
 
 
@@ -65,7 +65,7 @@ def test_a_host_that_is_none_is_refused(host):
 def test_a_page_that_takes_nothing_is_let_wait():
     import asyncio
 
-    from kinlab.viewer import live
+    from kinlab.viewer.page import live
 
     class Deaf(live._Socket):
         def __init__(self) -> None:

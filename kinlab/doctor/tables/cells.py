@@ -31,7 +31,7 @@ from kinlab.doctor.tables.chain import (
     stacked_frames,
 )
 from kinlab.doctor.tables.readings import Reading
-from kinlab.doctor.tables.target import Target
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.words import (
     Cause,
     angle_cause,

@@ -12,7 +12,9 @@ from kinlab.arrays import Array, seed_of
 from kinlab.doctor.tables import bodies as table_bodies
 from kinlab.doctor.tables import noise as table_noise
 from kinlab.doctor.tables import zeros as table_zeros
-from kinlab.doctor.tables.against import (
+from kinlab.doctor.tables.chain import Chain
+from kinlab.doctor.tables.readings import Reading
+from kinlab.doctor.tables.reference.against import (
     Reference,
     check_joints,
     joint_counts,
@@ -20,8 +22,6 @@ from kinlab.doctor.tables.against import (
     read_mine,
     read_reference,
 )
-from kinlab.doctor.tables.chain import Chain
-from kinlab.doctor.tables.readings import Reading
 from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.search import explain
 from kinlab.doctor.tables.words import SIX, Cause, listed
@@ -54,7 +54,8 @@ def diagnose_table(
     Args:
         mine: the table that may be wrong: a DHTable, a .toml or .csv file, a shipped name.
         against: the other description: a DHTable, a Robot, a name, a .toml, .csv or .urdf file,
-            URDF text, a CSV of poses (see :mod:`kinlab.doctor.tables.poses`), or ``(q, T)``.
+            URDF text, a CSV of poses (see :mod:`kinlab.doctor.tables.reference.poses`), or ``(q,
+            T)``.
         poses: ``(q, T)``: joint positions (N, n), rad and m, and tool poses (N, 4, 4) in the
             frame in which the table's base stands, simulated or measured.
         tool: for a URDF: the link that is the tool.

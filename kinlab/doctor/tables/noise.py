@@ -16,12 +16,12 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import Reference
 from kinlab.doctor.tables.cells import changed
 from kinlab.doctor.tables.chain import ALPHA, THETA, A, Chain, D, frames, inverse, stacked_frames
 from kinlab.doctor.tables.readings import Reading, readings
+from kinlab.doctor.tables.reference.against import Reference
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.result import TableDiagnosis, joined
-from kinlab.doctor.tables.target import Target
 from kinlab.doctor.tables.words import pose_cause
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable

@@ -1,9 +1,9 @@
 """Paths that meet no singularity, shown between the samples too.
 
 sigma_min(J) changes by at most K |q' - q| from q to q', K a bound of J's slope from the lengths of
-the arm (Weyl's inequality; :func:`kinlab.analysis.nearest.slope_bound`). A piece of a straight
-line in joint space is free of singularities where sigma_min at its middle exceeds K times half its
-length; a piece where it does not is cut in two and tried again.
+the arm (Weyl's inequality; :func:`kinlab.analysis.singularities.nearest.slope_bound`). A piece of a
+straight line in joint space is free of singularities where sigma_min at its middle exceeds K times
+half its length; a piece where it does not is cut in two and tried again.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array, frozen
 

@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array
@@ -62,7 +62,7 @@ class Regional:
 
     Attributes:
         robot: the arm. origin, axis: of its first joint, (3,), as in
-            :class:`kinlab.analysis.sections.WorkspaceSection`.
+            :class:`kinlab.analysis.workspace.sections.WorkspaceSection`.
         size: metres, that lengths are divided by.
         map: rho^2 and z over size; functions of joints 2 and 3.
         determinant: D. parts: its factors.

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import real_array, whole
 from kinlab.host.progress import takes_long
-from kinlab.inverse.branches import IKBranches, ik_branches
-from kinlab.inverse.families import IKFamily
+from kinlab.inverse.branches.families import IKFamily
+from kinlab.inverse.branches.solutions import IKBranches, ik_branches
 from kinlab.model.library import ArmLike, as_robot
 
 
@@ -25,7 +25,7 @@ class SolutionCount:
         within_limits: how many of them the joint limits allow.
         complete: whether these are all.
         families: infinite sets of solutions through some of them.
-        method: as in :class:`kinlab.inverse.branches.IKBranches`.
+        method: as in :class:`kinlab.inverse.branches.solutions.IKBranches`.
         evidence: what was solved, and what is known of it.
     """
 
@@ -47,7 +47,7 @@ class SolutionCounts:
     Attributes:
         count: (N,), integers. within_limits: (N,), integers.
         complete: (N,), bool.
-        method: as in :class:`kinlab.inverse.branches.IKBranches`.
+        method: as in :class:`kinlab.inverse.branches.solutions.IKBranches`.
         evidence: of the stack.
     """
 
