@@ -46,7 +46,7 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
     other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
     yield _table(
         "convention",
-        _(_READ_AS[table.convention]),
+        _(_READ_AS[Convention(str(table.convention))]),
         lambda t: replace(t, convention=other),
         cost=1.05,
     )
