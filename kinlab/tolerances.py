@@ -165,6 +165,10 @@ class Tolerances:
     singular: float = 1e-10
     """sigma_min / sigma_max at and below which a configuration counts as singular."""
 
+    internal_motion: float = 1e-8
+    """Share of the greatest singular value below which a joint motion leaves the tool where it
+    is, at a singularity solved to 1e-12."""
+
     on_singular_set: float = 1e-12
     """Norm of the residual, in the arm's own length unit, below which a solution lies on the
     singular set; far above rounding (1e-15), far below the 1e-10 that is promised for sigma_min /

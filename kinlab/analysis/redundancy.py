@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import regular
 from kinlab.analysis.structure.task_space import read_task
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.tolerances import TOLERANCES
 

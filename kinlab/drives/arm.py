@@ -83,7 +83,9 @@ class ArmSizing(Told):
         return np.stack(speeds, axis=1), np.stack(torques, axis=1)
 
     def __str__(self) -> str:
-        lines = [f"robot {self.robot!r}: drives for a motion of {self.demand.t[-1]:.4g} s"]
+        without = [name for name, one in zip(self.joints, self.chosen, strict=True) if one is None]
+        verdict = f"no drive fits {', '.join(without)}" if without else "a drive fits every joint"
+        lines = [f"robot {self.robot!r}: {verdict}, for a motion of {self.demand.t[-1]:.4g} s"]
         demand = self.demand
         for joint, (name, fits) in enumerate(zip(self.joints, self.fits, strict=True)):
             asked = (

@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
@@ -29,6 +28,7 @@ from kinlab.analysis.structure.task_space import (
 )
 from kinlab.arrays import Array, between, frozen, seed_of, whole
 from kinlab.engine.fast.stacks import jacobian
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot

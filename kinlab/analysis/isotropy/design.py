@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.configurations import (
     IsotropicConfiguration,
     IsotropySystem,
@@ -23,7 +22,8 @@ from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choic
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 from kinlab.arrays import Array, between, seed_of, whole
-from kinlab.host.introductions import Answer, Introduction, counted
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, counted, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.dh import DHTable
 from kinlab.model.extract import as_table
@@ -32,8 +32,8 @@ from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True)
-class IsotropicDesign:
+@dataclass(frozen=True, repr=False)
+class IsotropicDesign(Answer):
     """One isotropic design.
 
     Attributes:
@@ -47,6 +47,15 @@ class IsotropicDesign:
     values: dict[str, float]
     configurations: tuple[IsotropicConfiguration, ...]
     freedom: int
+
+    def introduction(self) -> Introduction:
+        """Its numbers, and where it is isotropic."""
+        numbers = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
+        alone = "stands alone" if not self.freedom else f"one of a {self.freedom}-parameter family"
+        rows = tuple((vector(one.q, 6), f"{one.condition:.9g}") for one in self.configurations)
+        return Introduction(
+            f"isotropic design: {numbers}", (alone,), ("q", "condition number"), rows
+        )
 
     @property
     def q(self) -> Array:

@@ -11,13 +11,13 @@ import sympy
 from numpy.typing import ArrayLike
 
 from kinlab import symbolic
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
 from kinlab.arrays import Array, between, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike, as_robot

@@ -16,11 +16,12 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.solver import jacobian_derivative
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk, jacobian
+from kinlab.host.evidence import Evidence
 from kinlab.tolerances import TOLERANCES
 
 _STEPS = (1e-3, 1e-2)
@@ -101,8 +102,10 @@ def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     change = change * _unit(space)[:, np.newaxis, np.newaxis]
     bilinear = np.einsum("m,jmi->ji", direction, change) * np.outer(inside, inside)
     _, sigma, right = np.linalg.svd(matrix)
-    rank = int(np.sum(sigma > 1e-8 * sigma[0]))
+    rank = int(np.sum(counting(sigma, TOLERANCES.internal_motion)))
     motions = right[rank:].T * inside[:, np.newaxis]
+    if not motions.size:
+        return 0.0, 0.0
     values = np.linalg.eigvalsh(0.5 * motions.T @ (bilinear + bilinear.T) @ motions)
     return float(values[0]), float(values[-1])
 
@@ -178,7 +181,7 @@ def _starts(space: TaskSpace, q: Array) -> Array:
     quarter = _STARTS // 4
     states[:quarter] = q + rng.normal(scale=0.1, size=(quarter, robot.n))
     _, sigma, right = np.linalg.svd(space.jacobian(q, space.scale))
-    motions = right[int(np.sum(sigma > 1e-8 * sigma[0])) :]
+    motions = right[int(np.sum(counting(sigma, TOLERANCES.internal_motion))) :]
     share = rng.normal(size=(quarter, len(motions)))
     share /= np.abs(share @ motions).max(axis=1, keepdims=True)
     share *= rng.uniform(0.0, np.pi, (quarter, 1))

@@ -15,13 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import read_reachable_task, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
@@ -225,7 +226,7 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     drawn = np.random.default_rng(2).uniform(lower, upper, (8, system.space.robot.n))
     states = system.states(drawn[:, list(system.moving)])
     sigma = system.space.sigma(states)
-    return bool(np.all(sigma[:, -1] <= TOLERANCES.singular * sigma[:, 0]))
+    return not bool(counting(sigma)[:, -1].any())
 
 
 def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:

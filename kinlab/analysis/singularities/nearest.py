@@ -16,8 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import singular_values
+from kinlab.analysis.metrics import counting, singular_values
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.certified import nearest_zero
 from kinlab.analysis.singularities.minors import Factor, factors
@@ -27,6 +26,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task,
 from kinlab.arrays import Array, between, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
@@ -179,7 +179,7 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
         x, _ = solve(system, system.start(guess[np.newaxis]))
         state: Array = np.clip(system.states(x)[0], robot.lower, robot.upper)
         values = space.sigma(state)
-        if values[-1] <= TOLERANCES.singular * values[0] and np.linalg.norm(state - guess) < 1e-4:
+        if not counting(values)[-1] and np.linalg.norm(state - guess) < 1e-4:
             return state
     return None
 
@@ -204,7 +204,7 @@ def _from_many_starts(
     for number in np.argsort(distance, kind="stable"):
         state = x[number, : robot.n]
         values = space.sigma(state)
-        if values[-1] <= TOLERANCES.singular * values[0]:
+        if not counting(values)[-1]:
             return state, bound, searched
     return None, bound, searched
 

@@ -9,7 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.edge import edge
 from kinlab.analysis.singularities.minors import factors
@@ -26,15 +26,16 @@ from kinlab.analysis.structure.tasks import COORDINATES
 from kinlab.arrays import Array, between, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True)
-class Singularity:
+@dataclass(frozen=True, repr=False)
+class Singularity(Answer):
     """One singular configuration.
 
     Attributes:
@@ -69,6 +70,18 @@ class Singularity:
     rows: tuple[int, ...] = field(repr=False)
     length: float = field(repr=False)
 
+    def introduction(self) -> Introduction:
+        """What is lost here, and which joints hold the arm singular."""
+        return Introduction(
+            f"{self.kind} singularity, task {self.task}: rank {self.rank}, sigma_min/sigma_max "
+            f"{self.ratio:.2g}",
+            (
+                f"q = {vector(self.q)}",
+                f"lost direction: {self.lost_direction}",
+                _held_by(self.deciding, self.pinned),
+            ),
+        )
+
     @property
     def lost_direction(self) -> str:
         """The first lost direction in words, its main coordinate first."""
@@ -82,8 +95,14 @@ class Singularity:
         return ", ".join(parts)
 
 
-@dataclass(frozen=True)
-class SingularFamily:
+def _held_by(deciding: tuple[str, ...], pinned: tuple[float, ...]) -> str:
+    """The joints that hold an arm singular, in words."""
+    at = f" at {vector(pinned, 6)} (rad or m)" if pinned else ""
+    return f"held by {', '.join(deciding)}{at}"
+
+
+@dataclass(frozen=True, repr=False)
+class SingularFamily(Answer):
     """Configurations on one sheet of the singular set.
 
     Attributes:
@@ -104,6 +123,22 @@ class SingularFamily:
     beyond: bool | None
     members: tuple[Singularity, ...] = field(repr=False)
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """What holds the family, and whether the tool passes on."""
+        beyond = {
+            True: "the tool can pass on",
+            False: "an edge of the workspace",
+            None: "undecided",
+        }
+        return Introduction(
+            f"family of {self.kind} singularities, {_held_by(self.deciding, self.pinned)}",
+            (
+                f"in the lost direction ({self.representative.lost_direction}): "
+                f"{beyond[self.beyond]}",
+                str(self.evidence),
+            ),
+        )
 
     @property
     def representative(self) -> Singularity:
@@ -356,9 +391,10 @@ def _describe(
 ) -> Singularity | None:
     robot = space.robot
     left, sigma, right = np.linalg.svd(space.jacobian(q, space.scale))
-    if sigma[-1] > TOLERANCES.singular * sigma[0]:
+    counts = counting(sigma)
+    if counts[-1]:
         return None
-    rank = int(np.sum(sigma > TOLERANCES.singular * sigma[0]))
+    rank = int(np.sum(counts))
     held = supports(space, q)[0] if held is None else held
     fixed = pinned(space, q, held) if fixed is None else fixed
     internal = right[rank:].T
@@ -368,7 +404,7 @@ def _describe(
     named = space.m == robot.n or (space.m == 6 and kind == "anthropomorphic-7")
     return Singularity(
         q=frozen(q),
-        ratio=float(sigma[-1] / sigma[0]),
+        ratio=float(sigma[-1] / sigma[0]) if rank else 0.0,
         rank=rank,
         lost=frozen(left[:, rank:]),
         internal=frozen(internal),

@@ -14,12 +14,13 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import search_box
 from kinlab.arrays import Array, between, frozen
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, counted, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -50,8 +51,8 @@ class Arc:
         return points
 
 
-@dataclass(frozen=True)
-class PlanarBoundary:
+@dataclass(frozen=True, repr=False)
+class PlanarBoundary(Answer):
     """Answer of :func:`planar_boundary`.
 
     Attributes:
@@ -65,6 +66,19 @@ class PlanarBoundary:
     arcs: tuple[Arc, ...]
     candidates: int
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """Its arcs, and what was tried for them."""
+        rows = tuple(
+            (vector(arc.centre), f"{arc.radius:.6g}", f"{arc.start:.5g}", f"{arc.stop:.5g}")
+            for arc in self.arcs
+        )
+        return Introduction(
+            f"boundary of {self.robot}'s workspace in its plane: {counted(len(self.arcs), 'arc')}",
+            (str(self.evidence),),
+            ("centre [m]", "radius [m]", "from [rad]", "to [rad]"),
+            rows,
+        )
 
     def points(self, spacing: float = 0.01) -> Array:
         """Points along all arcs, at most ``spacing`` metres apart, (K, 2)."""

@@ -18,7 +18,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.axes import Axes
@@ -26,6 +25,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box
 from kinlab.arrays import Array, between, frozen, number, seed_of
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot

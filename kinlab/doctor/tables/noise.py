@@ -23,6 +23,7 @@ from kinlab.doctor.tables.reference.against import Reference
 from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.words import pose_cause
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.rotations import rotations_along
 from kinlab.tolerances import TOLERANCES
@@ -100,7 +101,9 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     if written <= room:
         return TableDiagnosis(
             agrees=True,
-            sentence=f"{table.name} agrees with {reference.name} within their noise",
+            sentence=_("{table} agrees with {reference} within their noise").format(
+                table=table.name, reference=reference.name
+            ),
             repaired=table,
             same_arm=True,
             clear=clear,
@@ -114,8 +117,10 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     if not good or written < _CLEAR**2 + room:
         return TableDiagnosis(
             agrees=False,
-            sentence=f"{table.name} is not the arm of {reference.name}, beyond the noise; no "
-            "single slip explains it",
+            sentence=_(
+                "{table} is not the arm of {reference}, beyond the noise; no single slip explains "
+                "it"
+            ).format(table=table.name, reference=reference.name),
             rows_in_question=tuple(range(1, table.n + 1)),
             clear=clear,
             **common,
@@ -169,7 +174,7 @@ def _candidates(plain: Reading, target: Target) -> list[Reading]:
 def _solve_cell(chain: Chain, row: int, column: int, target: Target) -> float:
     """Least squares for one cell, by Gauss and Newton from a start near it."""
     value = float(chain.cells[row, column])
-    for _ in range(6):
+    for _step in range(6):
         current = chain.with_cell(row, column, value)
         poses = frames(current, target.q)
         slope = _slopes(current, poses)[:, 4 * row + column]
@@ -193,7 +198,7 @@ def _solve_end(chain: Chain, which: str, target: Target) -> Chain:
     else:
         each = target.poses @ inverse(poses[:, -1]) @ chain.base
     mean = np.mean(each, axis=0)
-    U, _, Vt = np.linalg.svd(mean[:3, :3])
+    U, _sizes, Vt = np.linalg.svd(mean[:3, :3])
     mean[:3, :3] = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     if which == "base":  # the mean weighs errors of rotation by their lever; fit the place anew
         lever = inverse(chain.base) @ poses[:, -1]
@@ -307,7 +312,7 @@ def _calibrated(chain: Chain, target: Target) -> Chain:
         return float(np.sum((_rest(frames(one, target.q)[:, -1], target) * weight) ** 2))
 
     current, least = chain, error(chain)
-    for _ in range(12):
+    for _step in range(12):
         poses = frames(current, target.q)
         slopes = _slopes(current, poses) * weight
         rest = (_rest(poses[:, -1], target) * weight).reshape(-1)

@@ -20,13 +20,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, revolute, search_box
 from kinlab.arrays import Array, between, seed_of, shown, whole
 from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular

@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array, frozen
+from kinlab.host.evidence import Evidence
 from kinlab.tolerances import TOLERANCES
 
 _SHARE = 0.5
