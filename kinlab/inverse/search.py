@@ -112,7 +112,8 @@ def ik(
         NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
-    robot = as_robot(robot)
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
