@@ -9,6 +9,7 @@ module             what it holds
                    what is proved
 ``files``          Files are read with a clear error and written whole or not at all
 ``introductions``  Answers introduce themselves: the verdict first, then the numbers that matter
+``language``       The language in which kinlab speaks: English in the code, others in catalogues
 ``processes``      Processes of ours end with the process that started them, however that one ends
 ``progress``       How far a long calculation is: one line on a terminal or in a notebook, nothing
                    elsewhere

@@ -25,8 +25,9 @@ class Convention(StrEnum):
     """Which of the two DH conventions a table is written in.
 
     STANDARD: T_i = Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i); frame i at the far end of link i.
+
     MODIFIED: T_i = Rx(alpha_{i-1}) Tx(a_{i-1}) Rz(theta_i) Tz(d_i); frame i on joint axis i.
-        The row of link i holds alpha_{i-1} and a_{i-1}, as Craig prints it.
+    The row of link i holds alpha_{i-1} and a_{i-1}, as Craig prints it.
     """
 
     STANDARD = "standard"
