@@ -61,7 +61,7 @@ class Comparison(Rows):
 
     @property
     def agrees(self) -> bool:
-        """Whether the two are the same formula, to rounding."""
+        """Whether the two answer alike, to rounding, at every state that was drawn."""
         return self.max_error <= TOLERANCES.formula_agrees
 
     def columns(self) -> dict[str, Any]:

@@ -49,11 +49,12 @@ def fivebar_design(design: FiveBarDesign, *, resolution: int = 121, ax: Any = No
     return axes
 
 
-def fivebar_front(front: DesignFront) -> Any:
+def fivebar_front(front: DesignFront, *, ax: Any = None) -> Any:
     """The two goals along a Pareto front, and the three lengths beneath.
 
     Args:
         front: the answer of :func:`kinlab.fivebar_front`.
+        ax: where to draw, two axes one above the other; a new figure if left out.
 
     Returns:
         The first of its two axes.
@@ -61,8 +62,9 @@ def fivebar_front(front: DesignFront) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = new_figure((7.6, 6.8))
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    if ax is None:
+        ax = new_figure((7.6, 6.8)).subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    above, below = ax
     first, second = front.goals
     x, y = (np.array(front.values(goal)) for goal in (second, first))
     above.plot(x, y, color=BLUE, marker="o", lw=1.4)
@@ -79,5 +81,5 @@ def fivebar_front(front: DesignFront) -> Any:
     below.set(xlabel=f"{GOALS[second].words}{units[second]}", ylabel="lengths, m", ylim=(0.0, None))
     below.grid(color=GREY, alpha=0.25)
     below.legend(ncols=3, fontsize=9)
-    figure.suptitle(f"{len(front.designs)} five-bars of which none is better in both")
+    above.set_title(f"{len(front.designs)} five-bars of which none is better in both")
     return above
