@@ -265,7 +265,7 @@ def _readable(
 ) -> tuple[Array, Any, Array, IKHistory]:
     """As :func:`_search` for one target, over Pinocchio calls, with every iteration."""
     step = methods.choose(method, alpha)
-    limits = methods.Limits(
+    limits = methods.StopRule(
         *asked.tolerances,
         TOLERANCES.search_step if tol_step is None else number(tol_step, "tol_step", above=0.0),
         ITERATIONS[method] if asked.iterations is None else asked.iterations,
