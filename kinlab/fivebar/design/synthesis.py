@@ -47,7 +47,9 @@ class Proved:
 
 def _is_proved(goal: Proved) -> bool:
     """Whether value and bound are one, but for a thousandth."""
-    return abs(goal.bound - goal.value) <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
+    return bool(
+        abs(goal.bound - goal.value) <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,14 +127,22 @@ class FiveBarDesign(Told):
             f"over x {box.x_min:.6g} to {box.x_max:.6g}, y {box.y_min:.6g} to {box.y_max:.6g} m, "
             f"working mode ({self.mode[0]:+d}, {self.mode[1]:+d})",
             *(
-                f"  {GOALS[name].words}: {goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}"
+                f"  {GOALS[name].words}: {_bounded(goal)}"
                 for name, goal in self.goals.items()
+                if name in self.weights or name in self.limits or goal.value or goal.bound
             ),
         ]
         lines += self.remarks
         if self.at_limit:
             lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
         return "\n".join(lines)
+
+
+def _bounded(goal: Proved) -> str:
+    """A goal's value, and the bound that is proved of it."""
+    if not np.isfinite(goal.bound):
+        return f"{goal.value:.6g} {goal.unit}".rstrip() + ", found; no bound"
+    return f"{goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}".rstrip()
 
 
 def design_fivebar(
