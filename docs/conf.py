@@ -26,6 +26,8 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_design",
     "docstrings",
+    "links",
+    "live",
     "mathml",
     "made_pages",
     "notebooks",

@@ -172,6 +172,7 @@ def public_names() -> set[str]:
     for room in (*ROOMS, "symbolic"):
         module = importlib.import_module(f"kinlab.{room}")
         names |= {f"{room}.{n}" for n in getattr(module, "__all__", ())}
+    names |= {"tolerances.Tolerances", "tolerances.TOLERANCES"}
     return names - {"fivebar.FiveBar", "viewer.view"}  # they stand at the top as well
 
 
