@@ -30,7 +30,6 @@ extensions = [
     "sphinx_design",
     "docstrings",
     "links",
-    "live",
     "mathml",
     "made_pages",
     "notebooks",

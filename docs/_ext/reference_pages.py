@@ -262,6 +262,16 @@ def errors() -> list[type]:
     return sorted(every, key=lambda c: (c.__module__ != "kinlab.errors", c.__module__))
 
 
+def rooms() -> str:
+    """The rooms of the package, each with the table of its files, from its own docstring."""
+    text = heading("The rooms, file by file", "=")
+    text += "What :doc:`/architecture` puts in order, from the rooms' own docstrings.\n\n"
+    for file in sorted(Path(kl.__path__[0]).rglob("__init__.py")):
+        name = ".".join(file.parent.relative_to(Path(kl.__path__[0]).parent).parts)
+        text += heading(name, "-") + f".. automodule:: {name}\n   :no-index-entry:\n\n"
+    return text
+
+
 def entry(full: str, thing: Any) -> str:
     """The directive that documents one name."""
     if inspect.isclass(thing):
@@ -307,6 +317,7 @@ def write(docs: Path) -> None:
             text += "\n" + heading("What they answer with", "-")
             text += "\n".join(entry(*pair) for pair in further)
         write_if_changed(folder / f"{one.page}.rst", text)
+    write_if_changed(folder / "rooms.rst", rooms())
     text = heading("For those who add to kinlab", "=")
     text += "What :doc:`/architecture` and CONTRIBUTING.md speak of.\n\n"
     for module, names in EXTENDING:
