@@ -117,8 +117,3 @@ def test_note_page_shows_each_formula_with_its_verdict():
     assert text.count("**Misprint") == len(wrong)
     assert text.count("**Agrees.**") == len(formulas) - len(wrong)
     assert text.count('class="form printed') == len(wrong)
-
-
-def test_lines_are_spelled_as_stretches():
-    assert note_pages.spelled([(1, 3), (4, 4), (7, 9)]) == "1–4, 7–9"
-    assert note_pages.spelled([(8, 8)]) == "8"
