@@ -129,7 +129,8 @@ TOPICS = (
         "axes. With ``pip install 'kinlab[plots]'``.",
         "plots.workspace plots.workspace_map plots.workspace_cloud plots.ellipses "
         "plots.singular_loci plots.singular_values plots.solutions plots.ik_history "
-        "plots.torque_speed plots.fivebar plots.fivebar_cycle plots.fivebar_gains plots.save",
+        "plots.torque_speed plots.fivebar plots.fivebar_cycle plots.fivebar_gains "
+        "plots.fivebar_design plots.fivebar_front plots.save",
     ),
     topic(
         "viewer",
