@@ -14,7 +14,14 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # the generators do without Sphinx, and so do their tests
     from sphinx.application import Sphinx
 
-GENERATORS = ("reference_pages", "note_pages", "bench_pages", "drawings", "robot_pages")
+GENERATORS = (
+    "reference_pages",
+    "command_pages",
+    "note_pages",
+    "bench_pages",
+    "drawings",
+    "robot_pages",
+)
 
 
 def write_all(app: Sphinx) -> None:

@@ -14,6 +14,7 @@ import kinlab as kl
 
 sys.path.insert(0, str(pages.DOCS / "_ext"))
 
+import command_pages
 import note_pages
 import reference_pages
 from made_pages import write_if_changed
@@ -69,7 +70,16 @@ def test_reference_is_written_with_the_records_that_answer(tmp_path):
             len(re.findall(rf"^\.\. autoclass:: kinlab\.[\w.]+\.{record}$", everything, re.M)) == 1
         )
     listed = (pages.DOCS / "reference" / "index.md").read_text()
-    assert set(re.findall(r"^generated/(\w+)$", listed, re.M)) == set(written)
+    assert set(re.findall(r"^generated/(\w+)$", listed, re.M)) == {*written, "commands"}
+
+
+def test_every_command_has_its_place_with_its_options():
+    text = command_pages.page()
+    named = re.findall(r"^## `kinlab ([^`]+)`$", text, re.MULTILINE)
+    assert {"check", "list", "view", "fivebar size"} <= set(named)
+    assert len(named) == len(set(named))
+    for option in ("--against", "--report", "--json", "--lang"):
+        assert f"`{option}`" in text
 
 
 def test_page_that_stands_already_is_left_alone(tmp_path):
