@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -29,27 +28,22 @@ def new_figure(size: tuple[float, float] = (6.4, 5.2)) -> Any:
         raise MissingExtraError(
             "figures need matplotlib: install it with pip install 'kinlab[plots]'"
         ) from None
-    figure = Figure(figsize=size, layout="constrained")
+
+    class Shown(Figure):
+        """A figure that a notebook shows, whether or not pyplot is there to teach it."""
+
+        def _repr_png_(self) -> bytes:
+            return picture(self, "png", dpi=100)
+
+    figure = Shown(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    _shown_by_notebooks(Figure)
     return figure
 
 
-def _shown_by_notebooks(kind: type) -> None:
-    """Has IPython show figures as pictures, as it does of itself only once pyplot is imported."""
-    asked = getattr(sys.modules.get("IPython"), "get_ipython", None)
-    shell = asked() if asked is not None else None
-    if shell is None or not hasattr(shell, "kernel"):
-        return
-    formatter = shell.display_formatter.formatters["image/png"]
-    if kind not in formatter.type_printers:
-        formatter.for_type(kind, _png)
-
-
-def _png(figure: Any) -> bytes:
-    """A figure as a notebook shows it."""
+def picture(figure: Any, kind: str, dpi: float) -> bytes:
+    """The bytes of a figure as ``png``, ``svg`` or ``pdf``."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=100, bbox_inches="tight")
+    figure.savefig(buffer, format=kind, dpi=dpi)
     return buffer.getvalue()
 
 
@@ -123,7 +117,5 @@ def save(axes: Any, path: str | Path) -> Path:
     kind = file.suffix.lower().lstrip(".")
     if kind not in _FORMATS:
         raise FileError(f"{file}: a figure is a .png, .svg or .pdf file")
-    buffer = io.BytesIO()
-    axes.figure.savefig(buffer, format=kind, dpi=150)
-    write_bytes(file, buffer.getvalue())
+    write_bytes(file, picture(axes.figure, kind, dpi=150))
     return file

@@ -30,6 +30,7 @@ from kinlab.check.report.words import (
 )
 from kinlab.check.unread import Unread
 from kinlab.formulas.typeset import mathml
+from kinlab.host.language import _, language_tag, ngettext
 from kinlab.host.web import page_text, policy
 
 LONG = 110
@@ -100,7 +101,7 @@ def _environment() -> Environment:
         "mathml": lambda latex: Markup(mathml(latex)),
         "spread": lambda group: Markup(svg(group.errors, group.printed_errors)),
     }
-    made.globals["wide"] = LONG
+    made.globals |= {"wide": LONG, "_": _, "ngettext": ngettext, "language_tag": language_tag}
     return made
 
 
