@@ -13,16 +13,22 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.host.introductions import Answer, Introduction
+from kinlab.host.language import N_, _, speaking
 
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""
 
-_FORMS = {"": "", "rounded": ", with rounded numbers", "unusual": ", written unusually"}
-_GRADES = {
-    "": "right",
-    "rounded": "right with rounded numbers",
-    "unusual": "right but written unusually",
+_AGREES = {
+    "": N_("agrees"),
+    "rounded": N_("agrees, with rounded numbers"),
+    "unusual": N_("agrees, written unusually"),
 }
+_GRADES = {
+    "": N_("right"),
+    "rounded": N_("right with rounded numbers"),
+    "unusual": N_("right but written unusually"),
+}
+_DIFFERS, _UNKNOWN, _WRONG = N_("differs"), N_("differs, cause unknown"), N_("wrong")
 _OTHERS = 3
 """Causes that are told beside the first."""
 
@@ -108,8 +114,11 @@ class Diagnosis(Answer):
         """What is explained, the worst entry and its state, where the cause is unknown."""
         if self.agrees or self.causes:
             return ()
-        worst = f"Worst entry {self.worst_entry} at {self._at_worst(200)}"
-        return (*(f"Explained: {text}" for text in self.partial), worst)
+        worst = _("Worst entry {entry} at {place}").format(
+            entry=self.worst_entry, place=self._at_worst(200)
+        )
+        explained = _("Explained: {what}")
+        return (*(explained.format(what=text) for text in self.partial), worst)
 
     @property
     def verdict(self) -> str:
@@ -117,52 +126,70 @@ class Diagnosis(Answer):
         it), ``"differs"`` or ``"differs, cause unknown"``.
         """
         if self.agrees:
-            return f"agrees{_FORMS[self.form]}"
-        return "differs" if self.causes else "differs, cause unknown"
+            return _AGREES[self.form]
+        return _DIFFERS if self.causes else _UNKNOWN
 
     @property
     def grade(self) -> str:
         """As a teacher says it: ``"right"``, ``"right with rounded numbers"``, ``"right but written
         unusually"`` or ``"wrong"``.
         """
-        return _GRADES[self.form] if self.agrees else "wrong"
+        return _GRADES[self.form] if self.agrees else _WRONG
 
     @property
     def sentence(self) -> str:
         """The diagnosis in one sentence."""
         if self.agrees:
-            said = f"{self.function} is {self.quantity} of {self.robot}"
-            return "; ".join((said, *self.remarks))
+            return _("; ").join(
+                (self._named(_("{function} is {quantity} of {robot}")), *self.remarks)
+            )
         if self.causes:
             return self.causes[0].sentence
-        return f"{self.function} is not {self.quantity} of {self.robot}; no known slip explains it"
+        told = _("{function} is not {quantity} of {robot}; no known slip explains it")
+        return self._named(told)
 
     def introduction(self) -> Introduction:
         """The verdict, what is wrong, and what is right."""
-        verdict = f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"
+        verdict = self._named(_("{function}: {verdict} ({quantity} of {robot})"))
+        before = f"{self.error_before:.3g}"
         if self.agrees:
-            text = f"{verdict}, largest relative error {self.error_before:.2g}"
+            told = _("{verdict}, largest relative error {error}")
+            text = told.format(verdict=verdict, error=f"{self.error_before:.2g}")
             return Introduction(text, tuple(self.remarks), mood="good")
         if self.causes:
             best = self.causes[0]
-            errors = f"before {self.error_before:.3g}, after {best.error_after:.2g}"
-            lines = [best.sentence, f"relative error {errors}"]
-            lines += [f"correct: {name} = {text}" for name, text in best.corrected.items()]
-            lines += [f"or: {text}" for text in self.others]
+            errors = _("relative error before {before}, after {after}")
+            correct, other = _("correct: {name} = {formula}"), _("or: {cause}")
+            lines = [best.sentence, errors.format(before=before, after=f"{best.error_after:.2g}")]
+            lines += [correct.format(name=k, formula=v) for k, v in best.corrected.items()]
+            lines += [other.format(cause=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
-        lines = [f"explained: {text}" for text in self.partial]
-        error = f"relative error {self.error_before:.3g}"
-        lines.append(f"{error}; worst entry {self.worst_entry} at {self._at_worst(100)}")
+        explained = _("explained: {what}")
+        worst = _("relative error {error}; worst entry {entry} at {place}")
+        lines = [explained.format(what=text) for text in self.partial]
+        place = self._at_worst(100)
+        lines.append(worst.format(error=before, entry=self.worst_entry, place=place))
         return Introduction(verdict, tuple(lines), mood="unsure")
+
+    def _named(self, text: str) -> str:
+        """A template with what was compared in it."""
+        return text.format(
+            function=self.function,
+            quantity=self.quantity,
+            robot=self.robot,
+            verdict=_(self.verdict),
+        )
 
     def _at_worst(self, width: int) -> str:
         """The worst state and both answers there."""
         with np.printoptions(precision=6, suppress=True, linewidth=width):
             state = ", ".join(f"{name} = {value}" for name, value in self.worst_state.items())
-            return f"{state}: hand {self.hand}, engine {self.engine}"
+            told = _("{state}: hand {hand}, engine {engine}")
+            return told.format(state=state, hand=self.hand, engine=self.engine)
 
+    @speaking("en")
     def as_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
+        """Plain values for JSON, in English, whatever language is spoken."""
         return {
             "quantity": self.quantity,
             "robot": self.robot,
