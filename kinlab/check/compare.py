@@ -62,7 +62,7 @@ class Comparison(Rows):
 
     @property
     def agrees(self) -> bool:
-        """Whether the two are the same formula, to rounding."""
+        """Whether the two answer alike, to rounding, at every state that was drawn."""
         return self.max_error <= TOLERANCES.formula_agrees
 
     def columns(self) -> dict[str, Any]:
@@ -102,6 +102,19 @@ class Comparison(Rows):
         return Introduction(text, (worst, hand, engine), mood="bad")
 
 
+def need_function(function: object) -> None:
+    """Refuses what is no function, formulas as text above all, with where they go.
+
+    Raises:
+        OptionError: it cannot be called.
+    """
+    if not callable(function):
+        raise OptionError(
+            f"function: {type(function).__name__} cannot be called; a formula as text goes into a "
+            'file (robot = "planar2r", below [formulas] tau2 = "..."), read by kinlab check FILE'
+        )
+
+
 def compare(
     robot: Any, quantity: str, function: Callable[..., Any], samples: int = 200, seed: int = 0
 ) -> Comparison:
@@ -126,8 +139,7 @@ def compare(
     """
     found = find_quantity(quantity)
     mechanism = found.domain.load(robot)
-    if not callable(function):
-        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    need_function(function)
     return compare_stacked(
         mechanism, found, state_by_state(function), function_name(function), None, samples, seed
     )

@@ -330,6 +330,7 @@ def _print_failures(console: Screen, done: Sequence[Row]) -> None:
 
 
 def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
+    from kinlab.check.diagnosis import shown_entry
     from kinlab.check.report.summary import size
 
     def line(text: str) -> None:
@@ -341,9 +342,9 @@ def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
         told = _("relative error before {before}, after {after}")
         line("  " + told.format(before=before, after=after))
         for name, text in found.causes[0].corrected.items():
-            line("  " + _("correct: {name} = {formula}").format(name=name, formula=text))
+            line("  " + _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}"))
     for text in found.others:
-        line("  " + _("or: {cause}").format(cause=text))
+        line("  " + _("or: {slip}").format(slip=text))
 
 
 def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:

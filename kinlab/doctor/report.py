@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.check.catalogue import Row
-from kinlab.check.diagnosis import Diagnosis, Typeset
+from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import Task
@@ -46,20 +46,6 @@ FEWEST = 10
 _NONE: frozenset[Path] = frozenset()
 _SHORT = 40
 """Terms up to which a derived formula is worth showing."""
-
-_LETTERS = {
-    "inverse_dynamics": "tau",
-    "gravity_torques": "g",
-    "coriolis_torques": "c",
-    "mass_matrix": "M",
-    "coriolis_matrix": "C",
-    "jacobian": "J",
-    "planar_jacobian": "J",
-    "fk": "T",
-    "kinetic_energy": "T",
-    "potential_energy": "V",
-}
-"""What a quantity is called where the user gave no name."""
 
 
 def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
@@ -217,7 +203,5 @@ def _entries(found: Diagnosis, file: FormulaFile, robot: Robot) -> Iterator[tupl
 
 
 def _name(label: str) -> str:
-    plain, index = split_name(label)
-    if plain not in _LETTERS or not all(isinstance(k, int) and 0 <= k < 9 for k in index):
-        return label
-    return _LETTERS[plain] + "".join(str(k + 1) for k in index)
+    """What an entry is called where the user gave no name, as one letter with its places."""
+    return ENTRY_LETTERS.get(label, shown_entry(label))

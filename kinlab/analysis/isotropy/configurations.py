@@ -4,8 +4,6 @@ Solved as an overdetermined system, not by minimising the condition number: at i
 singular values coincide, where the condition number has a kink and its minimisers stall.
 
 Sources: Salisbury & Craig, IJRR 1(1), 1982; Angeles, IJRR 11(3), 1992; note 000, section 六.
-
-J J^T = a 1 as a system of smooth equations.
 """
 
 from __future__ import annotations
@@ -16,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
@@ -27,21 +24,16 @@ from kinlab.analysis.structure.task_space import (
     search_box,
     wrap,
 )
-from kinlab.arrays import Array, frozen, seed_of, whole
+from kinlab.arrays import Array, between, frozen, seed_of, whole
 from kinlab.engine.fast.stacks import jacobian
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
-
-ISOTROPIC = 1e-8
-"""Condition number - 1 at and below which a configuration is isotropic."""
+from kinlab.tolerances import TOLERANCES
 
 _NEAR = 0.05
 """Residual after thirty steps from which an isotropic configuration may still be reached."""
-
-_SAME = 1e-5
-"""rad or m between two listings of one configuration. Double roots are solved to half the
-digits, so that 1e-8 would list them twice."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +44,7 @@ class IsotropicConfiguration:
         q: joint positions, (n,); free joints stand at zero or the middle of their limits.
         condition: condition number of J there.
         length: characteristic length in metres, ``None`` where the task needs none.
-        free: names of the joints that may take any value without changing J J^T.
+        free: names of the joints of which each may take any value alone and J stays isotropic.
         freedom: dimension of the family in joint space; more than ``len(free)`` where joints move
             together. Measured by configurations around this one.
         jacobian: the task's J, entries in metres over ``length``, (m, n).
@@ -156,14 +148,15 @@ def find_isotropic(
     seeds: int = 400,
     seed: int = 0,
 ) -> IsotropySearch:
-    """Isotropic configurations within the joint limits, or the best reachable condition number.
+    """Isotropic configurations within the joint limits, or the least condition number found.
 
     Args:
         robot: the robot.
         task: a name, a mask of six booleans, or ``"auto"``; the answer states it.
         length: characteristic length in metres, or ``"optimal"``: solved for along with q. It
             matters for mixed tasks only; the answer states it.
-        seeds: most random starts within the limits; more never give a worse condition number.
+        seeds: most random starts within the limits; more never give a worse condition number,
+            but for rounding.
         seed: of the starts; the same seed gives the same answer.
 
     Returns:
@@ -185,8 +178,8 @@ def find_isotropic(
     x[near], _ = solve(system, x[near], iterations=60)
     q, lengths = wrap(robot, system.q(x)), system.length(x)
     condition = condition_number(singular_values(space.jacobian(q, lengths)))
-    inside = np.all((q >= lower - 1e-9) & (q <= upper + 1e-9), axis=1)
-    isotropic = inside & (condition - 1.0 <= ISOTROPIC)
+    inside = between(q, lower, upper, TOLERANCES.limit_digits).all(axis=1)
+    isotropic = inside & (condition - 1.0 <= TOLERANCES.isotropic)
     configurations = isotropic_families(
         system, np.clip(q, lower, upper)[isotropic], lengths[isotropic]
     )
@@ -225,7 +218,7 @@ def _evidence(seeds: int, seed: int, met: int, least: LeastCondition | None) -> 
             f"{seeds} starts within the limits (seed {seed})",
             met,
             seeds,
-            f"J J^T = a 1 to {ISOTROPIC:g} at every listed configuration",
+            f"J J^T = a 1 to {TOLERANCES.isotropic:g} at every listed configuration",
             "that there is no other family",
         )
     # no start of N ended lower: with a share p of such starts the chance of that is (1 - p)^N
@@ -262,7 +255,7 @@ def isotropic_families(
         ]
         # a curved family has no coordinates to compare: it is listed by its first member
         known_curve = any(freedom > len(free) for freedom, _ in alike)
-        if known_curve or any(float(d.max()) < _SAME for d in apart):
+        if known_curve or any(float(d.max()) < TOLERANCES.same_configuration for d in apart):
             continue
         freedom = max(len(free), _dimension(system, state, float(size)))
         seen.append((free, freedom, place, float(size)))
@@ -282,21 +275,20 @@ def isotropic_families(
 
 
 def _free_joints(system: IsotropySystem, q: Array, length: float) -> tuple[int, ...]:
-    """Joints that may move alone, tried and not only linearised."""
+    """Joints that may move alone, tried and not only linearised.
+
+    J J^T - a 1 is of degree two in the cosine and sine of a joint, or in a slide: five values, the
+    given one among them, at which it is zero are enough.
+    """
     space, robot = system.space, system.space.robot
     free = []
     for joint in range(robot.n):
-        moved = np.repeat(q[np.newaxis], 3, axis=0)
-        moved[:, joint] += (0.4, 1.1, -0.7)
+        moved = np.repeat(q[np.newaxis], 4, axis=0)
+        moved[:, joint] += (0.4, 1.1, -0.7, -1.9)
         sigma = singular_values(space.jacobian(moved, length))
-        if float((condition_number(sigma) - 1.0).max()) <= 10.0 * ISOTROPIC:
+        if float((condition_number(sigma) - 1.0).max()) <= 10.0 * TOLERANCES.isotropic:
             free.append(joint)
     return tuple(free)
-
-
-_RADIUS = 0.005
-"""rad or m around a configuration in which its family's dimension is measured: a curve bends by a
-fraction of that, and a double root, which linearises like a curve, draws its neighbours back."""
 
 
 def _dimension(system: IsotropySystem, q: Array, length: float) -> int:
@@ -324,14 +316,14 @@ def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     if not len(still):
         return x[:0], 0
     drawn = np.random.default_rng(6).normal(size=(8 * len(still), len(still))) @ still
-    drawn *= _RADIUS / np.linalg.norm(drawn, axis=1, keepdims=True)
+    drawn *= TOLERANCES.family_radius / np.linalg.norm(drawn, axis=1, keepdims=True)
     ahead, norm = solve(system, x + drawn, iterations=120)
     around = ahead[norm < 1e-9]
     if not len(around):
         return around, 0
     apart = system.q(around) - system.q(x)
     spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
-    return around, int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))
+    return around, int(np.sum(spread > 0.15 * TOLERANCES.family_radius / np.sqrt(len(still))))
 
 
 @dataclass(frozen=True)

@@ -116,7 +116,7 @@ def _diagnosis(found: Diagnosis) -> list[str]:
     lines = [told, ""]
     for text in found.evidence:
         lines += [sentence(words(text)), ""]
-    lines += [_("- or: {cause}").format(cause=words(text)) for text in found.others]
+    lines += ["- " + _("or: {slip}").format(slip=words(text)) for text in found.others]
     lines += [""] if found.others else []
     if found.corrected:
         lines += [_("Should be:"), ""]

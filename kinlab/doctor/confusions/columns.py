@@ -22,75 +22,83 @@ from kinlab.doctor.confusions.recursion import (
     mixed,
 )
 from kinlab.engine.kinematics import fk
+from kinlab.host.language import N_, _
 from kinlab.model.link import steiner
 from kinlab.model.robot import Robot
 
 _COLUMN: tuple[tuple[str, str, dict[str, float], float], ...] = (
-    ("joint axis", "takes the axis z of the next joint for the joint's own (z_i for z_(i-1))",
+    ("joint axis", N_("takes the axis z of the next joint for the joint's own (z_i for z_(i-1))"),
      {"z own": 0.0, "z next": 1.0}, 1.1),
-    ("joint axis", "takes the axis z of the joint before for the joint's own (z_(i-1) for z_i)",
+    ("joint axis", N_("takes the axis z of the joint before for the joint's own (z_(i-1) for z_i)"),
      {"z own": 0.0, "z back": 1.0}, 1.1),
-    ("joint axis", "takes the base's z for the joint axis", {"z own": 0.0, "z base": 1.0}, 1.2),
-    ("point", "takes the origin o of the next frame for the joint's own point (o_i for o_(i-1))",
+    ("joint axis", N_("takes the base's z for the joint axis"), {"z own": 0.0, "z base": 1.0}, 1.2),
+    ("point", N_("takes the origin o of the next frame for the joint's own point (o_i for "
+                 "o_(i-1))"),
      {"o own": 0.0, "o next": 1.0}, 1.1),
-    ("point", "takes the origin o of the frame before for the joint's own point",
+    ("point", N_("takes the origin o of the frame before for the joint's own point"),
      {"o own": 0.0, "o back": 1.0}, 1.15),
-    ("point", "leaves the joint's origin o out: z x p for z x (p - o)", {"o own": 0.0}, 1.1),
-    ("cross product order", "has the cross product's order exchanged: (p - o) x z for z x (p - o), "
-     "the opposite sign", {"linear": -1.0}, 1.15),
-    ("slide as hinge", "treats a slide (prismatic joint) as a hinge (revolute)",
+    ("point", N_("leaves the joint's origin o out: z x p for z x (p - o)"), {"o own": 0.0}, 1.1),
+    ("cross product order", N_("has the cross product's order exchanged: (p - o) x z for z x (p "
+                               "- o), "
+     "the opposite sign"), {"linear": -1.0}, 1.15),
+    ("slide as hinge", N_("treats a slide (prismatic joint) as a hinge (revolute)"),
      {"slide": 0.0, "slide turns": 1.0}, 1.1),
-    ("slide turns", "gives a slide (prismatic joint) an angular part z", {"slide z": 1.0}, 1.1),
-    ("slide left out", "leaves the column of a slide (prismatic joint) out", {"slide": 0.0}, 1.2),
-    ("hinge as slide", "treats a hinge as a slide: z for z x (p - o)",
+    ("slide turns", N_("gives a slide (prismatic joint) an angular part z"), {"slide z": 1.0}, 1.1),
+    ("slide left out", N_("leaves the column of a slide (prismatic joint) "
+                          "out"), {"slide": 0.0}, 1.2),
+    ("hinge as slide", N_("treats a hinge as a slide: z for z x (p - o)"),
      {"linear": 0.0, "linear z": 1.0, "angular": 0.0}, 1.2),
-    ("angular rows", "leaves the angular part out", {"angular": 0.0}, 1.2),
-    ("linear rows", "leaves the linear part out", {"linear": 0.0, "slide": 0.0}, 1.2),
+    ("angular rows", N_("leaves the angular part out"), {"angular": 0.0}, 1.2),
+    ("linear rows", N_("leaves the linear part out"), {"linear": 0.0, "slide": 0.0}, 1.2),
 )  # fmt: skip
 """Kind, words, weights, cost of what may be otherwise in a column."""
 
 _TIP: tuple[tuple[str, str, dict[str, float], float], ...] = (
-    ("point", "refers to the origin of the last DH frame, not the tool", {"p own": 0.0,
+    ("point", N_("refers to the origin of the last DH frame, not the tool"), {"p own": 0.0,
      "p last": 1.0}, 1.1),
-    ("point", "refers to the last joint's origin, not the tool", {"p own": 0.0,
+    ("point", N_("refers to the last joint's origin, not the tool"), {"p own": 0.0,
      "p joint": 1.0}, 1.15),
-    ("angular rows", "takes the axis z of the next joint in the angular rows",
+    ("angular rows", N_("takes the axis z of the next joint in the angular rows"),
      {"za next": 1.0}, 1.15),
-    ("angular rows", "takes the axis z of the joint before in the angular rows",
+    ("angular rows", N_("takes the axis z of the joint before in the angular rows"),
      {"za back": 1.0}, 1.15),
 )  # fmt: skip
 
 _LINK: tuple[tuple[str, str, dict[str, float], float], ...] = (
-    ("centre", "takes the link's frame origin for its centre of mass", {"c own": 0.0,
+    ("centre", N_("takes the link's frame origin for its centre of mass"), {"c own": 0.0,
      "c frame": 1.0}, 1.15),
-    ("centre", "takes the joint's origin for the centre of mass", {"c own": 0.0}, 1.15),
-    ("centre not rotated", "takes the centre of mass in link axes as if in base axes (com not "
-     "rotated)", {"c own": 0.0, "c plain": 1.0}, 1.1),
-    ("centre transposed", "rotates the centre of mass with R transposed", {"c own": 0.0,
+    ("centre", N_("takes the joint's origin for the centre of mass"), {"c own": 0.0}, 1.15),
+    ("centre not rotated", N_("takes the centre of mass in link axes as if in base axes (com not "
+     "rotated)"), {"c own": 0.0, "c plain": 1.0}, 1.1),
+    ("centre transposed", N_("rotates the centre of mass with R transposed"), {"c own": 0.0,
      "c back": 1.0}, 1.15),
-    ("centre", "measures the centre of mass to the other side of the link's frame", {"c own": 0.0,
+    ("centre", N_("measures the centre of mass to the other side of the link's "
+                  "frame"), {"c own": 0.0,
      "c mirrored": 1.0}, 1.15),
-    ("tensor not rotated", "takes the inertia tensor in link axes as if in base axes (tensor not "
-     "rotated: I for R I R^T)", {"I own": 0.0, "I plain": 1.0}, 1.05),
-    ("tensor transposed", "rotates the inertia tensor the wrong way (R^T I R for R I R^T)",
+    ("tensor not rotated", N_("takes the inertia tensor in link axes as if in base axes (tensor "
+                              "not "
+     "rotated: I for R I R^T)"), {"I own": 0.0, "I plain": 1.0}, 1.05),
+    ("tensor transposed", N_("rotates the inertia tensor the wrong way (R^T I R for R I R^T)"),
      {"I own": 0.0, "I back": 1.0}, 1.05),
-    ("tensor of another link", "takes the inertia tensor of the next link", {"I own": 0.0,
+    ("tensor of another link", N_("takes the inertia tensor of the next link"), {"I own": 0.0,
      "I next": 1.0}, 1.25),
-    ("tensor of another link", "takes the inertia tensor of the link before", {"I own": 0.0,
+    ("tensor of another link", N_("takes the inertia tensor of the link before"), {"I own": 0.0,
      "I before": 1.0}, 1.25),
-    ("inertia point", "counts m c² twice: the inertia tensor about the joint where that about the "
-     "centre of mass belongs", {"I steiner": 1.0}, 1.15),
-    ("inertia left out", "leaves the inertia tensor's part Jw^T I Jw out", {"turning": 0.0}, 1.1),
-    ("mass part", "leaves the part m Jv^T Jv out", {"moving": 0.0}, 1.15),
-    ("mass of another link", "takes the mass of the next link", {"m own": 0.0,
+    ("inertia point", N_("counts m c² twice: the inertia tensor about the joint where that about "
+                         "the "
+     "centre of mass belongs"), {"I steiner": 1.0}, 1.15),
+    ("inertia left out", N_("leaves the inertia tensor's part Jw^T I Jw "
+                            "out"), {"turning": 0.0}, 1.1),
+    ("mass part", N_("leaves the part m Jv^T Jv out"), {"moving": 0.0}, 1.15),
+    ("mass of another link", N_("takes the mass of the next link"), {"m own": 0.0,
      "m next": 1.0}, 1.25),
-    ("mass of another link", "takes the mass of the link before", {"m own": 0.0,
+    ("mass of another link", N_("takes the mass of the link before"), {"m own": 0.0,
      "m back": 1.0}, 1.25),
-    ("own joint", "leaves the link's own joint out of its Jacobian (j < i for j <= i)",
+    ("own joint", N_("leaves the link's own joint out of its Jacobian (j < i for j <= i)"),
      {"own joint": 0.0}, 1.15),
-    ("rotor inertia", "leaves the rotor inertia out", {"rotor": 0.0}, 1.1),
-    ("gravity left out", "leaves gravity out", {"gravity": 0.0}, 1.05),
-    ("gravity sign", "has gravity with the opposite sign", {"gravity": -1.0}, 1.05),
+    ("rotor inertia", N_("leaves the rotor inertia out"), {"rotor": 0.0}, 1.1),
+    ("gravity left out", N_("leaves gravity out"), {"gravity": 0.0}, 1.05),
+    ("gravity sign", N_("has gravity with the opposite sign"), {"gravity": -1.0}, 1.05),
 )  # fmt: skip
 
 _PLAIN = {
@@ -102,13 +110,16 @@ _PLAIN = {
 def column_steps(n: int, slides: bool, of_links: bool) -> list[Step]:
     """Every alternative of the columns, for all joints and each; of a mass matrix too."""
     found = []
+    at_joint = _("{does}, at joint {joint}")
     for kind, words, weights, cost in (*_COLUMN, *(_LINK if of_links else _TIP)):
         if not slides and ("slide" in kind and kind != "hinge as slide"):
             continue
-        found.append(Step(kind, words, weights, cost))
+        does = _(words)
+        found.append(Step(kind, does, weights, cost))
         if n > 1 and not any(name.startswith(("p ", "gravity")) for name in weights):
             found += [
-                Step(kind, f"{words}, at joint {i + 1}", weights, cost + 0.15, i) for i in range(n)
+                Step(kind, at_joint.format(does=does, joint=i + 1), weights, cost + 0.15, i)
+                for i in range(n)
             ]
     return found
 
@@ -126,7 +137,7 @@ def _axes(at: Any, g: Geometry, i: int) -> Any:
 
 def _other_axes(at: Any, g: Geometry, i: int) -> Any:
     """What other axes in the angular rows alone add to them."""
-    after, before, _ = _near(g, i)
+    after, before, _base = _near(g, i)
     return at("za next") * (after - g.z[:, i]) + at("za back") * (before - g.z[:, i])
 
 

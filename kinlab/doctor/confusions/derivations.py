@@ -17,6 +17,7 @@ from kinlab.doctor.confusions.columns import column_steps, jacobians, lagrange
 from kinlab.doctor.confusions.links import matrix_steps, products
 from kinlab.doctor.confusions.otherwise import mass_slope
 from kinlab.doctor.confusions.recursion import Step, geometry, steps, torques
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 Ways = list[tuple[Step, ...]]
@@ -212,7 +213,7 @@ def christoffel_terms(case: Case) -> tuple[str, float, int] | None:
     columns = np.array([part.ravel() for part in parts]).T
     if np.linalg.matrix_rank(columns) < len(parts):
         return None
-    found, *_ = np.linalg.lstsq(columns, (case.hand - base).ravel(), rcond=None)
+    found, *_rest = np.linalg.lstsq(columns, (case.hand - base).ravel(), rcond=None)
     gap = np.abs((columns @ found).reshape(engine.shape) + base - case.hand)
     error = float(np.max(np.max(gap.reshape(len(gap), -1), axis=1) / error_sizes(engine)))
     share = found / np.array(whole)
@@ -222,13 +223,15 @@ def christoffel_terms(case: Case) -> tuple[str, float, int] | None:
     if np.all(share == share[0]):
         return None  # a factor of all the velocity terms: the readings say so
     wrong = [_other(word, float(k)) for word, k in zip(said, share, strict=True) if k != 1]
-    told = "in Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k it "
-    return told + " and ".join(wrong), error, len(wrong)
+    told = _(
+        "in Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k it {does}"
+    ).format(does=_(" and ").join(wrong))
+    return told, error, len(wrong)
 
 
 def _other(word: str, share: float) -> str:
     if share == 0:
-        return f"leaves {word.lstrip('-')} out"
+        return _("leaves {term} out").format(term=word.lstrip("-"))
     if share == -1:
-        return f"has {word.lstrip('-')} with the opposite sign"
-    return f"has {word.lstrip('-')} {share:g} times"
+        return _("has {term} with the opposite sign").format(term=word.lstrip("-"))
+    return _("has {term} {times:g} times").format(term=word.lstrip("-"), times=share)

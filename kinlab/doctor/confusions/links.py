@@ -14,6 +14,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.confusions.recursion import Step
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention
 
@@ -32,29 +33,32 @@ def matrix_steps(table: DHTable) -> list[Step]:
     rows = _STANDARD if table.convention is Convention.STANDARD else _MODIFIED
     products = ["*".join(p for p in parts if p) or "1" for parts in product(*_PARTS)]
     found = [
-        Step("sin/cos", "exchanges sin and cos of alpha (cos alpha for sin alpha) in the link's "
-             "matrix", {"swap alpha": 1.0}, 1.1),
-        Step("sin/cos", "exchanges sin and cos of theta (cos theta for sin theta) in the link's "
-             "matrix", {"swap theta": 1.0}, 1.1),
-        Step("order", "multiplies the link transforms in the opposite order", {"reversed": 1.0},
+        Step("sin/cos", _("exchanges sin and cos of alpha (cos alpha for sin alpha) in the link's "
+                          "matrix"), {"swap alpha": 1.0}, 1.1),
+        Step("sin/cos", _("exchanges sin and cos of theta (cos theta for sin theta) in the link's "
+                          "matrix"), {"swap theta": 1.0}, 1.1),
+        Step("order", _("multiplies the link transforms in the opposite order"), {"reversed": 1.0},
              1.1),
-        Step("transposed", "has each link's rotation transposed", {"transposed": 1.0}, 1.1),
-        Step("slide as hinge", "adds q to theta at a slide (prismatic joint) too, as at a hinge",
+        Step("transposed", _("has each link's rotation transposed"), {"transposed": 1.0}, 1.1),
+        Step("slide as hinge", _("adds q to theta at a slide (prismatic joint) too, as at a hinge"),
              {"slide theta": 1.0}, 1.1),
-        Step("slide as hinge", "adds q to theta at a slide (prismatic joint), not to d",
+        Step("slide as hinge", _("adds q to theta at a slide (prismatic joint), not to d"),
              {"slide theta": 1.0, "slide d": -1.0}, 1.1),
-        Step("hinge as slide", "adds q to d at a hinge too, as at a slide (prismatic joint)",
+        Step("hinge as slide", _("adds q to d at a hinge too, as at a slide (prismatic joint)"),
              {"hinge d": 1.0}, 1.2),
-        Step("slide left out", "leaves q out at a slide (prismatic joint)", {"slide d": -1.0},
+        Step("slide left out", _("leaves q out at a slide (prismatic joint)"), {"slide d": -1.0},
              1.15),
     ]  # fmt: skip
+    instead = _("has {written} for {meant} in {where}")
     for r, c in np.ndindex(3, 4):
         right = rows[r][c]
-        where = f"entry ({r + 1}, {c + 1}) of the link's matrix"
+        where = _("entry ({row}, {column}) of the link's matrix").format(row=r + 1, column=c + 1)
         if right != "0":
-            told = f"has the opposite sign in {where}: {_said(_minus(right))} for {_said(right)}"
+            told = _("has the opposite sign in {where}: {written} for {meant}").format(
+                where=where, written=_said(_minus(right)), meant=_said(right)
+            )
             found.append(Step("sign", told, {f"{r}{c}:{_minus(right)}": 1.0}, 1.05))
-            told = f"leaves {where} out: 0 for {_said(right)}"
+            told = _("leaves {where} out: 0 for {meant}").format(where=where, meant=_said(right))
             found.append(Step("missing term", told, {f"{r}{c}:0": 1.0}, 1.15))
         for other in products:
             if other.lstrip("-") == right.lstrip("-"):
@@ -62,7 +66,7 @@ def matrix_steps(table: DHTable) -> list[Step]:
             for text in (other, f"-{other}"):
                 same_sign = text.startswith("-") == right.startswith("-")
                 cost = _cost(right, other) + (0.0 if same_sign else 0.5)
-                told = f"has {_said(text)} for {_said(right)} in {where}"
+                told = instead.format(written=_said(text), meant=_said(right), where=where)
                 found.append(Step(_kind(right, other), told, {f"{r}{c}:{text}": 1.0}, cost))
     return found
 

@@ -17,6 +17,7 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
+from kinlab.host.language import N_, _
 from kinlab.model.dh import DHTable
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot, scratch
@@ -149,122 +150,148 @@ def steps(n: int, slides: bool, quantity: str) -> list[Step]:
             or (quantity == "coriolis_torques" and moving == "v")
             or (quantity == "mass_matrix" and moving == "a")
         ):
-            found.append(Step(kind, f"leaves {words} out", {term: 0.0}))
-            found.append(Step(kind, f"has {words} with the opposite sign", {term: -1.0}, 1.15))
-            found.append(Step(kind, f"counts {words} twice", {term: 2.0}, 1.3))
-            found.append(Step(kind, f"counts {words} half", {term: 0.5}, 1.3))
+            what = _(words)
+            for said, weight, cost in _OTHERWISE:
+                found.append(Step(kind, _(said).format(what=what), {term: weight}, cost))
     for kind, words, weights, cost in _INSTEAD:
-        found.append(Step(kind, words, weights, cost))
+        found.append(Step(kind, _(words), weights, cost))
+    at_joint = _("{does} at joint {joint}")
     single = [
-        Step(s.kind, f"{s.sentence} at joint {i + 1}", s.weights, s.cost + 0.15, i)
+        Step(
+            s.kind,
+            at_joint.format(does=s.sentence, joint=i + 1),
+            s.weights,
+            s.cost + 0.15,
+            i,
+        )
         for s in found
         for i in range(n)
-        if "counts" not in s.sentence
+        if s.kind != "inertia point" and not _COUNTED & set(s.weights.values())
     ]
     kept = [*found, *single] if n > 1 else found
     return [s for s in kept if slides or s.kind != "Coriolis of a slide"]
 
 
+_OTHERWISE = (
+    (N_("leaves {what} out"), 0.0, 1.1),
+    (N_("has {what} with the opposite sign"), -1.0, 1.15),
+    (N_("counts {what} twice"), 2.0, 1.3),
+    (N_("counts {what} half"), 0.5, 1.3),
+)
+"""What is said of a term of another weight, and how far-fetched it is."""
+
+_COUNTED = {2.0, 0.5}
+"""Weights that are not looked for at single joints."""
+
 _TERMS = (
-    ("omega_dot cross term", "w x z qd (the term of the angular acceleration omega_dot)",
+    ("omega_dot cross term", N_("w x z qd (the term of the angular acceleration omega_dot)"),
      "z x qd", "v"),
-    ("tangential term", "omega_dot x P (the joint origin's tangential acceleration)", "wd x P", ""),
-    ("centripetal term", "w x (w x P) (the joint origin's centripetal acceleration)",
+    ("tangential term", N_("omega_dot x P (the joint origin's tangential "
+                           "acceleration)"), "wd x P", ""),
+    ("centripetal term", N_("w x (w x P) (the joint origin's centripetal acceleration)"),
      "w x w x P", "v"),
-    ("Coriolis of a slide", "2 w x z d_dot (the Coriolis acceleration of a slide)",
+    ("Coriolis of a slide", N_("2 w x z d_dot (the Coriolis acceleration of a slide)"),
      "2w x d", "v"),
-    ("tangential term of the centre", "omega_dot x c (the centre's tangential acceleration)",
+    ("tangential term of the centre", N_("omega_dot x c (the centre's tangential acceleration)"),
      "wd x c", ""),
     ("centripetal term of the centre",
-     "w x (w x c) (the centre of mass's centripetal acceleration)", "w x w x c", "v"),
-    ("Euler moment", "I omega_dot (the inertia tensor's moment)", "I wd", ""),
-    ("gyroscopic term", "w x I w (the gyroscopic term)", "w x Iw", "v"),
-    ("force of the next link", "the force f of the next link", "f next", ""),
-    ("moment of the next link", "the moment n of the next link", "n next", ""),
-    ("moment of F", "P_C x F (the moment of F at the centre of mass)", "c x F", ""),
-    ("moment of f", "P x f (the lever arm of the next link's force)", "P x f", ""),
-    ("rotor inertia", "the rotor inertia", "rotor", "a"),
+     N_("w x (w x c) (the centre of mass's centripetal acceleration)"), "w x w x c", "v"),
+    ("Euler moment", N_("I omega_dot (the inertia tensor's moment)"), "I wd", ""),
+    ("gyroscopic term", N_("w x I w (the gyroscopic term)"), "w x Iw", "v"),
+    ("force of the next link", N_("the force f of the next link"), "f next", ""),
+    ("moment of the next link", N_("the moment n of the next link"), "n next", ""),
+    ("moment of F", N_("P_C x F (the moment of F at the centre of mass)"), "c x F", ""),
+    ("moment of f", N_("P x f (the lever arm of the next link's force)"), "P x f", ""),
+    ("rotor inertia", N_("the rotor inertia"), "rotor", "a"),
 )  # fmt: skip
 """Kind, words, weight, and which motion it needs."""
 
 _INSTEAD: tuple[tuple[str, str, dict[str, float], float], ...] = (
-    ("centre not rotated", "takes the centre of mass in link axes as if in base axes (com not "
-     "rotated)", {"c own": 0.0, "c plain": 1.0}, 1.1),
-    ("centre transposed", "rotates the centre of mass with R transposed", {"c own": 0.0,
+    ("centre not rotated", N_("takes the centre of mass in link axes as if in base axes (com not "
+     "rotated)"), {"c own": 0.0, "c plain": 1.0}, 1.1),
+    ("centre transposed", N_("rotates the centre of mass with R transposed"), {"c own": 0.0,
      "c back": 1.0}, 1.15),
-    ("tensor not rotated", "takes the inertia tensor in link axes as if in base axes (tensor not "
-     "rotated: I for R I R^T)", {"I own": 0.0, "I plain": 1.0}, 1.1),
-    ("tensor transposed", "rotates the inertia tensor the wrong way (R^T I R for R I R^T)",
+    ("tensor not rotated", N_("takes the inertia tensor in link axes as if in base axes (tensor "
+                              "not "
+     "rotated: I for R I R^T)"), {"I own": 0.0, "I plain": 1.0}, 1.1),
+    ("tensor transposed", N_("rotates the inertia tensor the wrong way (R^T I R for R I R^T)"),
      {"I own": 0.0, "I back": 1.0}, 1.1),
-    ("inertia point", "counts m c² twice: the inertia tensor about the joint where that about the "
-     "centre of mass belongs", {"I steiner": 1.0}, 1.15),
-    ("force of the wrong link", "has P x F, the link's own force, for P x f of the next link",
+    ("inertia point", N_("counts m c² twice: the inertia tensor about the joint where that about "
+                         "the "
+     "centre of mass belongs"), {"I steiner": 1.0}, 1.15),
+    ("force of the wrong link", N_("has P x F, the link's own force, for P x f of the next link"),
      {"P x f": 0.0, "P x F": 1.0}, 1.15),
-    ("force of the wrong link", "has P x f with the force f of the same link, not of the next",
+    ("force of the wrong link", N_("has P x f with the force f of the same link, not of the next"),
      {"P x f": 0.0, "P x f own": 1.0}, 1.15),
-    ("lever arm", "takes the link's own P_i for the lever arm P of the next link's force",
+    ("lever arm", N_("takes the link's own P_i for the lever arm P of the next link's force"),
      {"P x f": 0.0, "Pi x f": 1.0}, 1.2),
-    ("lever arm", "has P_C x f for P_C x F: the lever arm of the centre of mass with the whole "
-     "force f", {"c x F": 0.0, "c x f": 1.0}, 1.2),
-    ("acceleration of the centre", "takes the acceleration of the joint's origin for that of the "
-     "centre of mass", {"wd x c": 0.0, "w x w x c": 0.0}, 1.15),
-    ("index of w", "takes w_(i-1) for w_i in the centre of mass's centripetal acceleration",
+    ("lever arm", N_("has P_C x f for P_C x F: the lever arm of the centre of mass with the whole "
+     "force f"), {"c x F": 0.0, "c x f": 1.0}, 1.2),
+    ("acceleration of the centre", N_("takes the acceleration of the joint's origin for that of "
+                                      "the "
+     "centre of mass"), {"wd x c": 0.0, "w x w x c": 0.0}, 1.15),
+    ("index of w", N_("takes w_(i-1) for w_i in the centre of mass's centripetal acceleration"),
      {"w x w x c": 0.0, "w- x w- x c": 1.0}, 1.25),
-    ("index of w", "takes w_i for w_(i-1) in w x (w x P)", {"w x w x P": 0.0,
+    ("index of w", N_("takes w_i for w_(i-1) in w x (w x P)"), {"w x w x P": 0.0,
      "w+ x w+ x P": 1.0}, 1.25),
-    ("index of w", "takes omega_dot_i for omega_dot_(i-1) in omega_dot x P", {"wd x P": 0.0,
+    ("index of w", N_("takes omega_dot_i for omega_dot_(i-1) in omega_dot x P"), {"wd x P": 0.0,
      "wd+ x P": 1.0}, 1.25),
-    ("mass of another link", "takes the mass of the next link", {"m own": 0.0, "m next": 1.0}, 1.3),
-    ("mass of another link", "takes the mass of the link before", {"m own": 0.0,
+    ("mass of another link", N_("takes the mass of the next "
+                                "link"), {"m own": 0.0, "m next": 1.0}, 1.3),
+    ("mass of another link", N_("takes the mass of the link before"), {"m own": 0.0,
      "m back": 1.0}, 1.3),
-    ("tensor of another link", "takes the inertia tensor of the next link", {"I own": 0.0,
+    ("tensor of another link", N_("takes the inertia tensor of the next link"), {"I own": 0.0,
      "I next": 1.0}, 1.3),
-    ("tensor of another link", "takes the inertia tensor of the link before", {"I own": 0.0,
+    ("tensor of another link", N_("takes the inertia tensor of the link before"), {"I own": 0.0,
      "I before": 1.0}, 1.3),
-    ("joint axis", "takes the axis z of the next joint", {"z own": 0.0, "z next": 1.0}, 1.25),
-    ("joint axis", "takes the axis z of the joint before", {"z own": 0.0, "z back": 1.0}, 1.25),
-    ("torque axis", "projects the moment n on the axis z of the next joint", {"tau z": 0.0,
+    ("joint axis", N_("takes the axis z of the next joint"), {"z own": 0.0, "z next": 1.0}, 1.25),
+    ("joint axis", N_("takes the axis z of the joint before"), {"z own": 0.0, "z back": 1.0}, 1.25),
+    ("torque axis", N_("projects the moment n on the axis z of the next joint"), {"tau z": 0.0,
      "tau z next": 1.0}, 1.2),
-    ("torque axis", "projects the moment n on the axis z of the joint before", {"tau z": 0.0,
+    ("torque axis", N_("projects the moment n on the axis z of the joint before"), {"tau z": 0.0,
      "tau z back": 1.0}, 1.2),
-    ("slide as hinge", "treats a slide (prismatic joint) as a hinge: n z for f z", {"tau f": 0.0,
+    ("slide as hinge", N_("treats a slide (prismatic joint) as a hinge: n z for f "
+                          "z"), {"tau f": 0.0,
      "tau n": 1.0}, 1.15),
-    ("force not rotated", "does not rotate the force f of the next link into the link's frame "
-     "(R left out)", {"f turned": 0.0, "f plain": 1.0}, 1.15),
-    ("force transposed", "rotates the force f of the next link with R transposed",
+    ("force not rotated", N_("does not rotate the force f of the next link into the link's frame "
+     "(R left out)"), {"f turned": 0.0, "f plain": 1.0}, 1.15),
+    ("force transposed", N_("rotates the force f of the next link with R transposed"),
      {"f turned": 0.0, "f back": 1.0}, 1.15),
-    ("moment not rotated", "does not rotate the moment n of the next link (R left out)",
+    ("moment not rotated", N_("does not rotate the moment n of the next link (R left out)"),
      {"n turned": 0.0, "n plain": 1.0}, 1.15),
-    ("moment transposed", "rotates the moment n of the next link with R transposed",
+    ("moment transposed", N_("rotates the moment n of the next link with R transposed"),
      {"n turned": 0.0, "n back": 1.0}, 1.15),
-    ("force not rotated", "does not rotate the next link's force f in P x f (R left out)",
+    ("force not rotated", N_("does not rotate the next link's force f in P x f (R left out)"),
      {"P x f": 0.0, "P x f plain": 1.0}, 1.1),
-    ("lever arm", "takes the centre of mass from the link's frame, not from the joint, for the "
-     "lever arm of F (P x F is left out)", {"c x F": 0.0, "com x F": 1.0}, 1.15),
-    ("acceleration of a slide", "leaves the acceleration qdd z (d_ddot) of a slide out",
+    ("lever arm", N_("takes the centre of mass from the link's frame, not from the joint, for the "
+     "lever arm of F (P x F is left out)"), {"c x F": 0.0, "com x F": 1.0}, 1.15),
+    ("acceleration of a slide", N_("leaves the acceleration qdd z (d_ddot) of a slide out"),
      {"slide qdd": 0.0}, 1.1),
-    ("acceleration of a hinge", "leaves z qdd out of the angular acceleration", {"qdd z": 0.0},
+    ("acceleration of a hinge", N_("leaves z qdd out of the angular acceleration"), {"qdd z": 0.0},
      1.15),
-    ("moment of the link", "leaves the link's own moment N (I omega_dot + w x I w) out",
+    ("moment of the link", N_("leaves the link's own moment N (I omega_dot + w x I w) out"),
      {"I wd": 0.0, "w x Iw": 0.0}, 1.05),
-    ("tensor transposed", "rotates the inertia tensor the wrong way in I omega_dot (R^T I R for I)",
+    ("tensor transposed", N_("rotates the inertia tensor the wrong way in I omega_dot (R^T I R "
+                             "for I)"),
      {"I wd": 0.0, "RtIR wd": 1.0}, 1.1),
-    ("tensor transposed", "rotates the inertia tensor the wrong way (R^T I R for I)",
+    ("tensor transposed", N_("rotates the inertia tensor the wrong way (R^T I R for I)"),
      {"I wd": 0.0, "RtIR wd": 1.0, "w x Iw": 0.0, "w x RtIRw": 1.0}, 1.1),
-    ("tensor rotated", "rotates the inertia tensor, which is in link axes already (R I R^T for I)",
+    ("tensor rotated", N_("rotates the inertia tensor, which is in link axes already (R I R^T "
+                          "for I)"),
      {"I wd": 0.0, "RIRt wd": 1.0, "w x Iw": 0.0, "w x RIRtw": 1.0}, 1.1),
-    ("tensor rotated", "rotates the inertia tensor in I omega_dot, which is in link axes already "
-     "(R I R^T for I)", {"I wd": 0.0, "RIRt wd": 1.0}, 1.1),
-    ("w not rotated", "does not rotate w of the link before (R left out)", {"w turned": 0.0,
+    ("tensor rotated", N_("rotates the inertia tensor in I omega_dot, which is in link axes "
+                          "already "
+     "(R I R^T for I)"), {"I wd": 0.0, "RIRt wd": 1.0}, 1.1),
+    ("w not rotated", N_("does not rotate w of the link before (R left out)"), {"w turned": 0.0,
      "w plain": 1.0}, 1.15),
-    ("w transposed", "rotates w of the link before with R transposed", {"w turned": 0.0,
+    ("w transposed", N_("rotates w of the link before with R transposed"), {"w turned": 0.0,
      "w back": 1.0}, 1.15),
-    ("acceleration not rotated", "does not rotate the acceleration of the link before",
+    ("acceleration not rotated", N_("does not rotate the acceleration of the link before"),
      {"a turned": 0.0, "a plain": 1.0}, 1.15),
-    ("acceleration transposed", "rotates the acceleration of the link before with R transposed",
+    ("acceleration transposed", N_("rotates the acceleration of the link before with R transposed"),
      {"a turned": 0.0, "a back": 1.0}, 1.15),
-    ("gravity left out", "leaves gravity out (v_dot_0 = -g)", {"gravity": 0.0}, 1.0),
-    ("gravity sign", "has gravity with the opposite sign (v_dot_0 = g for -g)",
+    ("gravity left out", N_("leaves gravity out (v_dot_0 = -g)"), {"gravity": 0.0}, 1.0),
+    ("gravity sign", N_("has gravity with the opposite sign (v_dot_0 = g for -g)"),
      {"gravity": -1.0}, 1.0),
 )  # fmt: skip
 """Kind, words, weights and cost of what stands in place of something."""

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, real_array, whole
 from kinlab.engine.fast.arrays import chain
 from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.kinematics import tool_poses
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse.branches import rows as branch_rows
@@ -23,7 +23,7 @@ from kinlab.inverse.branches.rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDEC
 from kinlab.inverse.branches.structures import GENERAL, Known, known_form
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot, scratch
+from kinlab.model.robot import Robot
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
@@ -116,6 +116,12 @@ class IKBranchesBatch:
     def __len__(self) -> int:
         return len(self.counts)
 
+    @property
+    def evidence(self) -> str:
+        """How many poses have all their branches; what that rests on stands at each pose."""
+        whole = int(np.sum(self.complete))
+        return f"{whole} of {len(self)} poses with all their solutions, by {self.method}"
+
     def __getitem__(self, row: int) -> IKBranches:
         answer: IKBranches = self._one(range(len(self.counts))[row])
         return answer
@@ -148,15 +154,16 @@ def ik_branches(
     samples: int = SAMPLES,
     threads: int | None = None,
 ) -> Any:
-    """All joint positions at which the tool is at T, whether within limits or not.
+    """The joint positions at which the tool is at T, whether within limits or not.
 
+    ``complete`` says whether they are all there are, and ``evidence`` what that rests on.
     Six joints, of any kind and order: the whole pose. Arms whose last (or first) three axes meet
     and arms with three parallel axes are solved in closed form, all others by following the 16
     or fewer complex solutions of a generic pose. Three joints: the position (planar arms: also
     the angle in the plane, two joints the point in it). Parallel axes with a slide (SCARA): the
     position and the angle. Five joints: the position and the direction of the tool's z axis,
     where the arm can hold these. Any other arm of fewer joints: the whole pose, which it meets
-    only on its own way. Seven joints: with one ``given``, all solutions there; otherwise a sample.
+    only on its own way. Seven joints: with one ``given``, the solutions there; otherwise a sample.
 
     Args:
         robot: the robot.
@@ -463,10 +470,4 @@ def _misses(task, poses, rows, goals, errors):  # type: ignore[no-untyped-def]
 
 def _measure(robot: Robot, arm: _Arm, q: Array, goals: Array, rows: Any, errors: Array) -> None:
     """Errors of q (m, n) at goals[rows], by Pinocchio; errors (m, 2) is written."""
-    model, data, tool = robot.model, scratch(robot), robot.tool
-    forward, place = pin.forwardKinematics, pin.updateFramePlacement
-    poses = np.empty((len(q), 4, 4))
-    for i, values in enumerate(q):
-        forward(model, data, values)
-        poses[i] = place(model, data, tool).homogeneous
-    _misses(arm.known.form.task, poses, rows, goals, errors)
+    _misses(arm.known.form.task, tool_poses(robot, q), rows, goals, errors)

@@ -17,6 +17,7 @@ from kinlab.doctor.tables.chain import Chain, frames, inverse
 from kinlab.doctor.tables.reference.target import Target
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.errors import KinlabError, StateError, StructureError, TableError
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
@@ -128,8 +129,8 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
     """
     poses = poses_of(against, table.n)
     if poses is not None:
-        name = Path(str(against)).name if isinstance(against, (str, Path)) else "the poses"
-        return of_poses(*poses, name=name)
+        given = isinstance(against, (str, Path))
+        return of_poses(*poses, name=Path(str(against)).name if given else "")
     against = reference_robot(against, tool)
     if isinstance(against, DHTable):
         return _of_table(against, seed)
@@ -143,7 +144,7 @@ def read_reference(against: Any, table: DHTable, *, tool: str | None, seed: int)
         sharp = _of_robot(Robot.from_urdf(text, against.tool_name), seed)
     except KinlabError:
         return reference
-    note = "the angles of the URDF are printed with few digits; read as the multiples of 15 deg"
+    note = _("the angles of the URDF are printed with few digits; read as the multiples of 15 deg")
     sharp = replace(sharp, name=reference.name, notes=(*sharp.notes, note))
     return replace(reference, sharper=sharp)
 
@@ -191,12 +192,12 @@ def reference_robot(against: Any, tool: str | None) -> Robot | DHTable:
     return against
 
 
-def of_poses(q: ArrayLike, T: ArrayLike, name: str = "the poses") -> Reference:
+def of_poses(q: ArrayLike, T: ArrayLike, name: str = "") -> Reference:
     """Measured or simulated poses.
 
     Args:
         q: (N, n), rad and m. T: (N, 4, 4), in the frame in which the table's base stands.
-        name: what to call them.
+        name: what to call them; empty: the poses.
 
     Raises:
         StateError: shapes that do not agree, too few poses, or T that is not rigid.
@@ -218,11 +219,12 @@ def of_poses(q: ArrayLike, T: ArrayLike, name: str = "the poses") -> Reference:
             f"poses: T of state {int(bad[0]) + 1} is no rigid transform (R^T R misses 1 by "
             f"{off[bad[0]]:.2g}); give [R p; 0 0 0 1] with R a rotation"
         )
-    U, _, Vt = np.linalg.svd(turn)
+    U, _sizes, Vt = np.linalg.svd(turn)
     clean = poses.copy()
     clean[:, :3, :3] = U @ Vt
     rounding = float(np.max(np.abs(clean - poses)))  # of printed rotations
-    return Reference(name, Target(states, clean, max(1e-9, 4.0 * rounding)))
+    target = Target(states, clean, max(1e-9, 4.0 * rounding))
+    return Reference(name or _("the poses"), target)
 
 
 def _states(n: int, slides: Array, seed: int) -> Array:
@@ -281,7 +283,7 @@ def _of_robot(robot: Robot, seed: int) -> Reference:
     if model.existFrame(f"dh_{robot.n}"):
         dh = model.frames[model.getFrameId(f"dh_{robot.n}")].placement.homogeneous
         tools.insert(0, inverse(dh) @ last)
-    notes = () if stated else ("a URDF states neither gravity nor armature: not compared",)
+    notes = () if stated else (_("a URDF states neither gravity nor armature: not compared"),)
     return Reference(
         robot.name,
         Target(q, fk(robot, q), max(1e-9, rounding)),
@@ -307,11 +309,11 @@ def check_joints(table: DHTable, reference: Reference) -> tuple[str, ...]:
     mine = [link.name for link in table.links]
     theirs = reference.joint_names
     if theirs and all(mine) and not set(mine) & set(theirs) and table.n == reference.n:
-        first = f"{mine[0]!r} with {theirs[0]!r}"
-        return (
-            f"no joint name in common: joints are paired in order, {first}; if that is wrong, "
-            "give the tool, or name the rows as the reference names its joints",
+        said = _(
+            "no joint name in common: joints are paired in order, {mine!r} with {theirs!r}; if "
+            "that is wrong, give the tool, or name the rows as the reference names its joints"
         )
+        return (said.format(mine=mine[0], theirs=theirs[0]),)
     return ()
 
 
@@ -346,7 +348,7 @@ def _places(word: str) -> int:
     """Decimals of a printed number that is not whole."""
     if "." not in word or float(word) == round(float(word)):
         return 0
-    head, _, power = word.lower().partition("e")
+    head, _mark, power = word.lower().partition("e")
     return len(head.split(".")[1]) - (int(power) if power else 0)
 
 
