@@ -211,7 +211,8 @@ def _of_diagnoses(
 ) -> Outcome:
     asked = [one for one in found if split_name(one.quantity)[0] == question.plain]
     if not asked:
-        raise ExpressionError(f"{question.id}: none of the formulas is {question.entry}")
+        said = _("{question}: none of the formulas is {entry}")
+        raise ExpressionError(said.format(question=question.id, entry=question.entry))
     if "[" not in question.quantity and any("[" in one.quantity for one in asked):
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
@@ -368,7 +369,8 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
     words = vocabulary(robot.table).values if robot.table is not None else {}
     for name in model.formulas:
         if name not in file.formulas:
-            raise ExpressionError(f"{question.id}: {name} is not given")
+            said = _("{question}: {entry} is not given")
+            raise ExpressionError(said.format(question=question.id, entry=name))
     formulas = [equation(name, file.formulas[name]) for name in model.formulas]
     for name, right in model.formulas.items():
         error, kinds = _gap(file, model, name, right, words)
@@ -418,9 +420,8 @@ def _gap(
     mine, theirs = _opened(file.formulas[name], file, name), _opened(right, model, name)
     strange = tree.names(mine) - tree.names(theirs) - set(words) - _joints()
     if strange:
-        raise ExpressionError(
-            f"{name}: {sorted(strange)[0][:40]!r} is unknown; give it a meaning in [symbols]"
-        )
+        said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
+        raise ExpressionError(said.format(entry=name, name=sorted(strange)[0][:40]))
     rng = np.random.default_rng(7)
     at = {}
     for one in sorted(tree.names(mine) | tree.names(theirs)):
@@ -448,7 +449,8 @@ def _joints() -> set[str]:
 
 def _opened(node: Node, file: FormulaFile, entry: str, depth: int = 0) -> Node:
     if depth > 20:
-        raise ExpressionError(f"{entry}: its symbols explain each other")
+        said = _("{entry}: its symbols explain each other")
+        raise ExpressionError(said.format(entry=entry))
     mapping = {}
     for name in tree.names(node):
         given = file.symbols.get(name)
