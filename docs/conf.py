@@ -7,12 +7,15 @@ it is built, and a page that is opened asks for nothing either: formulas are Mat
 from __future__ import annotations
 
 import logging
+import os
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 import kinlab
+
+os.environ["KINLAB_PROGRESS"] = "0"  # pages hold answers, not how long they took
 
 project = "kinlab"
 author = "the kinlab authors"
@@ -29,6 +32,7 @@ extensions = [
     "mathml",
     "made_pages",
     "notebooks",
+    "live",
 ]
 exclude_patterns = [
     "_build",

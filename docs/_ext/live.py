@@ -41,7 +41,7 @@ def split_page(text: str) -> tuple[str, dict[str, str]]:
     to "from where the page is from", in a browser's terms ``'self'``, or ``file:`` on a disk.
 
     Args:
-        text: a page of :func:`kinlab.viewer.static_page.page_html`.
+        text: a page of :func:`kinlab.viewer.page.static_page.page_html`.
 
     Returns:
         The page and the text of each script by file name.
@@ -69,7 +69,7 @@ def write_page(text: str, folder: Path) -> str:
     """Writes a viewer's page, and the shared scripts where they are missing.
 
     Args:
-        text: a page of :func:`kinlab.viewer.static_page.page_html`.
+        text: a page of :func:`kinlab.viewer.page.static_page.page_html`.
         folder: where the pages stand.
 
     Returns:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from kinlab.viewer.fivebar_page import best_start
 from numpy.typing import NDArray
 
 import kinlab as kl
+from kinlab.viewer.drawing.fivebar import best_start
 
 POSTURES: dict[str, tuple[float, ...]] = {
     "planar2r": (35, 50),

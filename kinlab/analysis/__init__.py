@@ -3,8 +3,6 @@
 ==================  ==============================================================================
 module              what it holds
 ==================  ==============================================================================
-``evidence``        What the answer of a search rests on: what was searched, how often it was met,
-                    what is proved
 ``metrics``         Measures of dexterity from singular values, never from det(J J^T)
 ``redundancy``      Redundant arms: motions that the task does not see, and the inverse that suits
                     them

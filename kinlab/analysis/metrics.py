@@ -48,8 +48,10 @@ from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.introductions import Answer, Introduction, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
+from kinlab.tolerances import TOLERANCES
 
 
 def yoshikawa(sigma: Array) -> Array:
@@ -203,8 +205,8 @@ def weighted(matrix: Array, mass: Array) -> Array:
     return half
 
 
-@dataclass(frozen=True)
-class Dexterity:
+@dataclass(frozen=True, repr=False)
+class Dexterity(Answer):
     """Every measure at one q, with the task and the length they hold for.
 
     Attributes:
@@ -226,6 +228,19 @@ class Dexterity:
     isotropy: float
     condition: float
     rank: int
+
+    def introduction(self) -> Introduction:
+        """How near the arm is to a singularity, and every measure."""
+        whole = self.rank == len(self.sigma)
+        state = f"condition number {self.condition:.6g}" if whole else f"singular, rank {self.rank}"
+        return Introduction(
+            f"dexterity, {_of_task(self.task, self.suggested, self.length)}: {state}",
+            (
+                f"singular values {vector(self.sigma)}",
+                f"manipulability (Yoshikawa) {self.yoshikawa:.5g}, inverse condition "
+                f"{self.inverse_condition:.5g}, isotropy index {self.isotropy:.5g}",
+            ),
+        )
 
 
 def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
@@ -258,13 +273,18 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
     )
 
 
-SINGULAR = 1e-10
-"""sigma_min / sigma_max at and below which a configuration counts as singular."""
-
-
 def regular(sigma: Array) -> Any:
     """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
-    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
+    return sigma > max(TOLERANCES.singular * float(sigma[0]), float(np.finfo(np.float64).tiny))
+
+
+def counting(sigma: Any, share: float = TOLERANCES.singular) -> Any:
+    """Which singular values (..., m), descending, of a J in the arm's own length unit count.
+
+    Those above a share of the greatest; of a J that is rounding altogether, none.
+    """
+    largest = np.where(sigma[..., :1] > TOLERANCES.singular, sigma[..., :1], np.inf)
+    return sigma > share * largest
 
 
 OPTIMAL = "optimal"
@@ -362,8 +382,8 @@ def _condition(space: TaskSpace, q: Array, length: float) -> float:
 ELLIPSOIDS = ("velocity", "force", "dynamic")
 
 
-@dataclass(frozen=True)
-class Ellipsoid:
+@dataclass(frozen=True, repr=False)
+class Ellipsoid(Answer):
     """An ellipsoid in task coordinates.
 
     Attributes:
@@ -381,6 +401,27 @@ class Ellipsoid:
     length: float | None
     axes: Array
     lengths: Array
+
+    def introduction(self) -> Introduction:
+        """Its semi-axes, the longest first, each with its direction."""
+        flat = bool(self.lengths[-1] == 0.0)
+        state = "flat: the arm is singular here" if flat else f"semi-axes {vector(self.lengths)}"
+        rows = tuple(
+            (f"{size:.5g}", vector(axis, 4))
+            for size, axis in zip(self.lengths, self.axes.T, strict=True)
+        )
+        return Introduction(
+            f"{self.kind} ellipsoid, {_of_task(self.task, self.suggested, self.length)}: {state}",
+            (),
+            ("semi-axis", "direction"),
+            rows,
+        )
+
+
+def _of_task(task: str, suggested: bool, length: float | None) -> str:
+    """The task of a measure in words, with the length that mixes metres and radians."""
+    chosen = " (chosen for this arm)" if suggested else ""
+    return f"task {task}{chosen}" + ("" if length is None else f", length {length:.6g} m")
 
 
 def ellipsoid(

@@ -106,7 +106,6 @@ def _label(name: str, index: tuple[int, ...]) -> str:
 # -------- Slips within single entries: the derived formula beside a user's text or function
 
 _POINTS = 24
-_CLOSE = 1e-9
 _WRITTEN_OUT = 60
 """Terms of an entry up to which a function may have been written out by hand."""
 _SHORT = 30

@@ -26,14 +26,10 @@ from kinlab.errors import MotorError, OptionError, StructureError
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia
+from kinlab.tolerances import TOLERANCES
 
 _FIRST, _MOST = 2_000, 400_000
 """Instants of the first grid over a motion, and of the last."""
-_AGREES = 2e-7
-"""Relative change of the RMS torques between two grids, of half the steps, that ends the search."""
-_INSIDE = 1e-9
-"""Part of a piece by which its first and last instant lie inside it: there an acceleration that
-jumps has the value of the piece."""
 
 
 class JointMotion(Protocol):
@@ -87,7 +83,9 @@ class ArmSizing(Told):
         return np.stack(speeds, axis=1), np.stack(torques, axis=1)
 
     def __str__(self) -> str:
-        lines = [f"robot {self.robot!r}: drives for a motion of {self.demand.t[-1]:.4g} s"]
+        without = [name for name, one in zip(self.joints, self.chosen, strict=True) if one is None]
+        verdict = f"no drive fits {', '.join(without)}" if without else "a drive fits every joint"
+        lines = [f"robot {self.robot!r}: {verdict}, for a motion of {self.demand.t[-1]:.4g} s"]
         demand = self.demand
         for joint, (name, fits) in enumerate(zip(self.joints, self.fits, strict=True)):
             asked = (
@@ -190,7 +188,7 @@ def demand_of(
         size = float(rms.max()) or 1.0
         if before is not None:
             change = float(np.abs(rms - before).max()) / size
-            if change <= _AGREES or len(demand.t) > _MOST:
+            if change <= TOLERANCES.rms_settles or len(demand.t) > _MOST:
                 return demand, change
         before, count = rms, 2 * count
 
@@ -200,7 +198,7 @@ def _at_instants(
 ) -> Demand:
     """The demand with ``count`` steps in each piece of the motion."""
     part = np.linspace(0.0, 1.0, count + 1)
-    part[0], part[-1] = _INSIDE, 1.0 - _INSIDE
+    part[0], part[-1] = TOLERANCES.inside_piece, 1.0 - TOLERANCES.inside_piece
     t = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * part).ravel()
     q, v, a = motion.at(t)
     tau = inverse_dynamics(robot, q, v, a, wrench, friction=True)

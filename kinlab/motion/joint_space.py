@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PPoly, make_interp_spline
 
-from kinlab.arrays import Array, number, word
+from kinlab.arrays import Array, between, number, word
 from kinlab.drives import laws
 from kinlab.engine.states import joint_vector
 from kinlab.errors import LimitError, OptionError, StateError
@@ -120,7 +120,7 @@ def read_points(robot: Robot, points: ArrayLike) -> Array:
             "least 2"
         )
     slack = TOLERANCES.same_number * np.maximum(1.0, np.abs(rows))
-    outside = (rows < robot.lower - slack) | (rows > robot.upper + slack)
+    outside = ~between(rows, robot.lower, robot.upper, slack)
     if outside.any():
         row, joint_ = (int(i) for i in np.argwhere(outside)[0])
         low, high = robot.lower[joint_], robot.upper[joint_]

@@ -16,7 +16,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, number, real_array, shaped
+from kinlab.arrays import Array, between, frozen, number, real_array, shaped
 from kinlab.engine.dynamics import kinetic_energy, potential_energy
 from kinlab.engine.integrator import integrate
 from kinlab.engine.kinematics import jacobian, read_wrench
@@ -25,19 +25,17 @@ from kinlab.errors import OptionError, StateError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar import simulation as fivebar_simulation
 from kinlab.fivebar.linkage import as_mechanism
+from kinlab.fivebar.simulation import Torque
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot, require_inertia, scratch
 from kinlab.motion.record import even_times
-
-Torque = Callable[[float, Array, Array], ArrayLike]
+from kinlab.tolerances import TOLERANCES
 
 _MOST_CHANGES = 5_000
 """Instants at which joints stop or break loose before a simulation is given up."""
 _MOST_AT_ONCE = 60
 """The same within a millionth of the duration."""
-_REST = 1e-10
-"""rad/s or m/s below which a joint with friction counts as at rest where it turns round."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -205,7 +203,7 @@ class _Arm:
                     f"robot {self.robot.name!r}: joints stop and break loose without end at t = "
                     f"{here:.6g} s ({changes} times so far); soften the torque's gains"
                 )
-            turned = (self.mode != 0.0) & (self.mode * state[n : 2 * n] <= _REST)
+            turned = (self.mode != 0.0) & (self.mode * state[n : 2 * n] <= TOLERANCES.at_rest)
             state[n : 2 * n][turned] = 0.0
         table = np.array(rows)
         q, v = table[:, :n], table[:, n : 2 * n]
@@ -268,7 +266,7 @@ class _Arm:
         n = self.robot.n
         q, v = state[:n], state[n : 2 * n]
         sliding = self.mode != 0.0
-        least = float(np.min((self.mode * v + _REST)[sliding], initial=np.inf))
+        least = float(np.min((self.mode * v + TOLERANCES.at_rest)[sliding], initial=np.inf))
         held = ~sliding & (self.dry > 0.0)
         if held.any():
             tau = self.torque(t, q, v)
@@ -294,7 +292,7 @@ class _Arm:
         self.mode = np.where(rest, np.sign(a), self.mode)
 
     def _remarks(self, times: Array, q: Array) -> tuple[str, ...]:
-        outside = (q < self.robot.lower - 1e-9) | (q > self.robot.upper + 1e-9)
+        outside = ~between(q, self.robot.lower, self.robot.upper, TOLERANCES.limit_digits)
         return tuple(
             f"{self.robot.joint_names[joint]} is outside its limits from t = "
             f"{times[int(np.argmax(outside[:, joint]))]:.4g} s on: there are no end stops"

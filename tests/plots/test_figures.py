@@ -139,3 +139,8 @@ def test_a_section_names_the_lines_that_it_draws(limit, names):
         (line.get_color(), line.get_linestyle()) for line in axes.lines if len(line.get_xdata())
     }
     assert ("with a joint at a limit" in names) == any(style == "--" for _, style in drawn)
+
+
+def test_a_figure_shows_itself_in_a_notebook_without_pyplot(planar):
+    figure = kl.plots.ellipses(planar, [0.3, 1.2]).figure
+    assert figure._repr_png_().startswith(b"\x89PNG")

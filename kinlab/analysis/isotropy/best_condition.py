@@ -23,6 +23,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, search_box
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.host.progress import pulse
+from kinlab.tolerances import TOLERANCES
 
 _TOGETHER = (1.0, 8.0, 64.0, 512.0)
 """Powers through which all starts go."""
@@ -37,8 +38,6 @@ BLOCK = 200
 """Starts of a block."""
 ENOUGH = 5
 """The search stops after the block in which the best was met for the fifth time."""
-_SAME = 1e-3
-"""Relative difference of two condition numbers at p = 512 below which they may be one minimum."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +86,7 @@ def least_condition(
                 if best is None or reached < best[0] * (1.0 - 1e-6):
                     lowest = float(np.exp(value[number]))
                 best = reached, state, size
-        met = int(np.sum(ends <= lowest * (1.0 + 0.1 * _SAME)))
+        met = int(np.sum(ends <= lowest * (1.0 + 0.1 * TOLERANCES.same_minimum)))
         if met >= ENOUGH:
             break
     assert best is not None
@@ -112,7 +111,7 @@ def _different(value: Array) -> list[int]:
     """The lowest ends whose values differ: the same value is the same pose up to a symmetry."""
     chosen: list[int] = []
     for number in np.argsort(value, kind="stable"):
-        if all(abs(value[number] - value[k]) > 0.1 * _SAME for k in chosen):
+        if all(abs(value[number] - value[k]) > 0.1 * TOLERANCES.same_minimum for k in chosen):
             chosen.append(int(number))
         if len(chosen) == _FOLLOWED:
             break

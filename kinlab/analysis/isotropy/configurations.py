@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
@@ -27,21 +26,16 @@ from kinlab.analysis.structure.task_space import (
     search_box,
     wrap,
 )
-from kinlab.arrays import Array, frozen, seed_of, whole
+from kinlab.arrays import Array, between, frozen, seed_of, whole
 from kinlab.engine.fast.stacks import jacobian
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
-
-ISOTROPIC = 1e-8
-"""Condition number - 1 at and below which a configuration is isotropic."""
+from kinlab.tolerances import TOLERANCES
 
 _NEAR = 0.05
 """Residual after thirty steps from which an isotropic configuration may still be reached."""
-
-_SAME = 1e-5
-"""rad or m between two listings of one configuration. Double roots are solved to half the
-digits, so that 1e-8 would list them twice."""
 
 
 @dataclass(frozen=True)
@@ -185,8 +179,8 @@ def find_isotropic(
     x[near], _ = solve(system, x[near], iterations=60)
     q, lengths = wrap(robot, system.q(x)), system.length(x)
     condition = condition_number(singular_values(space.jacobian(q, lengths)))
-    inside = np.all((q >= lower - 1e-9) & (q <= upper + 1e-9), axis=1)
-    isotropic = inside & (condition - 1.0 <= ISOTROPIC)
+    inside = between(q, lower, upper, TOLERANCES.limit_digits).all(axis=1)
+    isotropic = inside & (condition - 1.0 <= TOLERANCES.isotropic)
     configurations = isotropic_families(
         system, np.clip(q, lower, upper)[isotropic], lengths[isotropic]
     )
@@ -225,7 +219,7 @@ def _evidence(seeds: int, seed: int, met: int, least: LeastCondition | None) -> 
             f"{seeds} starts within the limits (seed {seed})",
             met,
             seeds,
-            f"J J^T = a 1 to {ISOTROPIC:g} at every listed configuration",
+            f"J J^T = a 1 to {TOLERANCES.isotropic:g} at every listed configuration",
             "that there is no other family",
         )
     # no start of N ended lower: with a share p of such starts the chance of that is (1 - p)^N
@@ -262,7 +256,7 @@ def isotropic_families(
         ]
         # a curved family has no coordinates to compare: it is listed by its first member
         known_curve = any(freedom > len(free) for freedom, _ in alike)
-        if known_curve or any(float(d.max()) < _SAME for d in apart):
+        if known_curve or any(float(d.max()) < TOLERANCES.same_configuration for d in apart):
             continue
         freedom = max(len(free), _dimension(system, state, float(size)))
         seen.append((free, freedom, place, float(size)))
@@ -289,14 +283,9 @@ def _free_joints(system: IsotropySystem, q: Array, length: float) -> tuple[int, 
         moved = np.repeat(q[np.newaxis], 3, axis=0)
         moved[:, joint] += (0.4, 1.1, -0.7)
         sigma = singular_values(space.jacobian(moved, length))
-        if float((condition_number(sigma) - 1.0).max()) <= 10.0 * ISOTROPIC:
+        if float((condition_number(sigma) - 1.0).max()) <= 10.0 * TOLERANCES.isotropic:
             free.append(joint)
     return tuple(free)
-
-
-_RADIUS = 0.005
-"""rad or m around a configuration in which its family's dimension is measured: a curve bends by a
-fraction of that, and a double root, which linearises like a curve, draws its neighbours back."""
 
 
 def _dimension(system: IsotropySystem, q: Array, length: float) -> int:
@@ -324,14 +313,14 @@ def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     if not len(still):
         return x[:0], 0
     drawn = np.random.default_rng(6).normal(size=(8 * len(still), len(still))) @ still
-    drawn *= _RADIUS / np.linalg.norm(drawn, axis=1, keepdims=True)
+    drawn *= TOLERANCES.family_radius / np.linalg.norm(drawn, axis=1, keepdims=True)
     ahead, norm = solve(system, x + drawn, iterations=120)
     around = ahead[norm < 1e-9]
     if not len(around):
         return around, 0
     apart = system.q(around) - system.q(x)
     spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
-    return around, int(np.sum(spread > 0.15 * _RADIUS / np.sqrt(len(still))))
+    return around, int(np.sum(spread > 0.15 * TOLERANCES.family_radius / np.sqrt(len(still))))
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.isotropy.configurations import (
-    ISOTROPIC,
     IsotropicConfiguration,
     IsotropySystem,
     isotropic_families,
@@ -23,20 +21,19 @@ from kinlab.analysis.isotropy.design_model import OpenChain, open_chain
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
-from kinlab.arrays import Array, seed_of, whole
-from kinlab.host.introductions import Answer, Introduction, counted
+from kinlab.arrays import Array, between, seed_of, whole
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, counted, vector
 from kinlab.host.progress import takes_long
 from kinlab.model.dh import DHTable
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot
-
-_SAME = 1e-5
-"""Relative difference of open numbers below which two designs are one."""
+from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True)
-class IsotropicDesign:
+@dataclass(frozen=True, repr=False)
+class IsotropicDesign(Answer):
     """One isotropic design.
 
     Attributes:
@@ -50,6 +47,15 @@ class IsotropicDesign:
     values: dict[str, float]
     configurations: tuple[IsotropicConfiguration, ...]
     freedom: int
+
+    def introduction(self) -> Introduction:
+        """Its numbers, and where it is isotropic."""
+        numbers = ", ".join(f"{name} = {value:.6g}" for name, value in self.values.items())
+        alone = "stands alone" if not self.freedom else f"one of a {self.freedom}-parameter family"
+        rows = tuple((vector(one.q, 6), f"{one.condition:.9g}") for one in self.configurations)
+        return Introduction(
+            f"isotropic design: {numbers}", (alone,), ("q", "condition number"), rows
+        )
 
     @property
     def q(self) -> Array:
@@ -157,7 +163,7 @@ def design_isotropic(
     q = wrap(space.robot, q)
     condition = condition_number(singular_values(system.matrix(x)))
     sound = system.sound(q, values)
-    accepted = sound & (condition - 1.0 <= ISOTROPIC)
+    accepted = sound & (condition - 1.0 <= TOLERANCES.isotropic)
     designs = _designs(system, x[accepted], q[accepted], values[accepted], lengths[accepted], keep)
     how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     finite = condition[sound & np.isfinite(condition)]
@@ -192,7 +198,8 @@ def _designs(
     groups: list[list[int]] = []
     for i in order:
         for group in groups:
-            if float(np.max(np.abs((values[i] - values[group[0]]) / units))) < _SAME:
+            apart = float(np.max(np.abs((values[i] - values[group[0]]) / units)))
+            if apart < TOLERANCES.same_design:
                 group.append(int(i))
                 break
         else:
@@ -208,7 +215,7 @@ def _designs(
         solved, _ = solve(fixed, start if fixed.open_length else q[group])
         states, sizes = np.clip(wrap(robot, fixed.q(solved)), lower, upper), fixed.length(solved)
         reached = condition_number(singular_values(space.jacobian(states, sizes)))
-        good = reached - 1.0 <= ISOTROPIC
+        good = reached - 1.0 <= TOLERANCES.isotropic
         if not good.any():
             continue
         found = isotropic_families(fixed, states[good], sizes[good])
@@ -224,10 +231,6 @@ def _freedom(system: DesignSystem, x: Array) -> int:
     n, k = system.space.robot.n, len(system.chain.open)
     tangent = right[int(np.sum(sizes > 1e-6 * sizes[0])) :, n : n + k]
     return int(np.linalg.matrix_rank(tangent, tol=1e-6)) if tangent.size else 0
-
-
-_COLLAPSED = 1e-6
-"""Lengths below this share of the arm's own length unit are links that vanished."""
 
 
 @dataclass(frozen=True)
@@ -340,8 +343,9 @@ class DesignSystem:
     def sound(self, q: Array, values: Array) -> Any:
         """Which solutions (N,) keep limits and signs, with no vanished link."""
         lower, upper = search_box(self.space.robot)
-        good = np.all((q >= lower - 1e-9) & (q <= upper + 1e-9), axis=1)
+        good = between(q, lower, upper, TOLERANCES.limit_digits).all(axis=1)
         for i, entry in enumerate(self.chain.open):
             if entry.is_length and entry.value:
-                good &= values[:, i] * np.sign(entry.value) > _COLLAPSED * self.space.scale
+                length = values[:, i] * np.sign(entry.value)
+                good &= length > TOLERANCES.vanished_length * self.space.scale
         return good

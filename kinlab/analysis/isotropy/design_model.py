@@ -17,6 +17,7 @@ import numpy as np
 from kinlab.arrays import Array, shown
 from kinlab.errors import OptionError
 from kinlab.model.dh import DHTable, with_links
+from kinlab.model.rotations import about_axis
 
 _AXES = {"x": 0, "y": 1, "z": 2}
 _LENGTHS = ("a", "d")
@@ -90,7 +91,7 @@ class OpenChain:
                 value = value + element.sign * x[:, element.variable]
                 columns.append((element, element.sign * axis, point))
             if element.turns:
-                rotation = rotation @ _turn(element.axis, value)
+                rotation = rotation @ about_axis(element.axis, value)
             else:
                 point = point + axis * value[:, np.newaxis]
         out = np.zeros((count, 6, len(columns)))
@@ -184,13 +185,3 @@ def _read_open(table: DHTable, name: Any) -> Open:
             f"{where}: joint {row + 1} is {link.joint} and adds it to q, which is searched anyway"
         )
     return Open(name, row, column, float(getattr(link, column)))
-
-
-def _turn(axis: int, angle: Array) -> Array:
-    c, s = np.cos(angle), np.sin(angle)
-    out = np.zeros((len(angle), 3, 3))
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    out[:, axis, axis] = 1.0
-    out[:, i, i] = out[:, j, j] = c
-    out[:, j, i], out[:, i, j] = s, -s
-    return out

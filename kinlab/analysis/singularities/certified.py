@@ -21,9 +21,8 @@ import numpy as np
 from kinlab.analysis.singularities.minors import Enclosures, Factor
 from kinlab.arrays import Array
 from kinlab.host.progress import pulse
+from kinlab.tolerances import TOLERANCES
 
-GOAL = 1e-6
-"""rad or m between distance and bound at which they count as one."""
 _BATCH = 192
 """Boxes split at a time."""
 _SHARES = (*[1.0] * 8, *[0.5, 0.25] * 6, *[0.1] * 3)
@@ -78,7 +77,7 @@ def nearest_zero(
         pulse()
         order = np.argsort(bound, kind="stable")
         bound, centre, half = bound[order], centre[order], half[order]
-        if bound[0] > search.reach() - GOAL:
+        if bound[0] > search.reach() - TOLERANCES.distance_gap:
             break
         count = min(_BATCH, len(bound))
         more, placed, sizes = search.bounds(*_split(centre[:count], half[:count]))
@@ -88,10 +87,12 @@ def nearest_zero(
         bound = np.concatenate([bound[count:], more])
         centre = np.concatenate([centre[count:], placed])
         half = np.concatenate([half[count:], sizes])
-        kept = bound <= search.reach() - GOAL
+        kept = bound <= search.reach() - TOLERANCES.distance_gap
         bound, centre, half = bound[kept], centre[kept], half[kept]
     least = float(bound.min()) if len(bound) else np.inf
-    return NearestZero(search.best, search.distance, min(least, search.reach() - GOAL), boxes)
+    return NearestZero(
+        search.best, search.distance, min(least, search.reach() - TOLERANCES.distance_gap), boxes
+    )
 
 
 class _Search:
@@ -174,7 +175,7 @@ class _Search:
                 bound, _slab_distance(apart, side * gradient[:, k], inset, low, high)
             )
         bound = np.maximum(bound, _by_curvature(over, apart, low, high, self.factor.codimension))
-        kept = possible & (bound <= self.reach() - GOAL)
+        kept = possible & (bound <= self.reach() - TOLERANCES.distance_gap)
         low, high, centre = low[kept], high[kept], centre[kept]
         return bound[kept], centre + 0.5 * (low + high), 0.5 * (high - low)
 

@@ -11,21 +11,18 @@ import sympy
 from numpy.typing import ArrayLike
 
 from kinlab import symbolic
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
-from kinlab.arrays import Array, seed_of
+from kinlab.arrays import Array, between, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.model.extract import as_table
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-
-_ZERO = 1e-12
-"""Value of a factor, over its size in general position, at which it counts as zero."""
-
+from kinlab.tolerances import TOLERANCES
 
 _STARTS = 48
 """Starts from which a zero of each factor is sought."""
@@ -179,8 +176,8 @@ def _meaning(
     lower, upper = search_box(robot)
     starts = rng.uniform(lower, upper, (_STARTS, robot.n))
     found, miss = solve(_as_system(function, slope, size), starts)
-    found = wrap(robot, found[miss < _ZERO])
-    inside = np.all((found >= lower) & (found <= upper), axis=1)
+    found = wrap(robot, found[miss < TOLERANCES.factor_vanishes])
+    inside = between(found, lower, upper).all(axis=1)
     # zeros outside the limits show the meaning where there are none inside
     zeros = [*found[inside], *found[~inside]][:_EXAMPLES]
     mask = tuple(i in space.rows for i in range(6))

@@ -16,19 +16,19 @@ from dataclasses import dataclass
 import numpy as np
 import pinocchio as pin
 
-from kinlab.analysis.evidence import Evidence
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.solver import jacobian_derivative
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk, jacobian
+from kinlab.host.evidence import Evidence
+from kinlab.tolerances import TOLERANCES
 
 _STEPS = (1e-3, 1e-2)
 """Of the arm's length: how far ahead the tool is asked to go. A fold leaves a gap as large as the
 step, so that a thousandth is told from rounding with ease; the longer one is easier to solve."""
 _MISS = 0.1
 """Share of the step within which the tool counts as arrived."""
-_SIGN = 1e-6
-"""Eigenvalue of the form, over its own size in the arm's length unit, that has a sign."""
 _SECOND = "the second-order form of the internal motions"
 _STARTS = 160
 _ENOUGH = 4
@@ -59,7 +59,8 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
     """
     single = lost.shape[1] == 1
     least, most = _form(space, q, lost[:, 0]) if single else (0.0, 0.0)
-    if least < -_SIGN and most > _SIGN:
+    sign = TOLERANCES.form_has_sign
+    if least < -sign and most > sign:
         return Edge(True, Evidence(_SECOND, proved="the tool passes on to both sides"))
     if not _can_step(space):
         why = "nothing: steps ahead mean nothing for a part of the orientation"
@@ -77,11 +78,11 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
         if step == _STEPS[0]:
             near = counts
     ahead, behind = near
-    up = most > _SIGN and least > -_SIGN and behind == 0 and ahead >= _ENOUGH
-    down = least < -_SIGN and most < _SIGN and ahead == 0 and behind >= _ENOUGH
+    up = most > sign and least > -sign and behind == 0 and ahead >= _ENOUGH
+    down = least < -sign and most < sign and ahead == 0 and behind >= _ENOUGH
     if (up or down) and 0 in counts:
         # motions that leave the tool where it is give the form zeros: then it proves nothing
-        strict = least > _SIGN or most < -_SIGN
+        strict = least > sign or most < -sign
         turns = "near this configuration the tool turns back (second order)"
         other = "that no other branch reaches beyond"
         if strict:
@@ -101,8 +102,10 @@ def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     change = change * _unit(space)[:, np.newaxis, np.newaxis]
     bilinear = np.einsum("m,jmi->ji", direction, change) * np.outer(inside, inside)
     _, sigma, right = np.linalg.svd(matrix)
-    rank = int(np.sum(sigma > 1e-8 * sigma[0]))
+    rank = int(np.sum(counting(sigma, TOLERANCES.internal_motion)))
     motions = right[rank:].T * inside[:, np.newaxis]
+    if not motions.size:
+        return 0.0, 0.0
     values = np.linalg.eigvalsh(0.5 * motions.T @ (bilinear + bilinear.T) @ motions)
     return float(values[0]), float(values[-1])
 
@@ -178,7 +181,7 @@ def _starts(space: TaskSpace, q: Array) -> Array:
     quarter = _STARTS // 4
     states[:quarter] = q + rng.normal(scale=0.1, size=(quarter, robot.n))
     _, sigma, right = np.linalg.svd(space.jacobian(q, space.scale))
-    motions = right[int(np.sum(sigma > 1e-8 * sigma[0])) :]
+    motions = right[int(np.sum(counting(sigma, TOLERANCES.internal_motion))) :]
     share = rng.normal(size=(quarter, len(motions)))
     share /= np.abs(share @ motions).max(axis=1, keepdims=True)
     share *= rng.uniform(0.0, np.pi, (quarter, 1))

@@ -15,26 +15,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import read_reachable_task, revolute, search_box, wrap
 from kinlab.arrays import Array, frozen, number, seed_of, shown, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, counted
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _LINES = 64
 """Scan lines along each joint of a slice, stratified over the others' ranges: an arc that spans
 two 64ths of the range of any joint is met, however short it is along the others."""
 
 
-_LEAST_STEP = 1e-4
-"""rad (or m). Shorter steps take for ever and show nothing more."""
 _MOST = 6000
 """Steps after which one curve is cut: a closed curve of 100 turns."""
 
@@ -134,7 +133,7 @@ def singular_loci(
     middle = drawn if q is None else joint_vector(robot, q, "q")
     if middle.shape != (robot.n,):
         raise OptionError(f"robot {robot.name!r}: q has shape {middle.shape}; give one state")
-    step = number(step, "step", above=_LEAST_STEP)
+    step = number(step, "step", above=TOLERANCES.shortest_step)
     levels = whole(levels, "levels")
     needed = abs(space.m - robot.n) + 2
     if len(chosen) == needed:
@@ -226,8 +225,8 @@ def _all_singular(system: sets.SingularSystem) -> bool:
     lower, upper = search_box(system.space.robot)
     drawn = np.random.default_rng(2).uniform(lower, upper, (8, system.space.robot.n))
     states = system.states(drawn[:, list(system.moving)])
-    sigma = np.linalg.svd(system.space.jacobian(states, system.space.scale), compute_uv=False)
-    return bool(np.all(sigma[:, -1] <= SINGULAR * sigma[:, 0]))
+    sigma = system.space.sigma(states)
+    return not bool(counting(sigma)[:, -1].any())
 
 
 def _on(system: sets.SingularSystem, points: Array, point: Array, step: float) -> bool:
@@ -265,8 +264,8 @@ def _bounds(system: sets.SingularSystem) -> tuple[Array, Array]:
     lower, upper = search_box(system.space.robot)
     round_ = revolute(system.space.robot) & (upper - lower >= 2.0 * np.pi - 1e-9)
     chosen = list(system.moving)
-    lower = np.where(round_, -np.inf, lower - sets.ROUNDING)
-    upper = np.where(round_, np.inf, upper + sets.ROUNDING)
+    lower = np.where(round_, -np.inf, lower - TOLERANCES.limit_rounding)
+    upper = np.where(round_, np.inf, upper + TOLERANCES.limit_rounding)
     return lower[chosen], upper[chosen]
 
 
@@ -285,7 +284,7 @@ def _follow(
         trial = here + size * direction
         fixed, norm = solve(system, trial[np.newaxis], iterations=12)
         moved = float(np.linalg.norm(fixed[0] - trial))
-        if norm[0] > sets.CONVERGED or moved > 0.5 * size:
+        if norm[0] > TOLERANCES.on_singular_set or moved > 0.5 * size:
             size *= 0.5
             if size < 1e-6 * step:
                 break  # an end, or a point where the curve has no tangent
@@ -345,6 +344,6 @@ def _end_on_limit(
     guess = inside + float(shares[joint]) * (outside - inside)
     reduced = replace(system, moving=rest, held=held)
     found, norm = solve(reduced, np.delete(guess, joint)[np.newaxis], iterations=20)
-    if norm[0] > sets.CONVERGED:
+    if norm[0] > TOLERANCES.on_singular_set:
         return None
     return np.insert(found[0], joint, limit)

@@ -20,11 +20,10 @@ import numpy as np
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box
 from kinlab.arrays import Array
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _SAMPLES = 17
 """Samples along one joint that show its degree, which is at most 6."""
-_ROUNDING = 1e-11
-"""Coefficients below this share of the largest are rounding."""
 _MOST = 40_000
 """Coefficients above which the polynomials are not formed."""
 
@@ -273,7 +272,7 @@ def _degrees(space: TaskSpace, columns: list[tuple[int, ...]]) -> list[int]:
         along = np.abs(np.einsum("ab,dbk->adk", inverse, values)).max(axis=(1, 2))
         if not turns[i]:  # powers of metres: weigh each by the size it has within the limits
             along *= np.abs(line).max() ** np.arange(len(line))
-        there = np.flatnonzero(along > _ROUNDING * along.max())
+        there = np.flatnonzero(along > TOLERANCES.coefficient_rounding * along.max())
         last = int(there[-1]) if len(there) else 0
         out.append((last + 1) // 2 if turns[i] else last)
     return out
@@ -305,7 +304,8 @@ def _split(
     d = len(joints)
     if not d:
         return ()
-    tensor = np.where(np.abs(tensor) < _ROUNDING * np.abs(tensor).max(), 0.0, tensor)
+    least = TOLERANCES.coefficient_rounding * np.abs(tensor).max()
+    tensor = np.where(np.abs(tensor) < least, 0.0, tensor)
     if d > 1:
         for i in range(d):
             divided = _divide(tensor, i) if turns[i] else None
@@ -335,7 +335,7 @@ def _split(
             shape = moved.shape
             flat = moved.reshape(int(np.prod(shape[:size])), -1)
             columns, sizes, rows = np.linalg.svd(flat, full_matrices=False)
-            if len(sizes) > 1 and sizes[1] > _ROUNDING * sizes[0]:
+            if len(sizes) > 1 and sizes[1] > TOLERANCES.coefficient_rounding * sizes[0]:
                 continue
             one = columns[:, 0].reshape(*shape[:size], 1)
             two = rows[0].reshape(shape[size:])
@@ -351,8 +351,9 @@ def _split(
             return parts
     functions = np.moveaxis(tensor, -1, 0).reshape(tensor.shape[-1], -1)
     _, sizes, right = np.linalg.svd(functions, full_matrices=False)
-    kept = right[sizes > _ROUNDING * sizes[0]]  # independent combinations, the strongest first
-    kept = kept * (sizes[sizes > _ROUNDING * sizes[0]] / sizes[0])[:, np.newaxis]
+    counts = sizes > TOLERANCES.coefficient_rounding * sizes[0]
+    # independent combinations, the strongest first
+    kept = right[counts] * (sizes[counts] / sizes[0])[:, np.newaxis]
     alone = len(kept) == 1
     coefficients = np.moveaxis(kept.reshape(len(kept), *tensor.shape[:-1]), 0, -1)
     coefficients = coefficients / np.abs(coefficients).max()
@@ -375,10 +376,11 @@ def _divide(tensor: Array, i: int) -> tuple[Array, Array] | None:
         # 2 sin((q - one)/2) sin((q - two)/2) = cos((one - two)/2) - cos(q - (one + two)/2)
         middle = 0.5 * (one + two)
         line = np.array([np.cos(0.5 * (one - two)), -np.cos(middle), -np.sin(middle)])
-        line[np.abs(line) < _ROUNDING] = 0.0
+        line[np.abs(line) < TOLERANCES.coefficient_rounding] = 0.0
         times = _products(line, degree - 1)
         quotient = np.asarray(np.linalg.lstsq(times, flat, rcond=None)[0], dtype=np.float64)
-        if np.abs(times @ quotient - flat).max() <= 1e3 * _ROUNDING * np.abs(flat).max():
+        rest = np.abs(times @ quotient - flat).max()
+        if rest <= 1e3 * TOLERANCES.coefficient_rounding * np.abs(flat).max():
             shaped = quotient.reshape(2 * degree - 1, *moved.shape[1:])
             return line[:, np.newaxis] / np.abs(line).max(), np.moveaxis(shaped, 0, i)
     return None

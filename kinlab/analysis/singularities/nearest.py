@@ -16,29 +16,25 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR, singular_values
+from kinlab.analysis.metrics import counting, singular_values
 from kinlab.analysis.singularities import singular_set as sets
-from kinlab.analysis.singularities.certified import GOAL, nearest_zero
+from kinlab.analysis.singularities.certified import nearest_zero
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, revolute
-from kinlab.arrays import Array, seed_of, whole
+from kinlab.arrays import Array, between, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _SLIDERS = 96
 """Solutions, nearest first, that slide towards q; each sheet has dozens among them."""
-
-
-_LIMIT_DIGITS = 1e-9
-"""rad or m by which zeros may lie beyond a limit: limits of ten digits (6.283185307 for a whole
-turn) do not hide a singularity that stands on them. The answer itself is within the limits."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -117,7 +113,7 @@ def nearest_singularity(
         state, bound, searched = _factor_by_factor(space, parts, here, boxes)
     distance = np.inf if state is None else float(np.linalg.norm(state - here))
     bound = float(np.clip(bound, 0.0, distance))
-    meets = bool(bound >= distance - 2.0 * GOAL)
+    meets = bool(bound >= distance - 2.0 * TOLERANCES.distance_gap)
     found = None if state is None else describe_singularity(robot, state, space_mask(space.rows))
     return NearestSingularity(
         distance,
@@ -152,7 +148,8 @@ def _factor_by_factor(
         rest = np.delete(held - here, joints)
         aside = float(rest @ rest)  # joints outside their limits have a way to go in any case
         cut = np.sqrt(max(nearest**2 - aside, 0.0)) if np.isfinite(nearest) else np.inf
-        lower, upper = robot.lower[joints] - _LIMIT_DIGITS, robot.upper[joints] + _LIMIT_DIGITS
+        lower = robot.lower[joints] - TOLERANCES.limit_digits
+        upper = robot.upper[joints] + TOLERANCES.limit_digits
         zero = nearest_zero(factor, here[joints], lower, upper, cut, boxes)
         looked += zero.boxes
         bound = min(bound, float(np.sqrt(max(zero.bound, 0.0) ** 2 + aside)))
@@ -181,8 +178,8 @@ def _polished(space: TaskSpace, guess: Array, joints: list[int]) -> Array | None
         system = sets.SingularSystem(space, moving, guess)
         x, _ = solve(system, system.start(guess[np.newaxis]))
         state: Array = np.clip(system.states(x)[0], robot.lower, robot.upper)
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
-        if values[-1] <= SINGULAR * values[0] and np.linalg.norm(state - guess) < 1e-4:
+        values = space.sigma(state)
+        if not counting(values)[-1] and np.linalg.norm(state - guess) < 1e-4:
             return state
     return None
 
@@ -206,8 +203,8 @@ def _from_many_starts(
     distance = np.linalg.norm(x[:, : robot.n] - here, axis=1)
     for number in np.argsort(distance, kind="stable"):
         state = x[number, : robot.n]
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
-        if values[-1] <= SINGULAR * values[0]:
+        values = space.sigma(state)
+        if not counting(values)[-1]:
             return state, bound, searched
     return None, bound, searched
 
@@ -275,8 +272,8 @@ def _turned(robot: Robot, q: Array, here: Array) -> Array:
     """Revolute joints of q (N, n) by whole turns as near to ``here`` as the limits allow."""
     turns = 2.0 * np.pi * np.arange(-2.0, 3.0)[:, np.newaxis, np.newaxis] * revolute(robot)
     shifted = q + turns
-    outside = (shifted < robot.lower - sets.ROUNDING) | (shifted > robot.upper + sets.ROUNDING)
-    apart = np.where(outside, np.inf, np.abs(shifted - here))
+    inside = between(shifted, robot.lower, robot.upper, TOLERANCES.limit_rounding)
+    apart = np.where(inside, np.abs(shifted - here), np.inf)
     chosen: Array = np.take_along_axis(shifted, apart.argmin(axis=0)[np.newaxis], axis=0)[0]
     return chosen
 
@@ -299,5 +296,5 @@ def _restore(system: sets.SingularSystem, x: Array) -> tuple[Array, Array]:
     robot = system.space.robot
     solved, norm = solve(system, x, iterations=25)
     q = solved[:, : robot.n]
-    inside = np.all((q >= robot.lower - sets.ROUNDING) & (q <= robot.upper + sets.ROUNDING), axis=1)
-    return solved, inside & (norm <= sets.CONVERGED)
+    inside = between(q, robot.lower, robot.upper, TOLERANCES.limit_rounding)
+    return solved, inside.all(axis=1) & (norm <= TOLERANCES.on_singular_set)

@@ -26,12 +26,9 @@ import numpy as np
 
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
-from kinlab.arrays import Array
+from kinlab.arrays import Array, between
 from kinlab.engine.fast.stacks import jacobian
-
-CONVERGED = 1e-12
-"""Norm of the residual, in the arm's own length unit, below which a solution is accepted; far
-above rounding (1e-15), far below the 1e-10 that is promised for sigma_min / sigma_max."""
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True)
@@ -117,18 +114,14 @@ def project(system: SingularSystem, q: Array, rounds: int = 4) -> tuple[Array, A
         solved, norm = solve(system, x[todo])
         states = wrap(robot, system.states(solved))
         solved[:, : len(system.moving)] = states[:, list(system.moving)]
-        inside = np.all((states >= lower - ROUNDING) & (states <= upper + ROUNDING), axis=1)
-        done = inside & (norm <= CONVERGED)
+        inside = between(states, lower, upper, TOLERANCES.limit_rounding)
+        done = inside.all(axis=1) & (norm <= TOLERANCES.on_singular_set)
         x[todo[done]], good[todo[done]] = solved[done], True
         todo, states = todo[~done], states[~done]
         if not len(todo):
             break
         x[todo] = system.start(np.clip(states, lower, upper))
     return x, good
-
-
-ROUNDING = 1e-12
-"""rad or m by which a solution may miss a limit through rounding alone."""
 
 
 def seeds(system: SingularSystem, rng: np.random.Generator, points: int, steps: int = 36) -> Array:
@@ -158,8 +151,7 @@ def seeds(system: SingularSystem, rng: np.random.Generator, points: int, steps: 
         grid = np.linspace(lower[j], upper[j], steps)
         line = np.repeat(base, steps, axis=0)
         line[:, j] = np.tile(grid, points)
-        matrix = system.space.jacobian(line, system.space.scale)
-        least = np.linalg.svd(matrix, compute_uv=False)[:, -1].reshape(points, steps)
+        least = system.space.sigma(line)[:, -1].reshape(points, steps)
         padded = np.pad(least, ((0, 0), (1, 1)), constant_values=np.inf)
         dip = (least <= padded[:, :-2]) & (least <= padded[:, 2:])
         found.append(line.reshape(points, steps, robot.n)[dip])
@@ -187,8 +179,6 @@ def normal_projector(system: SingularSystem, x: Array) -> tuple[Array, int]:
     return normal @ normal.T, free - spanned
 
 
-STAYS = 1e-9
-"""sigma_min / sigma_max up to which the arm stayed singular; the held joints are known to 1e-12."""
 _ELSEWHERE = 5
 """States of the other joints that are tried: one in general position is enough almost surely."""
 _GRID = 25
@@ -228,7 +218,9 @@ def supports(space: TaskSpace, q: Array) -> tuple[tuple[int, ...], ...]:
             break
         states = np.concatenate([elsewhere(space, q, g) for g in groups])
         ratio = _ratio(space, states).reshape(len(groups), _ELSEWHERE)
-        found += [g for g, r in zip(groups, ratio, strict=True) if r.max() <= STAYS]
+        found += [
+            g for g, r in zip(groups, ratio, strict=True) if r.max() <= TOLERANCES.stays_singular
+        ]
     return tuple(found) or (tuple(range(n)),)
 
 
@@ -272,10 +264,8 @@ def pinned_pairs(space: TaskSpace) -> Iterator[tuple[tuple[int, int], Array]]:
         system = _Twice(space, pair, others)
         x, norm = solve(system, system.start(starts), iterations=40)
         values = wrap(robot, _placed(robot.n, pair, x[:, :2]))[:, list(pair)]
-        inside = np.all(
-            (values >= lower[list(pair)] - 1e-9) & (values <= upper[list(pair)] + 1e-9), axis=1
-        )
-        for value in values[inside & (norm <= CONVERGED)]:
+        inside = between(values, lower[list(pair)], upper[list(pair)], TOLERANCES.limit_digits)
+        for value in values[inside.all(axis=1) & (norm <= TOLERANCES.on_singular_set)]:
             state = others[0].copy()
             state[list(pair)] = np.clip(value, lower[list(pair)], upper[list(pair)])
             if holds(space, state, pair):
@@ -330,10 +320,10 @@ def _dips(values: Array, round_one: bool, round_two: bool) -> Array:
 
 
 def _all_singular(space: TaskSpace, states: Array) -> bool:
-    return bool(_ratio(space, states).max() <= STAYS)
+    return bool(_ratio(space, states).max() <= TOLERANCES.stays_singular)
 
 
 def _ratio(space: TaskSpace, states: Array) -> Array:
-    sigma = np.linalg.svd(space.jacobian(states, space.scale), compute_uv=False)
+    sigma = space.sigma(states)
     ratio: Array = sigma[:, -1] / np.maximum(sigma[:, 0], 1e-300)
     return ratio

@@ -9,8 +9,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR
+from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.edge import edge
 from kinlab.analysis.singularities.minors import factors
@@ -24,22 +23,19 @@ from kinlab.analysis.structure.task_space import (
     wrap,
 )
 from kinlab.analysis.structure.tasks import COORDINATES
-from kinlab.arrays import Array, frozen, largest_first, seed_of, whole
+from kinlab.arrays import Array, between, frozen, largest_first, seed_of, whole
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
-from kinlab.host.introductions import Introduction, Rows, counted, numbered, vector
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
 from kinlab.host.progress import pulse, takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-
-_SAME_ANGLE = 1e-6
-"""rad or m: two values of a pinned joint closer than this are one. Solutions agree to 1e-9."""
-_INVOLVED = 1e-6
-"""Share of a unit vector below which a joint takes no part."""
+from kinlab.tolerances import TOLERANCES
 
 
-@dataclass(frozen=True)
-class Singularity:
+@dataclass(frozen=True, repr=False)
+class Singularity(Answer):
     """One singular configuration.
 
     Attributes:
@@ -74,6 +70,18 @@ class Singularity:
     rows: tuple[int, ...] = field(repr=False)
     length: float = field(repr=False)
 
+    def introduction(self) -> Introduction:
+        """What is lost here, and which joints hold the arm singular."""
+        return Introduction(
+            f"{self.kind} singularity, task {self.task}: rank {self.rank}, sigma_min/sigma_max "
+            f"{self.ratio:.2g}",
+            (
+                f"q = {vector(self.q)}",
+                f"lost direction: {self.lost_direction}",
+                _held_by(self.deciding, self.pinned),
+            ),
+        )
+
     @property
     def lost_direction(self) -> str:
         """The first lost direction in words, its main coordinate first."""
@@ -82,13 +90,19 @@ class Singularity:
         parts = [
             f"{column[i]:+.3g} {COORDINATES[self.rows[i]]}"
             for i in order
-            if abs(column[i]) > _INVOLVED
+            if abs(column[i]) > TOLERANCES.takes_part
         ]
         return ", ".join(parts)
 
 
-@dataclass(frozen=True)
-class SingularFamily:
+def _held_by(deciding: tuple[str, ...], pinned: tuple[float, ...]) -> str:
+    """The joints that hold an arm singular, in words."""
+    at = f" at {vector(pinned, 6)} (rad or m)" if pinned else ""
+    return f"held by {', '.join(deciding)}{at}"
+
+
+@dataclass(frozen=True, repr=False)
+class SingularFamily(Answer):
     """Configurations on one sheet of the singular set.
 
     Attributes:
@@ -109,6 +123,22 @@ class SingularFamily:
     beyond: bool | None
     members: tuple[Singularity, ...] = field(repr=False)
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """What holds the family, and whether the tool passes on."""
+        beyond = {
+            True: "the tool can pass on",
+            False: "an edge of the workspace",
+            None: "undecided",
+        }
+        return Introduction(
+            f"family of {self.kind} singularities, {_held_by(self.deciding, self.pinned)}",
+            (
+                f"in the lost direction ({self.representative.lost_direction}): "
+                f"{beyond[self.beyond]}",
+                str(self.evidence),
+            ),
+        )
 
     @property
     def representative(self) -> Singularity:
@@ -282,7 +312,7 @@ class _Sheet:
             turns = revolute(space.robot)[list(self.held)]
             apart = q[list(self.held)] - self.first[list(self.held)]
             apart = np.where(turns, 2.0 * np.sin(0.5 * apart), apart)
-            return bool(np.abs(apart).max() < _SAME_ANGLE)
+            return bool(np.abs(apart).max() < TOLERANCES.same_pinned_value)
         return holds(space, q, self.held)
 
 
@@ -298,7 +328,7 @@ def _exact(space: TaskSpace) -> Iterator[Array]:
                 state = np.random.default_rng(10).uniform(lower, upper)
                 state[joint] = value
                 state = wrap(space.robot, state)
-                inside = lower[joint] - 1e-9 <= state[joint] <= upper[joint] + 1e-9
+                inside = between(state[joint], lower[joint], upper[joint], TOLERANCES.limit_digits)
                 if inside and holds(space, state, (joint,)):
                     yield np.clip(state, lower, upper)
 
@@ -345,10 +375,11 @@ def describe_singularity(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Si
         raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
     found = _describe(space, state)
     if found is None:
-        values = np.linalg.svd(space.jacobian(state, space.scale), compute_uv=False)
+        values = space.sigma(state)
         raise OptionError(
             f"robot {robot.name!r}: q is not singular for task {space.name}: sigma_min/sigma_max "
-            f"is {values[-1] / values[0]:.3g} (at most {SINGULAR:g}); see nearest_singularity"
+            f"is {values[-1] / values[0]:.3g} (at most {TOLERANCES.singular:g}); see "
+            "nearest_singularity"
         )
     if found.kind:
         return found
@@ -360,19 +391,20 @@ def _describe(
 ) -> Singularity | None:
     robot = space.robot
     left, sigma, right = np.linalg.svd(space.jacobian(q, space.scale))
-    if sigma[-1] > SINGULAR * sigma[0]:
+    counts = counting(sigma)
+    if counts[-1]:
         return None
-    rank = int(np.sum(sigma > SINGULAR * sigma[0]))
+    rank = int(np.sum(counts))
     held = supports(space, q)[0] if held is None else held
     fixed = pinned(space, q, held) if fixed is None else fixed
     internal = right[rank:].T
-    taking_part = np.linalg.norm(internal, axis=1) > _INVOLVED
+    taking_part = np.linalg.norm(internal, axis=1) > TOLERANCES.takes_part
     names = robot.joint_names
     kind = structure(robot)
     named = space.m == robot.n or (space.m == 6 and kind == "anthropomorphic-7")
     return Singularity(
         q=frozen(q),
-        ratio=float(sigma[-1] / sigma[0]),
+        ratio=float(sigma[-1] / sigma[0]) if rank else 0.0,
         rank=rank,
         lost=frozen(left[:, rank:]),
         internal=frozen(internal),
@@ -416,15 +448,16 @@ def _family(space: TaskSpace, sheet: _Sheet) -> SingularFamily:
 
 def _half_turn(robot: Robot, q: Array) -> Array:
     """q with -pi written as pi where the limits admit it: rounding must not choose between them."""
-    there = revolute(robot) & (np.abs(q + np.pi) < _SAME_ANGLE)
-    there &= robot.upper >= np.pi - _SAME_ANGLE
+    there = revolute(robot) & (np.abs(q + np.pi) < TOLERANCES.same_pinned_value)
+    there &= robot.upper >= np.pi - TOLERANCES.same_pinned_value
     turned: Array = np.where(there, q + 2.0 * np.pi, q)
     return turned
 
 
 def _rounded(pinned: tuple[float, ...]) -> tuple[float, ...]:
     """Pinned values to the digits in which two families differ."""
-    return tuple(round(value / _SAME_ANGLE) * _SAME_ANGLE for value in pinned)
+    unit = TOLERANCES.same_pinned_value
+    return tuple(round(value / unit) * unit for value in pinned)
 
 
 def _place(beyond: bool | None) -> str:
@@ -432,4 +465,4 @@ def _place(beyond: bool | None) -> str:
 
 
 def _close(one: Array, two: Array) -> bool:
-    return bool(np.max(np.abs(one - two)) < _SAME_ANGLE)
+    return bool(np.max(np.abs(one - two)) < TOLERANCES.same_pinned_value)

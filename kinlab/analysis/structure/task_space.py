@@ -94,6 +94,18 @@ class TaskSpace:
         """
         return self.select(jacobian(self.robot, q), length)
 
+    def sigma(self, q: Array) -> Array:
+        """Singular values of the task's J, metres over :attr:`scale`, largest first.
+
+        Args:
+            q: (n,) or (N, n).
+
+        Returns:
+            (m,) or (N, m); (n,) or (N, n) where the task has more rows than the arm joints.
+        """
+        values = np.linalg.svd(self.jacobian(q, self.scale), compute_uv=False)
+        return np.asarray(values, dtype=np.float64)
+
     def select(self, full: Array, length: float | Array = 1.0) -> Array:
         """As :meth:`jacobian`, from 6-row Jacobians, (..., 6, n)."""
         rows: Array = full[..., list(self.rows), :]

@@ -14,18 +14,17 @@ from itertools import pairwise, product
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import search_box
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, between, frozen
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, counted, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
-_SIDE = 1e-3
-"""Of the arm's reach: how far beside a piece its sides are tried. Islands and gaps thinner than
-this are not told from the boundary itself."""
 _MOST_JOINTS = 5
 """3^5 * 2^4 candidates; beyond, the sides would take minutes to try."""
 
@@ -52,8 +51,8 @@ class Arc:
         return points
 
 
-@dataclass(frozen=True)
-class PlanarBoundary:
+@dataclass(frozen=True, repr=False)
+class PlanarBoundary(Answer):
     """Answer of :func:`planar_boundary`.
 
     Attributes:
@@ -67,6 +66,19 @@ class PlanarBoundary:
     arcs: tuple[Arc, ...]
     candidates: int
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """Its arcs, and what was tried for them."""
+        rows = tuple(
+            (vector(arc.centre), f"{arc.radius:.6g}", f"{arc.start:.5g}", f"{arc.stop:.5g}")
+            for arc in self.arcs
+        )
+        return Introduction(
+            f"boundary of {self.robot}'s workspace in its plane: {counted(len(self.arcs), 'arc')}",
+            (str(self.evidence),),
+            ("centre [m]", "radius [m]", "from [rad]", "to [rad]"),
+            rows,
+        )
 
     def points(self, spacing: float = 0.01) -> Array:
         """Points along all arcs, at most ``spacing`` metres apart, (K, 2)."""
@@ -117,12 +129,12 @@ def planar_boundary(robot: ArmLike) -> PlanarBoundary:
     robot = as_robot(robot)
     chain = _planar_chain(robot)
     candidates = _distinct(_candidates(chain))
-    pieces = _cut(candidates, _SIDE * chain.reach)
+    pieces = _cut(candidates, TOLERANCES.beside_boundary * chain.reach)
     if not pieces:
         return PlanarBoundary(robot.name, (), len(candidates), _evidence(len(candidates)))
     middle = np.array([a.centre + a.radius * _unit(0.5 * (a.start + a.stop)) for a in pieces])
     normal = np.array([_unit(0.5 * (a.start + a.stop)) for a in pieces])
-    side = _SIDE * chain.reach
+    side = TOLERANCES.beside_boundary * chain.reach
     outside = _reachable(chain, middle + side * normal)
     inside = _reachable(chain, middle - side * normal)
     kept = [a for a, o, i in zip(pieces, outside, inside, strict=True) if not (o and i)]
@@ -134,7 +146,8 @@ def _evidence(candidates: int) -> Evidence:
     return Evidence(
         f"{candidates} arcs that limits and stretched or folded parts allow: all there are",
         proved="the boundary is made of these arcs",
-        found=f"which pieces: a side where no solution was met, {_SIDE:g} of the reach away",
+        found="which pieces: a side where no solution was met, "
+        f"{TOLERANCES.beside_boundary:g} of the reach away",
     )
 
 
@@ -207,7 +220,7 @@ def _sweeps(chain: _Chain, locked: tuple[float | None, ...], free: list[int]) ->
 def _within(q: float, lower: float, upper: float) -> bool:
     turns = np.arange(-2.0, 3.0) * 2.0 * np.pi
     shifted = np.arctan2(np.sin(q), np.cos(q)) + turns
-    return bool(np.any((shifted >= lower - 1e-9) & (shifted <= upper + 1e-9)))
+    return bool(between(shifted, lower, upper, TOLERANCES.limit_digits).any())
 
 
 def _distinct(arcs: list[Arc]) -> list[Arc]:
@@ -280,7 +293,7 @@ def _reachable(chain: _Chain, points: Array) -> Array:
     _, nearest = tree.query(points, k=24)
     q = drawn[nearest]  # (P, 24, n)
     reached = np.zeros(len(points), dtype=bool)
-    goal = 0.1 * _SIDE * chain.reach
+    goal = 0.1 * TOLERANCES.beside_boundary * chain.reach
     for _ in range(80):
         todo = np.flatnonzero(~reached)
         if not len(todo):

@@ -18,28 +18,24 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
-from kinlab.arrays import Array, frozen, number, seed_of
+from kinlab.arrays import Array, between, frozen, number, seed_of
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import takes_long
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _STARTS = 240
 """Starts for the curves of one set of locked joints; a curve needs one of them."""
-_SHORTEST = 1e-4
-"""Shortest step along a curve: with it a whole turn has 60,000 points."""
 _MOST_LOCKED = 3
 """Joints that move the tool in the section up to which limits are taken into account: 3^3 sets of
 them, some seconds; each joint more takes three times as long."""
-_SIDE = 2e-3
-"""Of the section's size: how far beside a curve its sides are tried."""
 _SAMPLES = 60_000
 _TRIED = 240
 """Points of a curve at which the sides are tried; those between take the nearest one's answer."""
@@ -107,8 +103,8 @@ def workspace_section(robot: ArmLike, *, step: float = 0.05, seed: int = 0) -> W
     """
     robot = as_robot(robot)
     step, seed = number(step, "step"), seed_of(seed)
-    if not step >= _SHORTEST:
-        raise OptionError(f"step is {step:g}; it must be at least {_SHORTEST:g}")
+    if not step >= TOLERANCES.shortest_step:
+        raise OptionError(f"step is {step:g}; it must be at least {TOLERANCES.shortest_step:g}")
     if robot.n < 3 or not revolute(robot)[0]:
         raise OptionError(
             f"robot {robot.name!r}: a section needs a revolute first joint and two joints more; "
@@ -290,11 +286,11 @@ def _curves(system: _SectionSystem, rng: np.random.Generator, step: float) -> li
     states[:, moving] = drawn
     x, norm = solve(system, system.start(states))
     solved = wrap(robot, system.states(x))
-    inside = np.all((solved >= lower - sets.ROUNDING) & (solved <= upper + sets.ROUNDING), axis=1)
+    inside = between(solved, lower, upper, TOLERANCES.limit_rounding).all(axis=1)
     x[:, : len(moving)] = solved[:, moving]
     return [
         system.states(points)
-        for points in trace_from(system, x[inside & (norm <= sets.CONVERGED)], step)
+        for points in trace_from(system, x[inside & (norm <= TOLERANCES.on_singular_set)], step)
     ]
 
 
@@ -315,7 +311,7 @@ def _with_edges(
         tangent = np.gradient(points, axis=0)[chosen]
         size = np.linalg.norm(tangent, axis=1, keepdims=True)
         normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1) / np.maximum(size, 1e-300)
-        side = _SIDE * reach.size
+        side = TOLERANCES.beside_section * reach.size
         sides = (points[chosen] + side * normal, points[chosen] - side * normal)
         both = np.logical_and(reach.reached(sides[0]), reach.reached(sides[1]))
         nearest = np.searchsorted(chosen, np.arange(len(points)), side="right") - 1
@@ -360,7 +356,7 @@ class _Reach:
         wanted = np.repeat(targets, count, axis=0)
         active = np.arange(len(wanted))
         found = np.zeros(len(wanted), dtype=bool)
-        goal = 0.1 * _SIDE * self.size
+        goal = 0.1 * TOLERANCES.beside_section * self.size
         for _ in range(rounds):
             if not len(active):
                 break

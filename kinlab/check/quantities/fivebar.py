@@ -18,14 +18,12 @@ from kinlab.fivebar.closed_chain import CRANKS, PASSIVE, ClosedChain
 from kinlab.fivebar.files import presets
 from kinlab.fivebar.linkage import as_five_bar
 from kinlab.notes.loop import Loop
+from kinlab.tolerances import TOLERANCES
 
 # -------- Five-bars as a domain: names and groups, the plain numbers, random closed poses
 
 _CLEAR = 0.15
 """Least sine between two bars in a drawn pose: what is compared is the formula, not rounding."""
-
-_PLAIN = 1e-6
-"""Share of the mechanism by which rods must miss each other to be given up without a try."""
 
 _TRIES = 200
 """Poses tried for each one drawn."""
@@ -178,7 +176,7 @@ def _elbows_apart(chain: ClosedChain, theta: Array) -> bool:
     """Whether the rods cannot meet, plainly: Newton finds out too, after a long search."""
     elbows = _pins(chain, theta)[1]
     span, rods = np.linalg.norm(elbows[1] - elbows[0]), np.asarray(chain.linkage.l2)
-    slack = _PLAIN * chain.size
+    slack = TOLERANCES.rods_miss * chain.size
     return bool(span > rods.sum() + slack or span < abs(rods[0] - rods[1]) - slack)
 
 

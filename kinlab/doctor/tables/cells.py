@@ -43,6 +43,7 @@ from kinlab.doctor.tables.words import (
     wrapped,
 )
 from kinlab.host.language import _
+from kinlab.model.rotations import about_axis
 from kinlab.tolerances import TOLERANCES
 
 _AXES = {A: 0, ALPHA: 0, D: 2, THETA: 2}
@@ -126,18 +127,9 @@ def _screw(motion: Array, axis: int) -> tuple[float, float, float]:
     length = float(motion[axis, 3])
     rest = np.array(motion)
     rest[axis, 3] = 0.0
-    rest[:3, :3] -= _turn(axis, angle)
+    rest[:3, :3] -= about_axis(axis, angle)
     rest[3, 3] = 0.0
     return angle, length, float(np.max(np.abs(rest)))
-
-
-def _turn(axis: int, angle: float) -> Array:
-    out = np.eye(3)
-    u, v = (axis + 1) % 3, (axis + 2) % 3
-    out[u, u] = out[v, v] = np.cos(angle)
-    out[v, u] = np.sin(angle)
-    out[u, v] = -out[v, u]
-    return out
 
 
 def changed(first: Reading, values: dict[tuple[int, int], float], slack: float = 0.0) -> Reading:
@@ -346,7 +338,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
     for k in np.flatnonzero((still < target.steady) & (np.abs(product) > 1e-6)):
         first = float(np.angle(product[k]))
         rest = np.swapaxes(between[:, k, :3, :3], -1, -2) @ (
-            _turn(int(axis1[k]), -first) @ wanted[:, k, :3, :3]
+            about_axis(int(axis1[k]), -first) @ wanted[:, k, :3, :3]
         )
         s, t = (axis2[k] + 1) % 3, (axis2[k] + 2) % 3
         sine = np.sum(rest[:, t, s] - rest[:, s, t])

@@ -25,6 +25,7 @@ from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.words import pose_cause
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
+from kinlab.model.rotations import rotations_along
 from kinlab.tolerances import TOLERANCES
 
 _LARGEST = (5e-3, 5e-3)
@@ -342,21 +343,10 @@ def _stepped(chain: Chain, step: Array) -> Chain:
     for k, which in ((0, "base"), (6, "tool")):
         part = step[4 * n + k : 4 * n + k + 6]
         move = np.eye(4)
-        move[:3, :3] = _rotation(part[3:])
+        move[:3, :3] = rotations_along(part[3:])
         move[:3, 3] = part[:3]
         ends[which] = getattr(chain, which) @ move
     return chain.but(cells=chain.cells + step[: 4 * n].reshape(n, 4), **ends)
-
-
-def _rotation(vector: Array) -> Array:
-    """Rodrigues' formula."""
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-15:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    out: Array = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
-    return out
 
 
 def _noise(chain: Chain, target: Target) -> tuple[tuple[float, float], int]:

@@ -22,15 +22,13 @@ from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.synthesis import FiveBarDesign, Range, finish, read_problem, solve
 from kinlab.host.files import read_text, write_text
 from kinlab.host.introductions import Told
+from kinlab.tolerances import TOLERANCES
 
 _NEXT = 45
 """Generations of a point that starts from its neighbour's design."""
 
 _CONDITION = 10.0
 """Largest condition number where none is asked: the smallest machine ends at a singularity."""
-
-_EASED = 1e-6
-"""Part by which a bound is eased, so that the end it comes from still meets it."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -125,7 +123,7 @@ def fivebar_front(
     last = best_one
     for part in np.linspace(0.0, 1.0, number)[1:-1]:
         bound = ends[0] + part * (ends[1] - ends[0])
-        bound = bound + _EASED * abs(bound)
+        bound = bound + TOLERANCES.eased_bound * abs(bound)
         own = min(bound, inner(asked[other])) if other in asked else bound
         problem = replace(first, limits={**asked, other: GOALS[other].shown(float(own))})
         try:

@@ -20,6 +20,7 @@ from kinlab.arrays import Array
 from kinlab.errors import FileError
 from kinlab.fivebar.design.problem import Problem, size_of
 from kinlab.host.files import read_text, write_text
+from kinlab.tolerances import TOLERANCES
 
 Progress = Callable[[int, int, float], None]
 """Told generation, generations and the best cost so far."""
@@ -28,7 +29,7 @@ _MEMBERS, _GENERATIONS = 36, 90
 _SIDE = 9
 """Points a side of the lattice of the search."""
 
-_ROUNDS, _ENOUGH = 6, 1e-5
+_ROUNDS = 6
 """How often the worst places join the points; the part of the cost below which they need not."""
 
 _ACTIVE = 60
@@ -169,7 +170,7 @@ def exchange(problem: Problem, x: Array) -> Array:
         more = (places - np.array([box.x_min, box.y_min])) / size
         both = np.concatenate([points, more])
         on_points, with_places = (float(problem.cost(x[None], p)[0]) for p in (points, both))
-        if with_places <= on_points + _ENOUGH * abs(on_points):
+        if with_places <= on_points + TOLERANCES.worst_places * abs(on_points):
             break
         points = both
     return x

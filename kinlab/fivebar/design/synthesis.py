@@ -14,17 +14,12 @@ from kinlab.arrays import Array, number, seed_of, shown, word
 from kinlab.errors import OptionError, UnreachableError
 from kinlab.fivebar.arguments import HANGING, Mode, read_mode
 from kinlab.fivebar.design.goals import GOALS
-from kinlab.fivebar.design.problem import SLACK, Problem
+from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
 from kinlab.host.introductions import Told
-
-_PROVED = 1e-3
-"""Gap between bound and value, in parts of the value, up to which a goal counts as proved."""
-
-_AT_LIMIT = 1e-4
-"""Part of a range within which a length counts as lying at its end."""
+from kinlab.tolerances import TOLERANCES
 
 _SIZES = (0.02, 2.5)
 """Range of lengths where none is given, in parts of the farthest corner's distance."""
@@ -91,7 +86,8 @@ class FiveBarDesign(Told):
             f"the bound is {goal.bound:.5g}: the design comes near a singularity; a limit such as "
             "condition=10 keeps it away"
             for name, goal in self.goals.items()
-            if not abs(goal.bound - goal.value) <= _PROVED * max(abs(goal.value), 1e-300)
+            if not abs(goal.bound - goal.value)
+            <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
             and (name in self.weights or name in self.limits)
         )
 
@@ -227,7 +223,7 @@ def finish(problem: Problem, x: Array, seed: int) -> FiveBarDesign:
 def _at_limit(problem: Problem, x: Array, proof: dict[str, tuple[float, float]]) -> tuple[str, ...]:
     out = []
     for name, value, low, high in zip(problem.names, x, problem.low, problem.high, strict=True):
-        near = _AT_LIMIT * (high - low)
+        near = TOLERANCES.at_end_of_range * (high - low)
         if high > low and value > high - near:
             out.append(f"{name} ≤ {high:.4g} m")
         if high > low and value < low + near and low > 0.0:
@@ -267,7 +263,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
             f"no linkage meets all limits over {place}; the nearest, {near} m, has "
             f"{', '.join(missed)}"
         )
-    if breaks["reach"] > SLACK:
+    if breaks["reach"] > TOLERANCES.design_slack:
         far = np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max)))
         longest = float(problem.high[0] + problem.high[1])
         why = (
@@ -278,7 +274,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
             "from the pins, or widen the lengths"
         )
         raise UnreachableError(f"{place} is out of reach of every linkage within the limits: {why}")
-    if breaks["rods"] > SLACK:
+    if breaks["rods"] > TOLERANCES.design_slack:
         raise UnreachableError(
             f"{place} holds a singularity for every linkage within the limits (the rods get in "
             f"line); the nearest is {near} m; widen the lengths, or move the rectangle from the "

@@ -55,6 +55,15 @@ def times(a, b, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def turn_about_z(goal, here):  # type: ignore[no-untyped-def]
+    """Angle that brings ``here`` nearest to ``goal``, (12,): tr(G^T Rz(angle) H) is largest."""
+    x, y, z, gx, gy, gz = here[0], here[1], here[2], goal[0], goal[1], goal[2]
+    s = goal[4] * x + goal[5] * y + goal[6] * z - gx * here[4] - gy * here[5] - gz * here[6]
+    c = gx * x + gy * y + gz * z + goal[4] * here[4] + goal[5] * here[5] + goal[6] * here[6]
+    return math.atan2(s, c)
+
+
+@kernel
 def inverse(a, out):  # type: ignore[no-untyped-def]
     """Inverse of a rigid transform, (12,); out must be another array."""
     for i in range(3):
@@ -445,20 +454,7 @@ def in_the_plane(fixed, prismatic, target, whole, out):  # type: ignore[no-untyp
             bars += 1
     times(one, fixed[n], two)
     height = two[11]
-    angle = math.atan2(
-        g[4] * two[0]
-        + g[5] * two[1]
-        + g[6] * two[2]
-        - g[0] * two[4]
-        - g[1] * two[5]
-        - g[2] * two[6],
-        g[0] * two[0]
-        + g[1] * two[1]
-        + g[2] * two[2]
-        + g[4] * two[4]
-        + g[5] * two[5]
-        + g[6] * two[6],
-    )
+    angle = turn_about_z(g, two)
     # the first revolute axis is where a and the goal are counted from
     gx, gy = g[3] - points[0, 0], g[7] - points[0, 1]
     bx, by = two[3] - points[1, 0], two[7] - points[1, 1]
@@ -508,20 +504,7 @@ def onto_plane(fixed, height, target, out):  # type: ignore[no-untyped-def]
         one[:] = two
     if not height:
         g[11] = one[11]
-    angle = math.atan2(
-        g[4] * one[0]
-        + g[5] * one[1]
-        + g[6] * one[2]
-        - g[0] * one[4]
-        - g[1] * one[5]
-        - g[2] * one[6],
-        g[0] * one[0]
-        + g[1] * one[1]
-        + g[2] * one[2]
-        + g[4] * one[4]
-        + g[5] * one[5]
-        + g[6] * one[6],
-    )
+    angle = turn_about_z(g, one)
     c, s = math.cos(angle), math.sin(angle)
     for j in range(3):
         x, y = one[j], one[4 + j]

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, real_array, whole
 from kinlab.engine.fast.arrays import chain
 from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.kinematics import tool_poses
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
 from kinlab.inverse.branches import rows as branch_rows
@@ -23,7 +23,7 @@ from kinlab.inverse.branches.rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDEC
 from kinlab.inverse.branches.structures import GENERAL, Known, known_form
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot, scratch
+from kinlab.model.robot import Robot
 
 SAMPLES = 16
 """Values at which the spare joint of a seven-joint arm is held, where none is given."""
@@ -463,10 +463,4 @@ def _misses(task, poses, rows, goals, errors):  # type: ignore[no-untyped-def]
 
 def _measure(robot: Robot, arm: _Arm, q: Array, goals: Array, rows: Any, errors: Array) -> None:
     """Errors of q (m, n) at goals[rows], by Pinocchio; errors (m, 2) is written."""
-    model, data, tool = robot.model, scratch(robot), robot.tool
-    forward, place = pin.forwardKinematics, pin.updateFramePlacement
-    poses = np.empty((len(q), 4, 4))
-    for i, values in enumerate(q):
-        forward(model, data, values)
-        poses[i] = place(model, data, tool).homogeneous
-    _misses(arm.known.form.task, poses, rows, goals, errors)
+    _misses(arm.known.form.task, tool_poses(robot, q), rows, goals, errors)

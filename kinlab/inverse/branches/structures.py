@@ -91,9 +91,6 @@ _FORMS: WeakKeyDictionary[Robot, dict[tuple[tuple[int, float], ...], Known]] = W
 
 _KEPT = 64
 
-_ROUNDING, _NEARLY = 1e-12, 3e-4
-"""Between these, of the arm's size or as a sine, axes meet or are parallel only nearly."""
-
 
 def known_form(robot: Robot, given: tuple[tuple[int, float], ...] = ()) -> Known:
     """The closed form of a robot, worked out once.
@@ -229,21 +226,21 @@ def _doubt(arm: Chain, family: int, count: int) -> str:
         (p, u), (o, w) = lines[i], lines[i + 1]
         normal = np.cross(u, w)
         sine = float(np.linalg.norm(normal))
-        if _ROUNDING < sine < _NEARLY:
+        if TOLERANCES.structure_holds < sine < TOLERANCES.structure_nearly:
             return f"axes {i + 1} and {i + 2} are nearly parallel, so that some may be missing"
         foot = None
-        if sine >= _NEARLY and turns[i] and turns[i + 1]:
+        if sine >= TOLERANCES.structure_nearly and turns[i] and turns[i + 1]:
             gap = abs(float(normal @ (o - p))) / sine
-            if _ROUNDING * size < gap < _NEARLY * size:
+            if TOLERANCES.structure_holds * size < gap < TOLERANCES.structure_nearly * size:
                 return f"axes {i + 1} and {i + 2} nearly meet, so that some may be missing"
-            if gap <= _ROUNDING * size:
+            if gap <= TOLERANCES.structure_holds * size:
                 foot = p + u * float(np.cross(o - p, w) @ normal) / sine**2
         feet.append(foot)
     for i in range(len(feet) - 1):
         one, other = feet[i], feet[i + 1]
         if one is not None and other is not None:
             gap = float(np.linalg.norm(one - other))
-            if _ROUNDING * size < gap < _NEARLY * size:
+            if TOLERANCES.structure_holds * size < gap < TOLERANCES.structure_nearly * size:
                 return f"axes {i + 1} to {i + 3} nearly meet, so that some may be missing"
     return ""
 

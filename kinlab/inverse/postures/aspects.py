@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import revolute
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.postures.cuspidality import square_task, yes_or_no
 from kinlab.model.library import ArmLike, as_robot

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import real_array, whole
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import takes_long
 from kinlab.inverse.branches.families import IKFamily
 from kinlab.inverse.branches.solutions import IKBranches, ik_branches

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array, number, whole
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import takes_long
 from kinlab.inverse.postures.regional import (
     Regional,
