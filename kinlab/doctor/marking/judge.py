@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache, reduce
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.verdicts import together
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
@@ -312,9 +313,7 @@ def _places(
             paths, _marks = differences(written, tree.renamed(formula, meaning), meaning)
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
-            look = _("{entry}: look at {pieces}").format(
-                entry=shown, pieces=reduce(_paired, pieces) if pieces else ""
-            )
+            look = _("{entry}: look at {pieces}").format(entry=shown, pieces=together(pieces))
             places.append(look if pieces else shown)
         formulas.append(equation(_named(entry), written, Marks("wrong", paths)))
     if best and not places:
@@ -322,10 +321,6 @@ def _places(
     if not best and found.worst_entry and len(file.formulas) > 1:
         places = [_named(found.worst_entry)]
     return places or [_("the formula as a whole")], tuple(formulas)
-
-
-def _paired(one: str, two: str) -> str:
-    return _("{first} and {last}").format(first=one, last=two)
 
 
 def _piece(node: Node) -> str:
