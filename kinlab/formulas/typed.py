@@ -61,41 +61,11 @@ _ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _SIGNS = str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
 )
-_LETTERS = [
-    "α",
-    "alpha",
-    "β",
-    "beta",
-    "γ",
-    "gamma",
-    "δ",
-    "delta",
-    "θ",
-    "theta",
-    "ϑ",
-    "theta",
-    "λ",
-    "lambda",
-    "π",
-    "pi",
-    "μ",
-    "mu",
-    "φ",
-    "phi",
-    "ϕ",
-    "phi",
-    "ψ",
-    "psi",
-    "ω",
-    "omega",
-    "ρ",
-    "rho",
-    "τ",
-    "tau",
-    "ℓ",
-    "l",
-]
-_GREEK = dict(zip(_LETTERS[::2], _LETTERS[1::2], strict=True))
+_LETTERS = (
+    "α alpha β beta γ gamma δ delta θ theta ϑ theta λ lambda π pi μ mu φ phi ϕ phi ψ psi ω omega "
+    "ρ rho τ tau ℓ l"
+)
+_GREEK = dict(zip(_LETTERS.split()[::2], _LETTERS.split()[1::2], strict=True))
 _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
@@ -258,28 +228,10 @@ def _joined(name: str, number: int, shown: str, place: str) -> str:
     return f"{name.rstrip('_')}{number}"
 
 
-_FUNCTIONS = set(
-    [
-        "sin",
-        "cos",
-        "tan",
-        "sqrt",
-        "atan2",
-        "asin",
-        "acos",
-        "atan",
-        "abs",
-        "exp",
-        "log",
-        "sign",
-        "arcsin",
-        "arccos",
-        "arctan",
-        "arctan2",
-        "Abs",
-        "ln",
-    ]
+_CALLED = (
+    "sin cos tan sqrt atan2 asin acos atan abs exp log sign arcsin arccos arctan arctan2 Abs ln"
 )
+_FUNCTIONS = set(_CALLED.split())
 """As in :mod:`kinlab.formulas.tree`, with the other names."""
 
 
@@ -498,19 +450,9 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
 
 
 _VECTORS = {"gravity_torques", "inverse_dynamics", "coriolis_torques"}
-_MATRICES = set(
-    [
-        "mass_matrix",
-        "coriolis_matrix",
-        "jacobian",
-        "jacobian_tool",
-        "jacobian_spatial",
-        "fk",
-        "planar_jacobian",
-    ]
-)
-_LONG = _MATRICES | _VECTORS
-_TWO = set("MHBJTRC") | _MATRICES
+_MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
+_LONG = {*_MATRICES.split(), *_VECTORS}
+_TWO = {*"MHBJTRC", *_MATRICES.split()}
 """Quantities of two indices, whose one column is no vector."""
 
 
