@@ -229,3 +229,30 @@ def test_loci_bad_joints(joints, error, words):
 def test_a_slice_that_is_all_singular_is_refused():
     with pytest.raises(OptionError, match="every configuration of the slice"):
         kl.singular_loci(kl.load("puma560"), [1, 2], np.zeros(6))
+
+
+def test_links_of_one_length_have_a_sheet_that_is_a_double_zero():
+    """det J = l^3 sin q3 (cos q2 + cos(q2 + q3)): at q3 = pi both factors vanish whatever q2 is."""
+    half = np.pi / 2
+    links = [kl.DHLink(alpha=half), kl.DHLink(a=0.16), kl.DHLink(a=0.16)]
+    robot = kl.Robot.from_dh(kl.DHTable(name="equal", convention="standard", links=links))
+    families = kl.find_singularities(robot, "position").families
+    sheets = {f.deciding: [] for f in families}
+    for f in families:
+        sheets[f.deciding] += list(f.pinned)
+    np.testing.assert_allclose(sorted(sheets[("joint_3",)]), [0.0, np.pi], atol=1e-9)
+    assert sheets[("joint_2", "joint_3")] == []
+    for q3, there in ((np.pi, 0.0), (3.0, np.pi - 3.0), (-3.0, np.pi - 3.0)):
+        near = kl.nearest_singularity(robot, [0.3, 0.7, q3], "position")
+        assert near.distance <= there + 1e-9 and near.bound <= near.distance
+
+
+def test_limits_that_stop_short_of_a_double_zero():
+    """The lower limit is 4e-9 above -pi: no state within the limits is singular there."""
+    families = kl.find_singularities("erd:finger_edu").families
+    assert {f.deciding for f in families} == {
+        ("finger_middle_to_lower_joint",),
+        ("finger_upper_to_middle_joint", "finger_middle_to_lower_joint"),
+    }
+    assert all(abs(value) < 1e-9 for f in families for value in f.pinned)
+    assert all(s.ratio <= 1e-10 for f in families for s in f.members)
