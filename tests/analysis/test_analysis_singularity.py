@@ -247,12 +247,15 @@ def test_links_of_one_length_have_a_sheet_that_is_a_double_zero():
         assert near.distance <= there + 1e-9 and near.bound <= near.distance
 
 
-def test_limits_that_stop_short_of_a_double_zero():
-    """The lower limit is 4e-9 above -pi: no state within the limits is singular there."""
-    families = kl.find_singularities("erd:finger_edu").families
-    assert {f.deciding for f in families} == {
-        ("finger_middle_to_lower_joint",),
-        ("finger_upper_to_middle_joint", "finger_middle_to_lower_joint"),
-    }
-    assert all(abs(value) < 1e-9 for f in families for value in f.pinned)
-    assert all(s.ratio <= 1e-10 for f in families for s in f.members)
+def test_limits_at_a_double_zero():
+    """The limit -3.14159265 is 4e-9 short of the double zero at -pi: singular to every digit there,
+    and no state a millionth away is taken for one."""
+    robot = kl.load("erd:finger_edu")
+    members = list(kl.find_singularities(robot))
+    middle, last = robot.joint_names[1:]
+    assert {s.deciding for s in members} == {(last,), (middle, last)}
+    for s in members:
+        assert s.ratio <= 1e-10
+        assert np.all((s.q >= robot.lower) & (s.q <= robot.upper))
+        if s.deciding == (last,):
+            assert min(abs(s.q[2]), np.pi - abs(s.q[2])) < 1e-8

@@ -24,8 +24,6 @@ from kinlab.tolerances import TOLERANCES
 
 _SAMPLES = 17
 """Samples along one joint that show its degree, which is at most 6."""
-_CROWD = 1e-3
-"""Roots on the unit circle nearer to each other than this may be one multiple root."""
 _MOST = 40_000
 """Coefficients above which the polynomials are not formed."""
 
@@ -400,7 +398,7 @@ def _zeros(rows: Array, degree: int) -> list[float]:
     roots = np.roots(weights[::-1])
     # a zero of multiplicity m comes as m roots around it, some 1e-16^(1/m) away; their mean is
     # as good as a simple root
-    means = [roots[np.abs(roots - z) < _CROWD].mean() for z in roots]
+    means = [roots[np.abs(roots - z) < TOLERANCES.root_crowd].mean() for z in roots]
     orders = np.arange(1, degree + 1)
     found = []
     for z in [*means, *roots]:
