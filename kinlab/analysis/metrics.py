@@ -113,7 +113,7 @@ def singular_values(jacobians: ArrayLike) -> Array:
 
 
 def condition_number(sigma: Array) -> Array:
-    """Greatest over least singular value; infinity at a singularity, on purpose."""
+    """Greatest over least singular value; infinity where that is 0, on purpose."""
     ratio = inverse_condition(sigma)
     large = ratio >= np.finfo(np.float64).tiny  # of anything less there is no inverse
     return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=large)
@@ -140,7 +140,8 @@ def manipulability(
             leaves the SI numbers, and then a mixed task weighs 1 m like 1 rad.
 
     Returns:
-        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities.
+        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities up to
+        rounding (of which ``"isotropy"`` takes the third root in a space of six coordinates: 1e-6).
 
     Raises:
         StateError: q of the wrong shape or type, or not finite.
@@ -214,7 +215,8 @@ class Dexterity(Answer):
         length: characteristic length in metres, ``None`` where the task needs none.
         sigma: singular values, descending, (m,).
         yoshikawa, inverse_condition, min_singular, isotropy: see the module.
-        condition: greatest over least singular value; infinity at a singularity.
+        condition: greatest over least singular value; infinity where that is 0, and above 1e10
+            where rounding leaves something of it.
         rank: number of singular values above 1e-10 of the greatest.
     """
 
@@ -300,7 +302,7 @@ class CharacteristicLength:
 
     Attributes:
         length: metres, or ``None`` where the condition number depends on no length.
-        condition: condition number of J at that length; infinity at a singularity.
+        condition: condition number of J at that length; infinity where J has a singular value 0.
         task: name of the task.
         how: ``given``, ``optimal`` or ``none needed``.
     """
@@ -315,6 +317,9 @@ def characteristic_length(
     robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
 ) -> CharacteristicLength:
     """The length that minimises the condition number at q, or the effect of a given one.
+
+    It is looked for from 1/1000 to 1000 times the arm's own length unit. There is one minimum:
+    log kappa is convex in log L (norms of D1 J D2 and its inverse, by Hadamard's three lines).
 
     Args:
         robot: the robot.

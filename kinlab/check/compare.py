@@ -61,7 +61,7 @@ class Comparison(Rows):
 
     @property
     def agrees(self) -> bool:
-        """Whether the two are the same formula, to rounding."""
+        """Whether the two answer alike, to rounding, at every state that was drawn."""
         return self.max_error <= TOLERANCES.formula_agrees
 
     def columns(self) -> dict[str, Any]:
@@ -85,6 +85,19 @@ class Comparison(Rows):
             state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
             hand, engine = f"hand   {self.hand[k]}", f"engine {self.engine[k]}"
         return Introduction(text, (f"worst at {state}", hand, engine), mood="bad")
+
+
+def need_function(function: object) -> None:
+    """Refuses what is no function, formulas as text above all, with where they go.
+
+    Raises:
+        OptionError: it cannot be called.
+    """
+    if not callable(function):
+        raise OptionError(
+            f"function: {type(function).__name__} cannot be called; a formula as text goes into a "
+            'file (robot = "planar2r", below [formulas] tau2 = "..."), read by kinlab check FILE'
+        )
 
 
 def compare(
@@ -111,8 +124,7 @@ def compare(
     """
     found = find_quantity(quantity)
     mechanism = found.domain.load(robot)
-    if not callable(function):
-        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    need_function(function)
     return compare_stacked(
         mechanism, found, state_by_state(function), function_name(function), None, samples, seed
     )

@@ -130,7 +130,7 @@ class Diagnosis(Answer):
         if self.agrees or self.causes:
             return ()
         worst = _("Worst entry {entry} at {state}").format(
-            entry=shown_entry(self.worst_entry), state=self._at_worst(200)
+            entry=self._worst, state=self._at_worst(200)
         )
         return (*(_("Explained: {slip}").format(slip=text) for text in self.partial), worst)
 
@@ -161,6 +161,12 @@ class Diagnosis(Answer):
         return _("{function} is not {quantity} of {robot}; no known slip explains it").format(
             **self._names
         )
+
+    @property
+    def _worst(self) -> str:
+        """The worst entry; by the writer's name, where only one is judged."""
+        alone = self.worst_entry == self.quantity and "[" in self.quantity
+        return self.function if alone else shown_entry(self.worst_entry)
 
     @property
     def _names(self) -> dict[str, str]:
@@ -199,7 +205,7 @@ class Diagnosis(Answer):
         lines.append(
             _("relative error {error:.3g}; worst entry {entry} at {state}").format(
                 error=self.error_before,
-                entry=shown_entry(self.worst_entry),
+                entry=self._worst,
                 state=self._at_worst(100),
             )
         )

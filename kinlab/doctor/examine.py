@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors, some_rows
+from kinlab.check.compare import need_function, relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import terms, verdicts
@@ -77,8 +77,7 @@ def diagnose(
         OptionError: samples below 10.
         FormulaError: the function failed.
     """
-    if not callable(function):
-        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    need_function(function)
     plain, index = split_name(quantity)
     case, engine = prepare(robot, plain, index, samples, seed)
     stacked = state_by_state(function)

@@ -23,6 +23,7 @@ from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.engine.dynamics import inverse_dynamics, mass_matrix
 from kinlab.errors import MotorError, OptionError, StructureError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia
@@ -63,6 +64,16 @@ class ArmSizing(Told):
     load_inertia: Array
     fits: tuple[tuple[MotorFit, ...], ...]
     resolution: float = field(repr=False)
+
+    @property
+    def evidence(self) -> Evidence:
+        """At how many instants the motion was looked at, and what that makes of its figures."""
+        return Evidence(
+            f"{len(self.demand.t):,} instants of the motion; every motor of the catalogue",
+            proved="",
+            found=f"RMS torques to {self.resolution:.1g} of the largest; peaks at those instants; "
+            "of a gear of any make the ratio of most margin",
+        )
 
     @property
     def chosen(self) -> tuple[MotorFit | None, ...]:
@@ -120,16 +131,18 @@ def size_servos(
         motors: a catalogue (.toml or .csv), one motor or several, by name or as data; none tries
             the shipped ones.
         gears: gearboxes that can be bought, as a catalogue or as data: every motor is tried behind
-            each. Left out, a gear of any make with :attr:`efficiency`.
+            each. Left out, a gear of any make with the ``efficiency``.
         gear_ratio: j of every joint, motor turns per joint turn (rad/m of a sliding joint); left
             out, for each motor the one of most margin. Not together with ``gears``.
-        efficiency: of a gear of any make, above 0, at most 1.
+        efficiency: of a gear of any make (without ``gears``), above 0, at most 1.
         wrench: (f, n) that the tool exerts all the way, (6,), as for
             :func:`kinlab.inverse_dynamics`.
 
     Returns:
-        Torque, speed and power over the motion, and the drives of each joint. Instants are laid
-        so densely that the RMS torques do not change by more than 2e-7 when halved.
+        Torque, speed and power over the motion, and the drives of each joint. The steps between
+        instants are halved until the RMS torques change by no more than 2e-7 of the largest, or
+        there are 400,000 of them; ``resolution`` is the last change. Peaks are those of the
+        instants.
 
     Raises:
         StructureError: a motion of another number of joints, or no motion.

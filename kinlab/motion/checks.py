@@ -23,6 +23,7 @@ from kinlab.arrays import Array
 from kinlab.drives.arm import demand_of
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import StructureError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told, counted
 from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.model.library import ArmLike, as_robot
@@ -71,6 +72,17 @@ class MotionCheck(Told):
     task: str
     branches: tuple[str, str]
     instants: int = 0
+
+    @property
+    def evidence(self) -> Evidence:
+        """What holds at all times, and what was looked at in instants only."""
+        proved = (
+            "limits of positions, velocities and accelerations are compared with exact extremes"
+        )
+        if self.sigma is not None:
+            proved += f"; sigma_min stays above {self.sigma:.3g}, so that no singularity is met"
+        efforts = f"efforts at {self.instants:,} instants" if self.instants else ""
+        return Evidence("the whole motion, piece by piece", proved=proved, found=efforts)
 
     @property
     def ok(self) -> bool:

@@ -176,9 +176,7 @@ def test_the_five_bar_says_the_same(shake, name):
 
 
 def analysis_verdicts(name):
-    from kinlab.analysis.singularities.singularity import find_singularities
-
-    search = find_singularities(kl.load(name))
+    search = kl.find_singularities(kl.load(name))
     return [f"{f.kind} {f.deciding} {np.round(f.pinned, 6) + 0.0} {f.beyond} {f.representative.rank} "
             f"{f.representative.joints}" for f in search.families]  # fmt: skip
 

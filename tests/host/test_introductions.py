@@ -72,6 +72,9 @@ def answers():
         "Ellipsoid": (kl.ellipsoid(robot, [0.4, 0.9]), "velocity ellipsoid, task xy (chosen"),
         "WorkspaceMap": (kl.sample_workspace(robot, samples=50), "50 tool positions"),
         "IKPath": (kl.ik_path(robot, near_the_end, [0.4, 0.9]), "4 of 4 poses solved"),
+        "SolutionCount": (kl.solution_count(robot, T), "2 solutions, 2 within the limits, all"),
+        "SolutionCounts": (kl.solution_count(robot, np.stack([T, T])), "2 poses: 2 with all"),
+        "SolutionMap": (kl.solution_map(robot, cells=12), "at most 2 solutions"),
         "TableDiagnosis": (kl.diagnose_table(other, table), "differs"),
     }
 

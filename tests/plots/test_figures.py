@@ -11,7 +11,7 @@ import kinlab as kl
 from kinlab.plots.canvas import new_axes
 
 NAMES = {
-    "ellipses", "fivebar", "fivebar_cycle", "fivebar_gains", "ik_history", "save",
+    "ellipses", "fivebar", "fivebar_cycle", "fivebar_design", "fivebar_front", "fivebar_gains", "ik_history", "save",
     "singular_loci", "singular_values", "solutions", "torque_speed", "workspace", "workspace_cloud", "workspace_map",
 }  # fmt: skip
 

@@ -6,8 +6,8 @@ above and tends to it as p grows. Every start is brought down on it (all at once
 the limits), the lowest that differ are followed to the kink.
 
 Starts come in blocks of one sequence, and the search stops after a block once the best was met
-often enough: with more starts allowed it goes on where it would have stopped, hence more effort
-never gives a worse answer.
+often enough. Whatever lies within the p-norm's own error of the lowest end is followed, hence more
+starts never give a worse answer, but for the rounding of the last minimisation.
 """
 
 from __future__ import annotations
@@ -33,7 +33,8 @@ _POWERS = (512.0, 4096.0, 3.2e4, 2.6e5, 2e6, 2e7)
 """Each minimisation starts where the one before ended. At 2e7 the surrogate of six equal
 singular values is 1e-7 above the condition number, and its minimiser as near."""
 _FOLLOWED = 5
-"""The lowest of each block that are followed to the end, of those with different values."""
+"""The lowest of each block that are followed to the end, of those with different values; more where
+they lie so near that p = 512 cannot tell which of them is the least."""
 BLOCK = 200
 """Starts of a block."""
 ENOUGH = 5
@@ -79,7 +80,7 @@ def least_condition(
         for power in _TOGETHER:
             x, value = _descend_together(space, length, x, power)
         ends = np.concatenate([ends, np.exp(value)])
-        for number in _different(value):
+        for number in _different(value, np.log(space.m) / _TOGETHER[-1]):
             state, size = _follow(space, length, x[number])
             reached = float(condition_number(singular_values(space.jacobian(state, size))))
             if best is None or reached < best[0] * (1.0 - 1e-12):
@@ -107,14 +108,19 @@ def _box(space: TaskSpace, width: int) -> tuple[Array, Array]:
     return np.append(lower, centre - 7.0), np.append(upper, centre + 7.0)
 
 
-def _different(value: Array) -> list[int]:
-    """The lowest ends whose values differ: the same value is the same pose up to a symmetry."""
+def _different(value: Array, error: float) -> list[int]:
+    """The lowest ends whose values differ: the same value is the same pose up to a symmetry.
+
+    Args:
+        value: logarithms of the p-norm condition numbers, (N,).
+        error: by how much these may lie above those of the condition number itself.
+    """
     chosen: list[int] = []
     for number in np.argsort(value, kind="stable"):
+        if len(chosen) >= _FOLLOWED and value[number] > value[chosen[0]] + error:
+            break
         if all(abs(value[number] - value[k]) > 0.1 * TOLERANCES.same_minimum for k in chosen):
             chosen.append(int(number))
-        if len(chosen) == _FOLLOWED:
-            break
     return chosen
 
 

@@ -4,8 +4,6 @@ Solved as an overdetermined system, not by minimising the condition number: at i
 singular values coincide, where the condition number has a kink and its minimisers stall.
 
 Sources: Salisbury & Craig, IJRR 1(1), 1982; Angeles, IJRR 11(3), 1992; note 000, section 六.
-
-J J^T = a 1 as a system of smooth equations.
 """
 
 from __future__ import annotations
@@ -46,7 +44,7 @@ class IsotropicConfiguration:
         q: joint positions, (n,); free joints stand at zero or the middle of their limits.
         condition: condition number of J there.
         length: characteristic length in metres, ``None`` where the task needs none.
-        free: names of the joints that may take any value without changing J J^T.
+        free: names of the joints of which each may take any value alone and J stays isotropic.
         freedom: dimension of the family in joint space; more than ``len(free)`` where joints move
             together. Measured by configurations around this one.
         jacobian: the task's J, entries in metres over ``length``, (m, n).
@@ -150,14 +148,15 @@ def find_isotropic(
     seeds: int = 400,
     seed: int = 0,
 ) -> IsotropySearch:
-    """Isotropic configurations within the joint limits, or the best reachable condition number.
+    """Isotropic configurations within the joint limits, or the least condition number found.
 
     Args:
         robot: the robot.
         task: a name, a mask of six booleans, or ``"auto"``; the answer states it.
         length: characteristic length in metres, or ``"optimal"``: solved for along with q. It
             matters for mixed tasks only; the answer states it.
-        seeds: most random starts within the limits; more never give a worse condition number.
+        seeds: most random starts within the limits; more never give a worse condition number,
+            but for rounding.
         seed: of the starts; the same seed gives the same answer.
 
     Returns:
@@ -276,12 +275,16 @@ def isotropic_families(
 
 
 def _free_joints(system: IsotropySystem, q: Array, length: float) -> tuple[int, ...]:
-    """Joints that may move alone, tried and not only linearised."""
+    """Joints that may move alone, tried and not only linearised.
+
+    J J^T - a 1 is of degree two in the cosine and sine of a joint, or in a slide: five values, the
+    given one among them, at which it is zero are enough.
+    """
     space, robot = system.space, system.space.robot
     free = []
     for joint in range(robot.n):
-        moved = np.repeat(q[np.newaxis], 3, axis=0)
-        moved[:, joint] += (0.4, 1.1, -0.7)
+        moved = np.repeat(q[np.newaxis], 4, axis=0)
+        moved[:, joint] += (0.4, 1.1, -0.7, -1.9)
         sigma = singular_values(space.jacobian(moved, length))
         if float((condition_number(sigma) - 1.0).max()) <= 10.0 * TOLERANCES.isotropic:
             free.append(joint)

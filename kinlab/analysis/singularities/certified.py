@@ -5,8 +5,8 @@ function is its linear part and a rest that is bounded
 (:meth:`kinlab.analysis.singularities.minors.Factor.enclosures`), so that a zero lies in a slab; box
 and slab give the distance (a quadratic program with one constraint, bounded from below by its
 dual), and the slab cuts the box down. The box with the least distance is split next, hence the
-bound only grows and the search stops where it meets the best zero found. Nothing depends on random
-numbers.
+bound grows, and the search stops where it meets the best zero found. What the local searches draw
+is fixed: the same call, the same answer.
 
 Neumaier, "Complete search in continuous global optimization and constraint satisfaction", Acta
 Numerica 13, 2004, sections 11 and 14.

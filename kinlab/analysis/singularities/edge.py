@@ -40,8 +40,8 @@ class Edge:
     """Answer of :func:`edge`.
 
     Attributes:
-        beyond: ``True``: the tool passes on to both sides. ``False``: one side is out of reach.
-            ``None``: undecided.
+        beyond: ``True``: the tool passes on to both sides. ``False``: the tool turns back and on
+            one side no solution was found. ``None``: undecided.
         evidence: what that rests on.
     """
 
@@ -73,7 +73,7 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
             solutions_ahead(space, q, -step * lost[:, 0]),
         )
         if min(counts) > 0:
-            proved = "the tool passes on to both sides: there are solutions"
+            proved = "the tool passes on to both sides: solutions stand a small step ahead on each"
             return Edge(True, Evidence(searched, min(counts), _STARTS, proved))
         if step == _STEPS[0]:
             near = counts
@@ -92,7 +92,11 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
 
 
 def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
-    """Least and greatest eigenvalue of v -> u . (dJ/dt) v on J v = 0, limits respected."""
+    """Least and greatest eigenvalue of v -> u . (dJ/dt) v on J v = 0, limits respected.
+
+    Zeros where joints on their limits leave J more directions to lose than u: then one form
+    decides nothing.
+    """
     robot = space.robot
     full = jacobian(robot, q)
     turning = revolute(robot) & (robot.upper - robot.lower >= 2.0 * np.pi - 1e-9)
@@ -103,6 +107,8 @@ def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     bilinear = np.einsum("m,jmi->ji", direction, change) * np.outer(inside, inside)
     _, sigma, right = np.linalg.svd(matrix)
     rank = int(np.sum(counting(sigma, TOLERANCES.internal_motion)))
+    if rank < space.m - 1:
+        return 0.0, 0.0
     motions = right[rank:].T * inside[:, np.newaxis]
     if not motions.size:
         return 0.0, 0.0

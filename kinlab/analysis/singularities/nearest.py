@@ -46,7 +46,7 @@ class NearestSingularity(Answer):
             nearest singular configuration found; infinity where none was found within the limits.
         bound: no singular configuration within the limits is nearer than this: proved, up to
             rounding. Infinity: there is none at all.
-        meets: distance and bound agree to 1e-6: the distance is proved.
+        meets: distance and bound agree to 2e-6: the distance is proved.
         singularity: the configuration there, or ``None``.
         sigma: singular values at the q that was asked about, descending, entries in metres over
             ``length``. length: metres.
@@ -92,9 +92,10 @@ def nearest_singularity(
         task: as in :func:`kinlab.find_singularities`.
         boxes: most boxes of joint space that the proof may look at; more only narrow what is
             between ``bound`` and ``distance``.
-        points: base points of the search from many starts, which is the way where no factors of
-            det J are known; elsewhere there is none.
-        seed: of those starts (see the top of the module).
+        points: base points of the search from many starts, which takes the place of the proof
+            where the minors of J are too large to be written out (the evidence says which way
+            was taken).
+        seed: of those starts; the other way draws nothing anew.
 
     Raises:
         StateError, NameUnknownError, OptionError: as :func:`kinlab.find_singularities`.

@@ -127,9 +127,10 @@ def project(system: SingularSystem, q: Array, rounds: int = 4) -> tuple[Array, A
 def seeds(system: SingularSystem, rng: np.random.Generator, points: int, steps: int = 36) -> Array:
     """Where to start: least sigma along lines parallel to every joint axis, and random points.
 
-    Every factor of a determinant depends on some joint, so the line along that joint through a
-    point in general position crosses its zeros: scanning all joints from a few points meets
-    each factor by construction, where random projection meets the nearest one only.
+    Every factor of a determinant depends on some joint, and the line along that joint crosses its
+    zeros from most points: scanning all joints from a few points meets factors that random
+    projection, which runs to the nearest one, leaves out. A factor whose zeros span a small part
+    of the other joints' ranges can still be missed.
 
     Args:
         system: the equations.

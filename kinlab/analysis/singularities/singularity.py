@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import counting
 from kinlab.analysis.singularities import singular_set as sets
-from kinlab.analysis.singularities.edge import edge
+from kinlab.analysis.singularities.edge import Edge, edge
 from kinlab.analysis.singularities.minors import factors
 from kinlab.analysis.singularities.singular_set import holds, pinned, pinned_pairs, supports
 from kinlab.analysis.structure.axes import name_singularity, structure
@@ -51,10 +51,11 @@ class Singularity(Answer):
         pinned: values of the deciding joints where they are isolated; else empty. A half turn is
             pi, not -pi, where the limits admit both.
         kind: ``wrist``, ``shoulder``, ``elbow`` where the structure gives a name, otherwise
-            ``boundary`` (the tool cannot pass on in the lost direction), ``interior`` or
-            ``undecided``.
+            ``boundary`` (here the tool turns back, and no other branch was found that passes on
+            in the lost direction), ``interior`` (it passes on) or ``undecided``.
         task: the task. rows: its rows.
         length: metres, see :mod:`kinlab.analysis.structure.task_space`.
+        evidence: what ``kind`` rests on.
     """
 
     q: Array
@@ -69,6 +70,7 @@ class Singularity(Answer):
     task: str
     rows: tuple[int, ...] = field(repr=False)
     length: float = field(repr=False)
+    evidence: Evidence | None = field(default=None, repr=False)
 
     def introduction(self) -> Introduction:
         """What is lost here, and which joints hold the arm singular."""
@@ -110,9 +112,9 @@ class SingularFamily(Answer):
         deciding: names of the joints that decide; the others are free.
         pinned: values of the deciding joints where each is fixed on this sheet; empty where
             they vary together along a curve or surface.
-        beyond: whether the tool can pass on in the lost direction at the representative, see
-            :mod:`kinlab.analysis.singularities.edge`: ``True``, ``False`` on the edge of the
-            workspace, ``None`` undecided.
+        beyond: whether the tool passes on in the lost direction at the representative, see
+            :mod:`kinlab.analysis.singularities.edge`: ``True`` is proved; ``False``, on the edge of
+            the workspace, is found; ``None`` is undecided.
         members: found configurations, the representative first.
         evidence: how the free joints were moved, and what the edge rests on.
     """
@@ -381,9 +383,7 @@ def describe_singularity(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Si
             f"is {values[-1] / values[0]:.3g} (at most {TOLERANCES.singular:g}); see "
             "nearest_singularity"
         )
-    if found.kind:
-        return found
-    return replace(found, kind=_place(edge(space, found.q, found.lost).beyond))
+    return _judged(space, found)
 
 
 def _describe(
@@ -415,7 +415,17 @@ def _describe(
         task=space.name,
         rows=space.rows,
         length=space.scale,
+        evidence=Evidence("the joint axes as they lie here", proved="which of them are dependent"),
     )
+
+
+def _judged(space: TaskSpace, found: Singularity, known: Edge | None = None) -> Singularity:
+    """With the place in the workspace where the structure has no name."""
+    if found.kind:
+        return found
+    judged = edge(space, found.q, found.lost) if known is None else known
+    kind = {True: "interior", False: "boundary", None: "undecided"}[judged.beyond]
+    return replace(found, kind=kind, evidence=judged.evidence)
 
 
 def _family(space: TaskSpace, sheet: _Sheet) -> SingularFamily:
@@ -430,10 +440,7 @@ def _family(space: TaskSpace, sheet: _Sheet) -> SingularFamily:
     if first.kind:
         kind = min(kinds, key=len)
     else:
-        rest = [_place(edge(space, s.q, s.lost).beyond) for s in sound[1:]]
-        sound = [
-            replace(s, kind=k) for s, k in zip(sound, [_place(judged.beyond), *rest], strict=True)
-        ]
+        sound = [_judged(space, first, judged), *(_judged(space, s) for s in sound[1:])]
         kind = "/".join(sorted({s.kind for s in sound}))
     free = space.robot.n - len(sheet.held)
     evidence = Evidence(
@@ -458,10 +465,6 @@ def _rounded(pinned: tuple[float, ...]) -> tuple[float, ...]:
     """Pinned values to the digits in which two families differ."""
     unit = TOLERANCES.same_pinned_value
     return tuple(round(value / unit) * unit for value in pinned)
-
-
-def _place(beyond: bool | None) -> str:
-    return {True: "interior", False: "boundary", None: "undecided"}[beyond]
 
 
 def _close(one: Array, two: Array) -> bool:

@@ -3,7 +3,7 @@
 ============  ====================================================================================
 module        what it holds
 ============  ====================================================================================
-``boundary``  The boundary of a planar arm's workspace as exact circular arcs, joint limits
+``boundary``  The boundary of a planar arm's workspace as circular arcs in closed form, limits
               included
 ``sections``  Sections of a spatial arm's workspace through the first joint's axis: edges, voids,
               and the curves inside across which the number of solutions changes

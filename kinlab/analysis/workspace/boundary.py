@@ -1,4 +1,4 @@
-"""The boundary of a planar arm's workspace as exact circular arcs, joint limits included.
+"""The boundary of a planar arm's workspace as circular arcs in closed form, limits included.
 
 On the boundary some joints stand at a limit and the others are singular together: their axes
 and the tool lie on one line. With the first of them sweeping, the tool draws an arc about its
@@ -121,7 +121,8 @@ def planar_boundary(robot: ArmLike) -> PlanarBoundary:
 
     Returns:
         Arcs whose centres and radii are exact; for the 2R arm without limits the rings
-        l1 + l2 and |l1 - l2|.
+        l1 + l2 and |l1 - l2|. Which of the candidates belong to it is found by trying both sides
+        a thousandth of the reach away: voids and islands thinner than that may be missed.
 
     Raises:
         OptionError: another kind of arm.

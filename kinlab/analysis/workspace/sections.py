@@ -89,6 +89,8 @@ def workspace_section(robot: ArmLike, *, step: float = 0.05, seed: int = 0) -> W
     """Edges and internal boundaries of the tool's positions, in the half plane through axis 1.
 
     The limits of joint 1 are left out: the section holds wherever joint 1 can turn the arm there.
+    Where more than three joints behind it move the tool, the curves of joints at a limit are left
+    out, and with them edges (the evidence says so). That no curve is missing is found, not proved.
 
     Args:
         robot: three joints or more, the first revolute.

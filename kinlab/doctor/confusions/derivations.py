@@ -231,7 +231,7 @@ def christoffel_terms(case: Case) -> tuple[str, float, int] | None:
 
 def _other(word: str, share: float) -> str:
     if share == 0:
-        return _("leaves {what} out").format(what=word.lstrip("-"))
+        return _("leaves {term} out").format(term=word.lstrip("-"))
     if share == -1:
-        return _("has {what} with the opposite sign").format(what=word.lstrip("-"))
-    return _("has {what} {times:g} times").format(what=word.lstrip("-"), times=share)
+        return _("has {term} with the opposite sign").format(term=word.lstrip("-"))
+    return _("has {term} {times:g} times").format(term=word.lstrip("-"), times=share)

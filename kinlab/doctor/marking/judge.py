@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, reduce
 from typing import Any
 
 import numpy as np
@@ -312,7 +312,7 @@ def _places(
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
             look = _("{entry}: look at {pieces}").format(
-                entry=shown, pieces=_(" and ").join(pieces)
+                entry=shown, pieces=reduce(_paired, pieces) if pieces else ""
             )
             places.append(look if pieces else shown)
         formulas.append(equation(_named(entry), written, Marks("wrong", paths)))
@@ -321,6 +321,10 @@ def _places(
     if not best and found.worst_entry and len(file.formulas) > 1:
         places = [_named(found.worst_entry)]
     return places or [_("the formula as a whole")], tuple(formulas)
+
+
+def _paired(one: str, two: str) -> str:
+    return _("{first} and {last}").format(first=one, last=two)
 
 
 def _piece(node: Node) -> str:

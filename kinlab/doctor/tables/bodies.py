@@ -18,7 +18,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import Chain, frames, inverse
-from kinlab.doctor.tables.words import Cause, at_row, number
+from kinlab.doctor.tables.words import Cause, at_row, listed, number
 from kinlab.host.language import N_, _
 from kinlab.model.dh import DHLink, DHTable, with_links
 from kinlab.model.link import steiner
@@ -412,7 +412,7 @@ def _products(one: _Link) -> str:
             if one.alike(written, other):
                 if count == len(nonzero):
                     return _("inertia has the wrong sign of its products")
-                named = _(" and ").join(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
+                named = listed(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
                 return _("inertia has the wrong sign of {entries}").format(entries=named)
     return ""
 

@@ -178,8 +178,7 @@ def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
 def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: tuple[str, ...]) -> Cause:
     names = listed([COLUMNS[c] for c in columns])
     if extra:
-        frames = [FRAMES[which] for which in extra]
-        ends = _(" and ").join(_(frame) for frame in frames)
+        ends = listed(_(FRAMES[which]) for which in extra)
         sentence = _("columns {columns}, {frames} are {units}").format(
             columns=names, frames=ends, units=_(told)
         )

@@ -1,4 +1,4 @@
-"""The Pareto front of two goals: for each bound on the one, the best of the other.
+"""The Pareto front of two goals: for each bound on the one, the best found of the other.
 
 The bounds lie between the two ends of the front, so that a front that is not convex is found too
 (epsilon-constraint method: Haimes, Lasdon & Wismer 1971); a weighed sum would miss its hollows.
@@ -20,6 +20,7 @@ from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.design.goals import GOALS
 from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.synthesis import FiveBarDesign, Range, finish, read_problem, solve
+from kinlab.host.evidence import Evidence
 from kinlab.host.files import read_text, write_text
 from kinlab.host.introductions import Told
 from kinlab.tolerances import TOLERANCES
@@ -33,15 +34,25 @@ _CONDITION = 10.0
 
 @dataclass(frozen=True, repr=False)
 class DesignFront(Told):
-    """Designs of which none is better than another in both goals.
+    """Designs found of which none is better than another in both goals.
 
     Attributes:
         goals: the two names.
-        designs: from the best of the first goal to the best of the second.
+        designs: from the best found of the first goal to the best found of the second; each
+            carries its own evidence.
     """
 
     goals: tuple[str, str]
     designs: tuple[FiveBarDesign, ...]
+
+    @property
+    def evidence(self) -> Evidence:
+        """What each design rests on, and what the front as a whole does not show."""
+        return Evidence(
+            f"{len(self.designs)} searches, as each design's evidence says",
+            proved="no pose of the rectangle is worse than the bounds of a design",
+            found="that nothing lies beyond the front",
+        )
 
     def values(self, goal: str) -> list[float]:
         """Worst values of one goal along the front."""
@@ -73,7 +84,7 @@ def fivebar_front(
     progress: Callable[[int, int], None] | None = None,
     resume: str | Path | None = None,
 ) -> DesignFront:
-    """The Pareto front of two goals over a rectangle.
+    """Designs along the Pareto front of two goals over a rectangle, each by its own search.
 
     Args:
         workspace, l1, l2, e, height, limits, payload, mode, seed: as

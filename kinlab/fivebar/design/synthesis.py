@@ -18,6 +18,7 @@ from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told
 from kinlab.tolerances import TOLERANCES
 
@@ -42,6 +43,13 @@ class Proved:
     value: float
     bound: float
     unit: str
+
+
+def _is_proved(goal: Proved) -> bool:
+    """Whether value and bound are one, but for a thousandth."""
+    return bool(
+        abs(goal.bound - goal.value) <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -74,6 +82,19 @@ class FiveBarDesign(Told):
         return float(self.fivebar.l1[0]), float(self.fivebar.l2[0]), self.fivebar.e
 
     @property
+    def evidence(self) -> Evidence:
+        """The worst over the rectangle is proved; that no other lengths do better is found."""
+        unproved = [name for name, goal in self.goals.items() if not _is_proved(goal)]
+        proved = "no pose of the rectangle is worse than the bound of each goal"
+        if unproved:
+            proved += f" (far from what was found for {', '.join(unproved)})"
+        return Evidence(
+            f"lengths by differential evolution (seed {self.seed}) and SLSQP",
+            proved=proved,
+            found="that no other lengths do better",
+        )
+
+    @property
     def gap(self) -> float:
         """Largest of bound less value over the goals, in parts of the value."""
         return max(abs(g.bound - g.value) / max(abs(g.value), 1e-300) for g in self.goals.values())
@@ -86,9 +107,7 @@ class FiveBarDesign(Told):
             f"the bound is {goal.bound:.5g}: the design comes near a singularity; a limit such as "
             "condition=10 keeps it away"
             for name, goal in self.goals.items()
-            if not abs(goal.bound - goal.value)
-            <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
-            and (name in self.weights or name in self.limits)
+            if not _is_proved(goal) and (name in self.weights or name in self.limits)
         )
 
     @property
@@ -108,14 +127,22 @@ class FiveBarDesign(Told):
             f"over x {box.x_min:.6g} to {box.x_max:.6g}, y {box.y_min:.6g} to {box.y_max:.6g} m, "
             f"working mode ({self.mode[0]:+d}, {self.mode[1]:+d})",
             *(
-                f"  {GOALS[name].words}: {goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}"
+                f"  {GOALS[name].words}: {_bounded(goal)}"
                 for name, goal in self.goals.items()
+                if name in self.weights or name in self.limits or goal.value or goal.bound
             ),
         ]
         lines += self.remarks
         if self.at_limit:
             lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
         return "\n".join(lines)
+
+
+def _bounded(goal: Proved) -> str:
+    """A goal's value, and the bound that is proved of it."""
+    if not np.isfinite(goal.bound):
+        return f"{goal.value:.6g} {goal.unit}".rstrip() + ", found; no bound"
+    return f"{goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}".rstrip()
 
 
 def design_fivebar(
@@ -133,12 +160,12 @@ def design_fivebar(
     progress: Progress | None = None,
     resume: str | Path | None = None,
 ) -> FiveBarDesign:
-    """Finds l1, l2 and e of a symmetric five-bar that suit a rectangle best.
+    """Searches l1, l2 and e of a symmetric five-bar that suit a rectangle.
 
     The worst over the rectangle is what counts, and it is proved: a bound by branch and bound, no
-    maximum over grid points. The base pins lie on y = 0 at (±e, 0). Where the rectangle's height is
-    free, a larger machine is better conditioned without end: give the lengths a range, a limit of
-    size, or a mix of goals.
+    maximum over grid points. That no other lengths do better is found by search, not proved. The
+    base pins lie on y = 0 at (±e, 0). Where the rectangle's height is free, a larger machine is
+    better conditioned without end: give the lengths a range, a limit of size, or a mix of goals.
 
     Args:
         workspace: (x_min, x_max, y_min, y_max), m.

@@ -116,6 +116,12 @@ class IKBranchesBatch:
     def __len__(self) -> int:
         return len(self.counts)
 
+    @property
+    def evidence(self) -> str:
+        """How many poses have all their branches; what that rests on stands at each pose."""
+        whole = int(np.sum(self.complete))
+        return f"{whole} of {len(self)} poses with all their solutions, by {self.method}"
+
     def __getitem__(self, row: int) -> IKBranches:
         answer: IKBranches = self._one(range(len(self.counts))[row])
         return answer
@@ -148,15 +154,16 @@ def ik_branches(
     samples: int = SAMPLES,
     threads: int | None = None,
 ) -> Any:
-    """All joint positions at which the tool is at T, whether within limits or not.
+    """The joint positions at which the tool is at T, whether within limits or not.
 
+    ``complete`` says whether they are all there are, and ``evidence`` what that rests on.
     Six joints, of any kind and order: the whole pose. Arms whose last (or first) three axes meet
     and arms with three parallel axes are solved in closed form, all others by following the 16
     or fewer complex solutions of a generic pose. Three joints: the position (planar arms: also
     the angle in the plane, two joints the point in it). Parallel axes with a slide (SCARA): the
     position and the angle. Five joints: the position and the direction of the tool's z axis,
     where the arm can hold these. Any other arm of fewer joints: the whole pose, which it meets
-    only on its own way. Seven joints: with one ``given``, all solutions there; otherwise a sample.
+    only on its own way. Seven joints: with one ``given``, the solutions there; otherwise a sample.
 
     Args:
         robot: the robot.

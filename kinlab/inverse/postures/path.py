@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, number, seed_of
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import NameUnknownError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, brief, counted, numbered
 from kinlab.inverse.postures.posture_change import PostureChange, posture_changes
 from kinlab.inverse.request import read_guess, read_targets
@@ -93,6 +94,19 @@ class IKPath(Rows):
 
     def __len__(self) -> int:
         return len(self.q)
+
+    @property
+    def evidence(self) -> Evidence:
+        """What is measured at the poses, and what is not looked at between them."""
+        met = int(np.sum(self.success))
+        return Evidence(
+            f"{len(self)} poses, each from the answer before",
+            met,
+            len(self),
+            "every pose marked as met is met at its q, within tolerance and limits",
+            "that jumps and singularities stand where they are listed: nothing is looked at "
+            "between two poses",
+        )
 
 
 def ik_path(

@@ -30,7 +30,7 @@ from kinlab.errors import KinlabError, OptionError
 _TRIES = 50
 """How many ports after the wanted one are tried."""
 
-_DEAF = 8 << 20
+DEAF = 8 << 20
 """Bytes that may wait for a page; more is not sent, and the page loads itself anew later."""
 
 _HOST = re.compile(r"(?:\[([0-9a-f:.]+)\]|([a-z0-9._-]+))(?::[0-9]{1,5})?")
@@ -68,7 +68,7 @@ class LiveServer:
         shown = f"[{host}]" if ":" in host else host
         self.url = f"http://{shown}:{self.port}/"
         self._page = page
-        self._open: set[_Socket] = set()
+        self._open: set[PageSocket] = set()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._stop: asyncio.Event | None = None
         self._thread: threading.Thread | None = None
@@ -97,7 +97,7 @@ class LiveServer:
         web = tornado.web.Application(
             [
                 ("/", _Html, {"page": self._page, "server": self}),
-                ("/socket", _Socket, {"server": self}),
+                ("/socket", PageSocket, {"server": self}),
             ]
         )
         server = tornado.httpserver.HTTPServer(web)
@@ -123,7 +123,7 @@ class LiveServer:
         for page in list(self._open):
             page.tell(data)
 
-    def connected(self, page: _Socket) -> None:
+    def connected(self, page: PageSocket) -> None:
         """A page has opened: it learns the revision, and reloads if it shows an older one."""
         self._open.add(page)
         page.tell(json.dumps({"revision": str(self._page.revision)}))
@@ -143,7 +143,7 @@ class LiveServer:
             return not _loopback(self._host) and name == socket.gethostname().lower()
         return asked.is_loopback or not _loopback(self._host)
 
-    def disconnected(self, page: _Socket) -> None:
+    def disconnected(self, page: PageSocket) -> None:
         """A page has been closed."""
         self._open.discard(page)
 
@@ -168,7 +168,7 @@ class _Html(tornado.web.RequestHandler):
         self.write(self.page.html(live=str(self.page.revision)))
 
 
-class _Socket(tornado.websocket.WebSocketHandler):
+class PageSocket(tornado.websocket.WebSocketHandler):
     def initialize(self, server: LiveServer) -> None:
         self.server = server
         self._waiting, self._stale = 0, False
@@ -179,7 +179,7 @@ class _Socket(tornado.websocket.WebSocketHandler):
 
     def tell(self, message: str | bytes) -> None:
         """Sends a message; a page that has gone or takes nothing costs neither error nor memory."""
-        if self._waiting > _DEAF:
+        if self._waiting > DEAF:
             self._stale = True
             return
         try:
