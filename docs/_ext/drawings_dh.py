@@ -222,6 +222,26 @@ def planar(table: kl.DHTable) -> bool:
     return all(link.joint == "revolute" and abs(link.alpha) < 1e-9 for link in table.links)
 
 
+def dh_steps(table: kl.DHTable, frames: list[Array]) -> list[tuple[Array, Array, str]]:
+    """From frame to frame along x and along z, as each row of the table goes.
+
+    Args:
+        table: the table.
+        frames: frames 0 to n in the world, (4, 4) each.
+
+    Returns:
+        Two steps for each row: start and end, (3,), and the colour of the axis it follows.
+    """
+    steps = []
+    for link, start, stop in zip(table.links, frames, frames[1:], strict=False):
+        if str(table.convention) == "modified":  # a along x of the frame before, d along z
+            corner, colours = start[:3, 3] + link.a * start[:3, 0], (RED, BLUE)
+        else:  # d along z of the frame before, a along the frame's own x
+            corner, colours = stop[:3, 3] - link.a * stop[:3, 0], (BLUE, RED)
+        steps += [(start[:3, 3], corner, colours[0]), (corner, stop[:3, 3], colours[1])]
+    return steps
+
+
 def arm(table: kl.DHTable, q: Array, *, frames: bool = True, most: float = 470.0) -> str:
     """An arm from its DH table: what lies along x of a row, what lies along z, joints and frames.
 
@@ -234,20 +254,10 @@ def arm(table: kl.DHTable, q: Array, *, frames: bool = True, most: float = 470.0
     Returns:
         An SVG element.
     """
-    modified = str(table.convention) == "modified"
     before = [np.asarray(table.base), *table.frames(q)]
     tool = before[-1] @ np.asarray(table.tool)
-    corners, segments = [before[0][:3, 3]], []
-    for i, link in enumerate(table.links):
-        start, stop = before[i], before[i + 1]
-        # the corner between the step along z and the step along x
-        if modified:
-            corner = start[:3, 3] + link.a * start[:3, 0]
-            segments += [(start[:3, 3], corner, RED), (corner, stop[:3, 3], BLUE)]
-        else:
-            corner = stop[:3, 3] - link.a * stop[:3, 0]
-            segments += [(start[:3, 3], corner, BLUE), (corner, stop[:3, 3], RED)]
-        corners += [corner, stop[:3, 3]]
+    segments = dh_steps(table, before)
+    corners = [before[0][:3, 3], *(end for _, end, _ in segments)]
     has_tool = not np.allclose(np.asarray(table.tool), np.eye(4))
     corners.append(tool[:3, 3])
     points = np.array(corners)
@@ -271,7 +281,7 @@ def arm(table: kl.DHTable, q: Array, *, frames: bool = True, most: float = 470.0
     if has_tool:
         picture.line(before[-1][:3, 3], tool[:3, 3], LINK, 7.0)
         picture.keep_clear(picture.at(before[-1][:3, 3]), picture.at(tool[:3, 3]), 5.0)
-    _joints(picture, table, before, modified)
+    _joints(picture, table, before)
     _ground(picture, before[0])
     picture.dot(tool[:3, 3], 5.0, TOOL, TOOL, 0.02 * size)
     if frames:
@@ -279,10 +289,10 @@ def arm(table: kl.DHTable, q: Array, *, frames: bool = True, most: float = 470.0
     return picture.svg(f"{table.name}: the arm with its DH frames" if frames else table.name)
 
 
-def _joints(picture: Picture, table: kl.DHTable, before: list[Array], modified: bool) -> None:
+def _joints(picture: Picture, table: kl.DHTable, before: list[Array]) -> None:
     seen: list[Array] = []
     for i, link in enumerate(table.links):
-        pose = before[i + 1] if modified else before[i]
+        pose = before[i + 1] if str(table.convention) == "modified" else before[i]
         centre, axis = pose[:3, 3], pose[:3, 2]
         same = sum(bool(np.allclose(centre, one, atol=1e-6)) for one in seen)
         seen.append(centre)
@@ -408,7 +418,7 @@ def _letters(
         where = side if not together else np.array([0.9, 0.3]) * (1 if i == 0 else -1)
         picture.label(pin, where, axis_word("A", [i + 1]), 2, ink)
         picture.label(elbow, elbow - end, axis_word("B", [i + 1]), 2, ink)
-        for start, stop, k in ((pin, elbow, 1), (elbow, end, "l₂")):
+        for start, stop, k in ((pin, elbow, 1), (elbow, end, 2)):
             way = np.array([-(stop - start)[1], (stop - start)[0]])
             way = way if way @ side > 0 else -way
             picture.label(0.5 * (start + stop), way, axis_word("l", [k]), 2, colours[i])

@@ -256,7 +256,7 @@ def _arm_workspace(robot: kl.Robot, folder: Path) -> str:
     labels = {text.get_text() for legend in axes.figure.legends for text in legend.get_texts()}
     if "boundary" in labels:
         words += " The dashed line is the boundary, exact arcs (`kl.planar_boundary`)."
-    if "edge" in labels:
+    if labels & {"edge", "inside: solutions change", "with a joint at a limit"}:
         words += (
             " Black: the edge of the section through the first axis; red: curves inside, across "
             "which the number of solutions for the position changes; dashed: with a joint at a "

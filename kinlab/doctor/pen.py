@@ -655,10 +655,10 @@ def brief(text: str) -> str:
     """A piece of a formula that is short enough for a sentence: its beginning and its end."""
     if len(text) <= _LONGEST:
         return text
-    ends = [m.start() for m in re.finditer(r" [+-] ", text)]
+    ends = [m.start() for m in re.finditer(r" [+-] |\*(?!\*)", text)]
     first = max((k for k in ends if k <= _LONGEST // 2), default=_LONGEST // 2)
     last = min((k for k in ends if k >= len(text) - _LONGEST // 3), default=len(text) - 12)
-    return f"{text[:first]} ...{text[last:]}"
+    return f"{text[:first]} ... {text[last:].strip()}"
 
 
 def _words(text: str) -> list[str]:
