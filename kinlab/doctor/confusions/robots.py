@@ -73,7 +73,7 @@ def _column_readings(table: DHTable) -> Iterator[Confusion]:
     for column, words in (("theta", "theta offsets"), ("d", "d offsets")):
         changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
         if len(changed) > 1:
-            yield _table("offset", f"forgets all {words}", _emptied(column))
+            yield _table("offset", f"leaves all {words} out", _emptied(column))
     if any(link.alpha for link in table.links):
         yield _table(
             "alpha sign",
@@ -93,7 +93,7 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
         return
     kind = "offset" if column in ("theta", "d") else "table entry"
     yield _table(
-        kind, f"forgets {column} of {place}", _linked(i, **{column: 0.0}), cost=1.2, place=place
+        kind, f"leaves {column} of {place} out", _linked(i, **{column: 0.0}), cost=1.2, place=place
     )
     yield _table(
         f"{column} sign",
@@ -192,7 +192,7 @@ def _double_centre(old: Any) -> tuple[float, Array, Array]:
 _BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
     (
         "inertia point",
-        "takes the inertia of {} about the joint and adds m c² again",
+        "counts m c² of {} twice: takes its inertia about the joint and adds m c² again",
         _about_joint,
         1.0,
     ),
