@@ -35,6 +35,8 @@ MEANT = {
     "R": "the rotation R", "I": "the inertia tensor", "m": "the mass m", "Ia": "the rotor inertia",
     "T": "the transform T", "A": "the matrix A", "g": "gravity", "q": "q", "qd": "the velocity qd",
     "qdd": "the acceleration qdd", "R_": "the rotation R",
+    "crank": "the crank's direction u", "rod": "the rod's direction w",
+    "l1": "the crank's length l1", "l2": "the rod's length l2",
     "Ib": "the inertia tensor", "cb": "the centre of mass P_C", "o_": "the frame's origin",
 }  # fmt: skip
 """What names stand for."""
@@ -286,7 +288,8 @@ def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
         return
     plain, turned = spelt(inner.right), f"{spelt(last)} {spelt(inner.right)} {spelt(inner.left)}"
     right = f"{spelt(inner.left)} {plain} {spelt(last)}"
-    does = f"takes {plain} for {right} (the inertia tensor is not rotated into the base axes)"
+    does = "takes the inertia tensors in link axes as if in base axes (not rotated: "
+    does += f"{plain} for {right})"
     yield step("tensor not rotated", does, 1.0, (node, inner.right))
     does = f"has {turned} for {right} (the inertia tensor is rotated the wrong way)"
     new = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner.right), ast.MatMult(), inner.left)
