@@ -149,6 +149,11 @@ def _slack(array: Array) -> float:
     return TOLERANCES.tie * float(np.max(np.abs(array), where=np.isfinite(array), initial=0.0))
 
 
+def between(x: ArrayLike, low: ArrayLike, high: ArrayLike, slack: ArrayLike = 0.0) -> Any:
+    """Whether each number lies between its bounds, widened by ``slack``; shaped as they are."""
+    return (np.subtract(low, slack) <= x) & (x <= np.add(high, slack))
+
+
 def set_fields(record: object, **values: Any) -> None:
     """Sets fields of a frozen dataclass while it is being made: for ``__post_init__`` only.
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds the wheel and the sdist, installs each into a clean environment outside the tree, with
+# Builds the wheel and the sdist, checks what an index would show of them, installs each into a clean environment outside the tree, with
 # what it declares and nothing else, and runs four commands from there.
 #
 # PYTHON names the interpreter that builds and makes the environment (default: .venv/bin/python;
@@ -15,6 +15,7 @@ unset PYTHONPATH
 cd "$root"
 "$python" -m hatchling build -d "$work/dist" >"$work/build.log" 2>&1 || { cat "$work/build.log"; exit 1; }
 ls "$work/dist"
+"$python" -m twine check --strict "$work"/dist/*
 cd "$work"
 "$python" -m venv "$work/clean"
 clean="$work/clean/bin"

@@ -22,7 +22,7 @@ from playwright.sync_api import sync_playwright
 import kinlab as kl
 from kinlab.host.files import write_bytes
 from kinlab.viewer import motions
-from kinlab.viewer.page import Page
+from kinlab.viewer.page.page import Page
 
 FLAGS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
 SIZE = {"width": 1200, "height": 700}

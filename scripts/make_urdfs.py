@@ -6,8 +6,8 @@ no difference. Run it after changing a table: ``python scripts/make_urdfs.py``.
 
 from __future__ import annotations
 
+import kinlab as kl
 from kinlab.host.files import write_text
-from kinlab.model.dh import DHTable
 from kinlab.model.library import robots_dir, shipped
 from kinlab.model.urdf_write import written
 
@@ -18,7 +18,7 @@ def main() -> None:
     folder.mkdir(exist_ok=True)
     for entry in shipped().values():
         file = folder / f"{entry.name}.urdf"
-        write_text(file, written(DHTable.load(entry.path)))
+        write_text(file, written(kl.DHTable.load(entry.path)))
         print(f"wrote {file.name}")
 
 

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+
 import hypothesis
 import pytest
+
+os.environ["KINLAB_LANG"] = "en"  # ours and that of all we start, whatever the locale
 
 hypothesis.settings.register_profile(
     "kinlab",

@@ -48,8 +48,10 @@ from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
 from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.host.introductions import Answer, Introduction, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
+from kinlab.tolerances import TOLERANCES
 
 
 def yoshikawa(sigma: Array) -> Array:
@@ -111,7 +113,7 @@ def singular_values(jacobians: ArrayLike) -> Array:
 
 
 def condition_number(sigma: Array) -> Array:
-    """Greatest over least singular value; infinity at a singularity, on purpose."""
+    """Greatest over least singular value; infinity where that is 0, on purpose."""
     ratio = inverse_condition(sigma)
     large = ratio >= np.finfo(np.float64).tiny  # of anything less there is no inverse
     return np.divide(1.0, ratio, out=np.full_like(ratio, np.inf), where=large)
@@ -138,7 +140,8 @@ def manipulability(
             leaves the SI numbers, and then a mixed task weighs 1 m like 1 rad.
 
     Returns:
-        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities.
+        A float, or (N,), each with the attribute ``task``. Finite, and 0 at singularities up to
+        rounding (of which ``"isotropy"`` takes the third root in a space of six coordinates: 1e-6).
 
     Raises:
         StateError: q of the wrong shape or type, or not finite.
@@ -203,8 +206,8 @@ def weighted(matrix: Array, mass: Array) -> Array:
     return half
 
 
-@dataclass(frozen=True)
-class Dexterity:
+@dataclass(frozen=True, repr=False)
+class Dexterity(Answer):
     """Every measure at one q, with the task and the length they hold for.
 
     Attributes:
@@ -212,7 +215,8 @@ class Dexterity:
         length: characteristic length in metres, ``None`` where the task needs none.
         sigma: singular values, descending, (m,).
         yoshikawa, inverse_condition, min_singular, isotropy: see the module.
-        condition: greatest over least singular value; infinity at a singularity.
+        condition: greatest over least singular value; infinity where that is 0, and above 1e10
+            where rounding leaves something of it.
         rank: number of singular values above 1e-10 of the greatest.
     """
 
@@ -226,6 +230,19 @@ class Dexterity:
     isotropy: float
     condition: float
     rank: int
+
+    def introduction(self) -> Introduction:
+        """How near the arm is to a singularity, and every measure."""
+        whole = self.rank == len(self.sigma)
+        state = f"condition number {self.condition:.6g}" if whole else f"singular, rank {self.rank}"
+        return Introduction(
+            f"dexterity, {_of_task(self.task, self.suggested, self.length)}: {state}",
+            (
+                f"singular values {vector(self.sigma)}",
+                f"manipulability (Yoshikawa) {self.yoshikawa:.5g}, inverse condition "
+                f"{self.inverse_condition:.5g}, isotropy index {self.isotropy:.5g}",
+            ),
+        )
 
 
 def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 1.0) -> Dexterity:
@@ -258,13 +275,18 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
     )
 
 
-SINGULAR = 1e-10
-"""sigma_min / sigma_max at and below which a configuration counts as singular."""
-
-
 def regular(sigma: Array) -> Any:
     """Which singular values, (m,) descending, count as more than zero: their inverses exist."""
-    return sigma > max(SINGULAR * float(sigma[0]), float(np.finfo(np.float64).tiny))
+    return sigma > max(TOLERANCES.singular * float(sigma[0]), float(np.finfo(np.float64).tiny))
+
+
+def counting(sigma: Any, share: float = TOLERANCES.singular) -> Any:
+    """Which singular values (..., m), descending, of a J in the arm's own length unit count.
+
+    Those above a share of the greatest; of a J that is rounding altogether, none.
+    """
+    largest = np.where(sigma[..., :1] > TOLERANCES.singular, sigma[..., :1], np.inf)
+    return sigma > share * largest
 
 
 OPTIMAL = "optimal"
@@ -280,7 +302,7 @@ class CharacteristicLength:
 
     Attributes:
         length: metres, or ``None`` where the condition number depends on no length.
-        condition: condition number of J at that length; infinity at a singularity.
+        condition: condition number of J at that length; infinity where J has a singular value 0.
         task: name of the task.
         how: ``given``, ``optimal`` or ``none needed``.
     """
@@ -295,6 +317,9 @@ def characteristic_length(
     robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
 ) -> CharacteristicLength:
     """The length that minimises the condition number at q, or the effect of a given one.
+
+    It is looked for from 1/1000 to 1000 times the arm's own length unit. There is one minimum:
+    log kappa is convex in log L (norms of D1 J D2 and its inverse, by Hadamard's three lines).
 
     Args:
         robot: the robot.
@@ -362,8 +387,8 @@ def _condition(space: TaskSpace, q: Array, length: float) -> float:
 ELLIPSOIDS = ("velocity", "force", "dynamic")
 
 
-@dataclass(frozen=True)
-class Ellipsoid:
+@dataclass(frozen=True, repr=False)
+class Ellipsoid(Answer):
     """An ellipsoid in task coordinates.
 
     Attributes:
@@ -381,6 +406,27 @@ class Ellipsoid:
     length: float | None
     axes: Array
     lengths: Array
+
+    def introduction(self) -> Introduction:
+        """Its semi-axes, the longest first, each with its direction."""
+        flat = bool(self.lengths[-1] == 0.0)
+        state = "flat: the arm is singular here" if flat else f"semi-axes {vector(self.lengths)}"
+        rows = tuple(
+            (f"{size:.5g}", vector(axis, 4))
+            for size, axis in zip(self.lengths, self.axes.T, strict=True)
+        )
+        return Introduction(
+            f"{self.kind} ellipsoid, {_of_task(self.task, self.suggested, self.length)}: {state}",
+            (),
+            ("semi-axis", "direction"),
+            rows,
+        )
+
+
+def _of_task(task: str, suggested: bool, length: float | None) -> str:
+    """The task of a measure in words, with the length that mixes metres and radians."""
+    chosen = " (chosen for this arm)" if suggested else ""
+    return f"task {task}{chosen}" + ("" if length is None else f", length {length:.6g} m")
 
 
 def ellipsoid(

@@ -15,13 +15,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.metrics import SINGULAR, regular
+from kinlab.analysis.metrics import regular
 from kinlab.analysis.structure.task_space import read_task
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.model.library import ArmLike, as_robot
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ def redundancy(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Redundancy:
         _why(space.m, robot.n, rank),
         Evidence(
             "the singular values of J at this q; nothing else",
-            proved=f"rank {rank}: singular values above {SINGULAR:g} of the largest",
+            proved=f"rank {rank}: singular values above {TOLERANCES.singular:g} of the largest",
         ),
     )
 

@@ -3,8 +3,6 @@
 Damping in proportion to the residual (Fan & Yuan, Computing 74, 2005) keeps the convergence
 quadratic on solutions that are not isolated, as curves and surfaces of singularities are. Steps
 are the shortest ones, by singular values.
-
-How J changes with the joints.
 """
 
 from __future__ import annotations

@@ -22,6 +22,7 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
 from kinlab.host.introductions import Introduction, Rows, numbered
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 
@@ -61,7 +62,7 @@ class Comparison(Rows):
 
     @property
     def agrees(self) -> bool:
-        """Whether the two are the same formula, to rounding."""
+        """Whether the two answer alike, to rounding, at every state that was drawn."""
         return self.max_error <= TOLERANCES.formula_agrees
 
     def columns(self) -> dict[str, Any]:
@@ -73,18 +74,45 @@ class Comparison(Rows):
 
     def introduction(self) -> Introduction:
         """Whether they are the same formula, and where they are furthest apart."""
-        verdict = "agrees" if self.agrees else "DIFFERS"
-        text = (
-            f"{self.function} {verdict} with {self.quantity} of {self.robot}: largest relative "
-            f"error {self.max_error:.2g} over {self.samples} states"
+        if self.agrees:
+            told = _(
+                "{function} agrees with {quantity} of {robot}: largest relative error {error} over "
+                "{samples} states"
+            )
+        else:
+            told = _(
+                "{function} DIFFERS with {quantity} of {robot}: largest relative error {error} "
+                "over {samples} states"
+            )
+        text = told.format(
+            function=self.function,
+            quantity=self.quantity,
+            robot=self.robot,
+            error=f"{self.max_error:.2g}",
+            samples=self.samples,
         )
         if self.agrees:
             return Introduction(text, mood="good")
         k = self.worst
         with np.printoptions(precision=6, suppress=True, linewidth=100):
             state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
-            hand, engine = f"hand   {self.hand[k]}", f"engine {self.engine[k]}"
-        return Introduction(text, (f"worst at {state}", hand, engine), mood="bad")
+            worst = _("worst at {state}").format(state=state)
+            hand = _("hand   {values}").format(values=self.hand[k])
+            engine = _("engine {values}").format(values=self.engine[k])
+        return Introduction(text, (worst, hand, engine), mood="bad")
+
+
+def need_function(function: object) -> None:
+    """Refuses what is no function, formulas as text above all, with where they go.
+
+    Raises:
+        OptionError: it cannot be called.
+    """
+    if not callable(function):
+        raise OptionError(
+            f"function: {type(function).__name__} cannot be called; a formula as text goes into a "
+            'file (robot = "planar2r", below [formulas] tau2 = "..."), read by kinlab check FILE'
+        )
 
 
 def compare(
@@ -111,8 +139,7 @@ def compare(
     """
     found = find_quantity(quantity)
     mechanism = found.domain.load(robot)
-    if not callable(function):
-        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    need_function(function)
     return compare_stacked(
         mechanism, found, state_by_state(function), function_name(function), None, samples, seed
     )

@@ -6,6 +6,7 @@ the reports show them.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,16 +14,36 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.host.introductions import Answer, Introduction
+from kinlab.host.language import N_, _, speaking
 
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""
 
-_FORMS = {"": "", "rounded": ", with rounded numbers", "unusual": ", written unusually"}
-_GRADES = {
-    "": "right",
-    "rounded": "right with rounded numbers",
-    "unusual": "right but written unusually",
+_VERDICTS = {
+    "": N_("agrees"),
+    "rounded": N_("agrees, with rounded numbers"),
+    "unusual": N_("agrees, written unusually"),
 }
+_GRADES = {
+    "": N_("right"),
+    "rounded": N_("right with rounded numbers"),
+    "unusual": N_("right but written unusually"),
+}
+ENTRY_LETTERS = {
+    "inverse_dynamics": "tau",
+    "gravity_torques": "g",
+    "coriolis_torques": "c",
+    "mass_matrix": "M",
+    "coriolis_matrix": "C",
+    "jacobian": "J",
+    "planar_jacobian": "J",
+    "fk": "T",
+    "kinetic_energy": "T",
+    "potential_energy": "V",
+}
+"""What a quantity is called where its entries have no other name."""
+
+_ENTRY = re.compile(r"(\w+)\[([0-8](?:,[0-8])*)\]")
 _OTHERS = 3
 """Causes that are told beside the first."""
 
@@ -108,8 +129,10 @@ class Diagnosis(Answer):
         """What is explained, the worst entry and its state, where the cause is unknown."""
         if self.agrees or self.causes:
             return ()
-        worst = f"Worst entry {self.worst_entry} at {self._at_worst(200)}"
-        return (*(f"Explained: {text}" for text in self.partial), worst)
+        worst = _("Worst entry {entry} at {state}").format(
+            entry=self._worst, state=self._at_worst(200)
+        )
+        return (*(_("Explained: {slip}").format(slip=text) for text in self.partial), worst)
 
     @property
     def verdict(self) -> str:
@@ -117,52 +140,88 @@ class Diagnosis(Answer):
         it), ``"differs"`` or ``"differs, cause unknown"``.
         """
         if self.agrees:
-            return f"agrees{_FORMS[self.form]}"
-        return "differs" if self.causes else "differs, cause unknown"
+            return _VERDICTS[self.form]
+        return N_("differs") if self.causes else N_("differs, cause unknown")
 
     @property
     def grade(self) -> str:
         """As a teacher says it: ``"right"``, ``"right with rounded numbers"``, ``"right but written
         unusually"`` or ``"wrong"``.
         """
-        return _GRADES[self.form] if self.agrees else "wrong"
+        return _GRADES[self.form] if self.agrees else N_("wrong")
 
     @property
     def sentence(self) -> str:
         """The diagnosis in one sentence."""
         if self.agrees:
-            said = f"{self.function} is {self.quantity} of {self.robot}"
-            return "; ".join((said, *self.remarks))
+            said = _("{function} is {quantity} of {robot}").format(**self._names)
+            return _("; ").join((said, *self.remarks))
         if self.causes:
             return self.causes[0].sentence
-        return f"{self.function} is not {self.quantity} of {self.robot}; no known slip explains it"
+        return _("{function} is not {quantity} of {robot}; no known slip explains it").format(
+            **self._names
+        )
+
+    @property
+    def _worst(self) -> str:
+        """The worst entry; by the writer's name, where only one is judged."""
+        alone = self.worst_entry == self.quantity and "[" in self.quantity
+        return self.function if alone else shown_entry(self.worst_entry)
+
+    @property
+    def _names(self) -> dict[str, str]:
+        """What was compared, as people say it: entries counted from 1."""
+        found = _ENTRY.fullmatch(self.quantity)
+        quantity = self.quantity
+        if found is not None:
+            place = ", ".join(str(int(k) + 1) for k in found[2].split(","))
+            place = f"({place})" if "," in place else place
+            quantity = _("entry {place} of {quantity}").format(place=place, quantity=found[1])
+        return {"function": self.function, "quantity": quantity, "robot": self.robot}
 
     def introduction(self) -> Introduction:
         """The verdict, what is wrong, and what is right."""
-        verdict = f"{self.function}: {self.verdict} ({self.quantity} of {self.robot})"
+        verdict = _("{function}: {verdict} ({quantity} of {robot})").format(
+            verdict=_(self.verdict), **self._names
+        )
         if self.agrees:
-            text = f"{verdict}, largest relative error {self.error_before:.2g}"
+            text = _("{verdict}, largest relative error {error:.2g}").format(
+                verdict=verdict, error=self.error_before
+            )
             return Introduction(text, tuple(self.remarks), mood="good")
         if self.causes:
             best = self.causes[0]
-            errors = f"before {self.error_before:.3g}, after {best.error_after:.2g}"
-            lines = [best.sentence, f"relative error {errors}"]
-            lines += [f"correct: {name} = {text}" for name, text in best.corrected.items()]
-            lines += [f"or: {text}" for text in self.others]
+            errors = _("relative error before {before:.3g}, after {after:.2g}").format(
+                before=self.error_before, after=best.error_after
+            )
+            lines = [best.sentence, errors]
+            lines += [
+                _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}")
+                for name, text in best.corrected.items()
+            ]
+            lines += [_("or: {slip}").format(slip=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
-        lines = [f"explained: {text}" for text in self.partial]
-        error = f"relative error {self.error_before:.3g}"
-        lines.append(f"{error}; worst entry {self.worst_entry} at {self._at_worst(100)}")
+        lines = [_("explained: {slip}").format(slip=text) for text in self.partial]
+        lines.append(
+            _("relative error {error:.3g}; worst entry {entry} at {state}").format(
+                error=self.error_before,
+                entry=self._worst,
+                state=self._at_worst(100),
+            )
+        )
         return Introduction(verdict, tuple(lines), mood="unsure")
 
     def _at_worst(self, width: int) -> str:
         """The worst state and both answers there."""
         with np.printoptions(precision=6, suppress=True, linewidth=width):
             state = ", ".join(f"{name} = {value}" for name, value in self.worst_state.items())
-            return f"{state}: hand {self.hand}, engine {self.engine}"
+            return _("{state}: hand {hand}, engine {engine}").format(
+                state=state, hand=self.hand, engine=self.engine
+            )
 
+    @speaking("en")
     def as_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
+        """Plain values for JSON, in English, whatever language is spoken."""
         return {
             "quantity": self.quantity,
             "robot": self.robot,
@@ -186,6 +245,19 @@ class Diagnosis(Answer):
             "worst_entry": self.worst_entry,
             "worst_state": {name: np.ravel(v).tolist() for name, v in self.worst_state.items()},
         }
+
+
+def shown_entry(label: str) -> str:
+    """An entry as people write it, counted from 1: ``tau1`` for ``inverse_dynamics[0]``.
+
+    Without a letter ``christoffel(1,2,3)``; what is no single entry stays as it is.
+    """
+    found = _ENTRY.fullmatch(label)
+    if found is None:
+        return label
+    places = [str(int(k) + 1) for k in found[2].split(",")]
+    letter = ENTRY_LETTERS.get(found[1])
+    return letter + "".join(places) if letter else f"{found[1]}({','.join(places)})"
 
 
 def _finite(value: float) -> float | None:

@@ -25,21 +25,25 @@ One file per group of commands; a new command is a new file and one line in ``_G
 
 from __future__ import annotations
 
+import functools
+import inspect
 import io
 import os
 import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import FrameType
-from typing import Any
+from typing import Annotated, Any, get_type_hints
 
 import typer
+from typer.core import TyperGroup
 
 from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
 from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError, KinlabWarning
+from kinlab.host.language import LANGUAGES, all_speaking
 
 _GROUPS = (
     robots,
@@ -59,7 +63,69 @@ _OLDER = {"tip": "tool"}
 _IMPORTING = "<frozen importlib._bootstrap>"
 """The file of the frames in which Python imports a module."""
 
+LANG = Annotated[
+    str | None,
+    typer.Option(
+        "--lang",
+        help=f"Language of what is said ({', '.join(LANGUAGES)}); otherwise KINLAB_LANG, or the "
+        "locale.",
+        show_default=False,
+    ),
+]
+
+
+class _Commands(TyperGroup):
+    """The commands; the language is spoken before any of them is read."""
+
+    def main(self, args: Sequence[str] | None = None, *more: Any, **given: Any) -> Any:
+        """Runs a command in the language that its words ask for."""
+        words = list(sys.argv[1:] if args is None else args)
+        with all_speaking(_asked(words)):
+            return super().main(words, *more, **given)
+
+
+def _asked(words: Sequence[str]) -> str | None:
+    """The language that the words of a command line ask for; JSON is English everywhere."""
+    if "--json" in words:
+        return "en"
+    for k, word in enumerate(words):
+        option, _, name = word.partition("=")
+        if option == "--lang":
+            return name or next(iter(words[k + 1 : k + 2]), None)
+    return None
+
+
+def _with_language(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Gives a command the option ``--lang``, which is obeyed before the command is called."""
+
+    @functools.wraps(command)
+    def called(*args: Any, lang: str | None = None, **given: Any) -> Any:
+        del lang
+        return command(*args, **given)
+
+    signature = inspect.signature(command)
+    # read in the command's own module, as the words of its file mean it
+    hints = get_type_hints(command, include_extras=True)
+    option = inspect.Parameter("lang", inspect.Parameter.KEYWORD_ONLY, default=None)
+    given = [one.replace(annotation=hints[name]) for name, one in signature.parameters.items()]
+    given.append(option.replace(annotation=LANG))
+    called.__signature__ = signature.replace(parameters=given)  # type: ignore[attr-defined]
+    called.__annotations__ = {**hints, "lang": LANG}
+    return called
+
+
+def _offer_languages(group: typer.Typer) -> None:
+    """Gives every command ``--lang``."""
+    for info in group.registered_commands:
+        assert info.callback is not None
+        info.callback = _with_language(info.callback)
+    for inside in group.registered_groups:
+        assert inside.typer_instance is not None
+        _offer_languages(inside.typer_instance)
+
+
 app = typer.Typer(
+    cls=_Commands,
     help="DH tables become URDF, load into Pinocchio, and stand beside your formulas.",
     no_args_is_help=True,
     add_completion=False,
@@ -72,12 +138,14 @@ app = typer.Typer(
 
 
 @app.callback()
-def _root() -> None:
+def _root(lang: LANG = None) -> None:
     """Keeps commands named, even where there is only one."""
+    del lang  # spoken already
 
 
 for _group in _GROUPS:
     _group.register(app)
+_offer_languages(app)
 
 
 def main() -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import typer
 
+from kinlab.host.language import _
+
 
 def check_against(
     tables: Sequence[str],
@@ -40,7 +42,7 @@ def check_against(
             typer.echo(("\n" if k else "") + str(one))
     for file in report:
         write_table_report(file, found)
-        typer.echo(f"wrote {file}", err=json)
+        typer.echo(_("wrote {file}").format(file=file), err=json)
     if not all(one.agrees for one in found):
         raise typer.Exit(1)
 

@@ -50,8 +50,8 @@ def singular(
     output: PICTURE = None,
 ) -> None:
     """Singular configurations by family, det J in factors, and a picture of the singular curves."""
-    from kinlab.analysis.nearest import nearest_singularity
-    from kinlab.analysis.singularity import find_singularities
+    from kinlab.analysis.singularities.nearest import nearest_singularity
+    from kinlab.analysis.singularities.singularity import find_singularities
     from kinlab.model.library import load
 
     robot, console = load(name, tool), screen()
@@ -93,7 +93,7 @@ def isotropy(
     output: PICTURE = None,
 ) -> None:
     """Isotropic configurations, or the best condition number; with --free, isotropic designs."""
-    from kinlab.analysis.isotropy import find_isotropic
+    from kinlab.analysis.isotropy.configurations import find_isotropic
     from kinlab.model.library import load
 
     robot, console = load(name, tool), screen()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from kinlab.analysis.isotropy import IsotropySearch
+    from kinlab.analysis.isotropy.configurations import IsotropySearch
     from kinlab.inverse.postures.solution_map import SolutionMap
     from kinlab.model.robot import Robot
     from kinlab.sweeps.workspace import WorkspaceMap

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 from kinlab.cli.screen import styled
 
 if TYPE_CHECKING:
-    from kinlab.analysis.isotropy import IsotropySearch
-    from kinlab.analysis.nearest import NearestSingularity
-    from kinlab.analysis.singularity import SingularitySearch
+    from kinlab.analysis.isotropy.configurations import IsotropySearch
+    from kinlab.analysis.singularities.nearest import NearestSingularity
+    from kinlab.analysis.singularities.singularity import SingularitySearch
     from kinlab.model.robot import Robot
     from kinlab.sweeps.workspace import WorkspaceMap
 
@@ -20,7 +20,7 @@ def headline(robot: Robot, task: str, suggested: bool) -> Any:
 
 
 def print_determinant(console: Any, robot: Robot, task: Any) -> None:
-    from kinlab.analysis.determinant import factored_determinant
+    from kinlab.analysis.singularities.determinant import factored_determinant
     from kinlab.analysis.structure.task_space import read_task
 
     if read_task(robot, task).m != robot.n or robot.table is None:
@@ -72,7 +72,7 @@ def print_designs(
 ) -> Robot | None:
     from rich.table import Table
 
-    from kinlab.analysis.design import design_isotropic
+    from kinlab.analysis.isotropy.design import design_isotropic
     from kinlab.model.robot import Robot
 
     names = [part.strip() for part in free.split(",")]

@@ -115,7 +115,7 @@ def ik(
 def _print_branches(robot: object, pose: object) -> None:
     import numpy as np
 
-    from kinlab.inverse.branches import ik_branches
+    from kinlab.inverse.branches.solutions import ik_branches
 
     found = ik_branches(robot, pose)  # type: ignore[arg-type]
     for q, name, inside in zip(found.q, found.names, found.within_limits, strict=True):
@@ -134,7 +134,10 @@ def _print_branches(robot: object, pose: object) -> None:
 def _announce_compilation() -> None:
     """Lets the message about compiling through to stderr: the first run takes some seconds."""
     handler = logging.StreamHandler(sys.stderr)
+    handler.set_name("kinlab ik")
     handler.setFormatter(logging.Formatter("kinlab: %(message)s"))
     logger = logging.getLogger("kinlab.engine.fast.compiled")
+    for before in [known for known in logger.handlers if known.get_name() == handler.get_name()]:
+        logger.removeHandler(before)  # its stderr may be closed by now
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)

@@ -9,6 +9,7 @@ import typer
 
 from kinlab.cli.screen import echo, visible
 from kinlab.errors import OptionError
+from kinlab.host.language import _, ngettext
 from kinlab.host.progress import progress
 
 SHEET = Annotated[Path, typer.Argument(help="The sheet: a TOML file of questions.")]
@@ -55,14 +56,18 @@ def mark(
     read = read_sheet(sheet)
     if handout is not None:
         count = write_handouts(read, students_of(handout), output)
-        echo(f"wrote {count} sheets into {output}")
+        wrote = ngettext(
+            "wrote {count} sheet into {folder}", "wrote {count} sheets into {folder}", count
+        )
+        echo(wrote.format(count=count, folder=output))
         return
     if submissions is None:
         raise OptionError("mark: submissions are missing; name their folder, or use --handout")
     with progress("mark") as tell:
 
         def show(done: int, total: int, name: str) -> None:
-            tell(done, f"{done} of {total}  {visible(name)}")
+            so_far = _("{done} of {total}").format(done=done, total=total)
+            tell(done, f"{so_far}  {visible(name)}")
 
         marks = mark_all(
             read,
@@ -75,5 +80,6 @@ def mark(
         )
     echo(str(marks))
     for (question, kind), count in marks.slips().most_common(10):
-        echo(f"  {question}: {kind}, {count} of {len(marks)}")
-    echo(f"wrote {output}")
+        said = _("  {question}: {kind}, {count} of {all}")
+        echo(said.format(question=question, kind=_(kind), count=count, all=len(marks)))
+    echo(_("wrote {file}").format(file=output))

@@ -13,7 +13,7 @@ from kinlab.cli.screen import echo
 
 if TYPE_CHECKING:
     from kinlab.arrays import Array
-    from kinlab.viewer.page import Page
+    from kinlab.viewer.page.page import Page
 
 NAME = Annotated[
     str,
@@ -111,7 +111,7 @@ def _open(
     scene = Scene(robot, start, meshes=meshes)
     if branches:
         from kinlab.engine.fast.stacks import fk
-        from kinlab.inverse.branches import ik_branches
+        from kinlab.inverse.branches.solutions import ik_branches
 
         found = ik_branches(robot, fk(robot, scene.q))
         if len(found):
@@ -150,7 +150,7 @@ def _numbers(text: str) -> Array:
 
 
 def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
-    from kinlab.viewer.live import LiveServer
+    from kinlab.viewer.page.live import LiveServer
     from kinlab.viewer.show import open_browser
 
     server = LiveServer(page, host, port)

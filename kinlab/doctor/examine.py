@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors, some_rows
+from kinlab.check.compare import need_function, relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import terms, verdicts
@@ -31,6 +31,7 @@ from kinlab.doctor.verdicts import Excuse
 from kinlab.doctor.written import Written
 from kinlab.errors import KinlabError, OptionError
 from kinlab.formulas.record import function_name, state_by_state
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 _SCREEN = 3
@@ -77,8 +78,7 @@ def diagnose(
         OptionError: samples below 10.
         FormulaError: the function failed.
     """
-    if not callable(function):
-        raise OptionError(f"function: {type(function).__name__} cannot be called")
+    need_function(function)
     plain, index = split_name(quantity)
     case, engine = prepare(robot, plain, index, samples, seed)
     stacked = state_by_state(function)
@@ -163,12 +163,15 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     if not missing:
         return None
     if missing == count:
-        return Cause("the formula gives no number at any state", ("no value",), ("",), 0.0, 1.0)
+        said = _("the formula gives no number at any state")
+        return Cause(said, ("no value",), ("",), 0.0, 1.0)
     error = float(np.max(relative_errors(case.hand[whole_], engine[whole_])))
     if error > TOLERANCES.formula_agrees:
         return None
-    told = f"the formula gives no number at {missing} of {count} states; where it gives one, it is "
-    return Cause(f"{told}right", ("no value",), ("",), error, 1.0)
+    told = _(
+        "the formula gives no number at {missing} of {count} states; elsewhere it is right"
+    ).format(missing=missing, count=count)
+    return Cause(told, ("no value",), ("",), error, 1.0)
 
 
 def _ranked(causes: list[Cause]) -> list[Cause]:
@@ -188,9 +191,13 @@ def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
         yield _as_steps(found)
 
 
+def _the_formula(does: Iterable[str]) -> str:
+    return _("the formula {does}").format(does=_(" and ").join(does))
+
+
 def _as_steps(found: Found) -> Cause:
     return Cause(
-        "the formula " + " and ".join(step.sentence for step in found.steps),
+        _the_formula(step.sentence for step in found.steps),
         tuple(step.kind for step in found.steps),
         tuple("" if step.joint is None else f"joint {step.joint}" for step in found.steps),
         found.error,
@@ -233,8 +240,8 @@ def _hidden(
             told = [s for s in _of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    said = " and ".join(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
-    remarks = [f"but it holds only for {said}"] if only else []
+    said = verdicts.together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
+    remarks = [_("but it holds only for {numbers}").format(numbers=said)] if only else []
     return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
 
 
@@ -379,9 +386,8 @@ def _found(case: Case, chosen: Iterable[tuple[Confusion, ...]]) -> Iterator[Caus
 
 
 def _as_cause(chosen: tuple[Confusion, ...], error: float) -> Cause:
-    told = " and ".join(r.sentence for r in chosen)
     return Cause(
-        f"the formula {told}",
+        _the_formula(r.sentence for r in chosen),
         tuple(r.kind for r in chosen),
         tuple(r.place for r in chosen),
         error,
@@ -425,7 +431,7 @@ def _varied(found: list[Slip]) -> list[Slip]:
 
 def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
     return Cause(
-        "; ".join(s.sentence for s in slips),
+        _("; ").join(s.sentence for s in slips),
         tuple(k for s in slips for k in s.kinds),
         tuple(s.entry for s in slips),
         max(s.error for s in slips),
@@ -481,7 +487,9 @@ def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Ite
             continue
         for cause in _slips(changed, off, {})[0]:
             yield Cause(
-                f"the formula {reading.sentence}, and then {cause.sentence}",
+                _("the formula {does}, and then {slips}").format(
+                    does=reading.sentence, slips=cause.sentence
+                ),
                 (reading.kind, *cause.kinds),
                 (reading.place, *cause.places),
                 cause.error_after,

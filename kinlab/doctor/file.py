@@ -23,6 +23,7 @@ from kinlab.formulas import tree
 from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text, read_toml
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
@@ -234,7 +235,7 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
     if plain == "coriolis_matrix":
         yield from _complete_rows(case, engine, formulas, values, titles)
     for label, answer in values.items():
-        _, index = split_name(label)
+        _plain, index = split_name(label)
         part = replace(case, index=index)
         one = {label: formulas[label]}
         yield examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
@@ -296,7 +297,7 @@ def _refuse_large(
         ExpressionError: more than a formula of an arm can have, or a symbol explained by itself.
     """
     total = 0
-    for _, node in tree.nodes(text):
+    for _path, node in tree.nodes(text):
         total += 1
         if node.op != "sym" or node.value not in file.symbols:
             continue
@@ -375,7 +376,7 @@ def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written
     words = vocabulary(robot.table).values if robot.table is not None else {}
     known: dict[str, Node] = {}
     texts: dict[str, str] = {}
-    rounded: list[str] = []
+    rounded: dict[str, str] = {}
     for name, given in file.symbols.items():
         texts[name] = file.symbol_texts[name]
         if given.op != "num":
@@ -386,9 +387,11 @@ def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written
             known[name] = meant
             exact = words[str(meant.value)]
             if abs(float(given.value) - exact) > TOLERANCES.same_number * abs(exact):
-                rounded.append(f"{name} = {texts[name]} in [symbols] stands for {exact:.10g}")
+                rounded[name] = _("{name} = {written} in [symbols] stands for {meant:.10g}").format(
+                    name=name, written=texts[name], meant=exact
+                )
     inside = tree.names(file.formulas[entry])
-    used = [note for note in rounded if note.split(" =")[0] in inside]
+    used = [note for name, note in rounded.items() if name in inside]
     return Written(entry, file.texts[entry], node, texts, known, tuple(used))
 
 

@@ -25,8 +25,9 @@ from kinlab.doctor.edits import Names
 from kinlab.doctor.search import pairs_adding_up
 from kinlab.doctor.written import Written
 from kinlab.formulas import tree
-from kinlab.formulas.text import SHORTHAND, canonical, parse
+from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
 from kinlab.formulas.tree import Node
+from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
@@ -48,8 +49,9 @@ class Change:
         start, end: the piece that goes. new: what comes.
         kind: ``"sign"``, ``"index"``, ...
         cost: how far-fetched it is.
-        told: what is wrong there, in words.
+        told: what is wrong there: a marked sentence with fields.
         everywhere: pairs of words exchanged in the whole text instead.
+        pieces: what its fields are, pieces of formulas.
     """
 
     start: int
@@ -59,6 +61,12 @@ class Change:
     cost: float
     told: str
     everywhere: tuple[tuple[str, str], ...] = ()
+    pieces: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def sentence(self) -> str:
+        """What is wrong there, in words."""
+        return _(self.told).format(**{name: brief(text) for name, text in self.pieces.items()})
 
 
 @dataclass(frozen=True)
@@ -145,13 +153,8 @@ class Line:
         for name, meaning in self.text.symbols.items():
             if re.fullmatch(r"[A-Za-z_]\w*", meaning) and name not in self.text.known:
                 found.setdefault(meaning, name)
-        for word in _words(self.source):
-            meant = canonical(word)
-            joint = _MOTION.fullmatch(str(meant.value)) if meant.op == "sym" else None
-            if joint and word != meant.value and word.endswith(joint.group(2)):
-                head = word[: -len(joint.group(2))]
-                for i in range(1, self.names.n + 1):
-                    found.setdefault(f"{joint.group(1)}{i}", f"{head}{i}")
+        for meaning, word in joint_spelling(_words(self.source), self.names.n).items():
+            found.setdefault(meaning, word)
         return found
 
     @cached_property
@@ -162,18 +165,7 @@ class Line:
 
     def spelled(self, node: Node) -> str:
         """A piece of a formula as the writer would write it."""
-        return tree.to_text(self._respelled(node))
-
-    def _respelled(self, node: Node) -> Node:
-        if self.short and node.op in ("sin", "cos"):
-            inside = node.args[0].args if node.args[0].op == "add" else node.args
-            if all(a.op == "sym" and re.fullmatch(r"q[1-9]", str(a.value)) for a in inside):
-                return tree.sym(node.op[0] + "".join(str(a.value)[1:] for a in inside))
-        if node.op == "sym":
-            return tree.sym(self.spelling.get(str(node.value), str(node.value)))
-        if not node.args:
-            return node
-        return Node(node.op, tuple(self._respelled(a) for a in node.args), node.value)
+        return tree.to_text(respelled(node, self.spelling, self.short))
 
     @cached_property
     def atoms(self) -> dict[str, Array]:
@@ -227,8 +219,16 @@ class Line:
         """A piece in place of a piece."""
         start, end = place.span
         old = self.segment(place)
-        told = f"{old} should be {new}{self._around(place)}"
-        self.put(place, value, Change(start, end, new, kind, cost, told))
+        told, pieces = self._told(
+            place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+        )
+        pieces |= {"old": old, "new": new}
+        self.put(place, value, Change(start, end, new, kind, cost, told, pieces=pieces))
+
+    def _told(self, place: _Place, alone: str, inside: str) -> tuple[str, dict[str, str]]:
+        """One of two sentences: with the term that a place is in, where it is worth showing."""
+        term = self._around(place)
+        return (inside, {"term": term}) if term else (alone, {})
 
     def _around(self, place: _Place) -> str:
         """The term that a place is in."""
@@ -239,7 +239,7 @@ class Line:
         ):
             place = place.above
         term = self.segment(place)
-        return f" in {term}" if len(term) < 70 and (place is not inner or not alone) else ""
+        return term if len(term) < 70 and (place is not inner or not alone) else ""
 
     def study(self) -> None:
         """Notes every change."""
@@ -340,40 +340,58 @@ class Line:
             old, new = ("+", "-") if plus else ("-", "+")
             term = self.source[at + 1 : end].strip()
             turned = left.value - right.value if plus else left.value + right.value
-            told = f"{old} {term} should be {new} {term}"
-            self.put(place, turned, Change(at, at + 1, new, "sign", 1.0, told))
-            told = f"the term {'' if plus else '-'}{term} does not belong there"
-            self.put(place, left.value, Change(at, end, "", "extra term", 1.1, told))
+            pieces = {"old": f"{old} {term}", "new": f"{new} {term}"}
+            told = N_("{old} should be {new}")
+            change = Change(at, at + 1, new, "sign", 1.0, told, pieces=pieces)
+            self.put(place, turned, change)
+            told = N_("the term {term} does not belong there")
+            pieces = {"term": f"{'' if plus else '-'}{term}"}
+            change = Change(at, end, "", "extra term", 1.1, told, pieces=pieces)
+            self.put(place, left.value, change)
             first = self.source[start:at].strip()
             alone = right.value if plus else -right.value
-            told = f"the term {first} does not belong there"
             kept = at + 1 if plus else at
-            self.put(place, alone, Change(start, kept, "", "extra term", 1.15, told))
+            pieces = {"term": first}
+            change = Change(start, kept, "", "extra term", 1.15, told, pieces=pieces)
+            self.put(place, alone, change)
             return
         sign = {ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
         at = left.span[1] + gap.index(sign)
         first, second = self.source[start:at].strip(), self.source[at + len(sign) : end].strip()
-        around = self._around(place)
         if isinstance(node.op, ast.Pow):
-            base, told = left.value, f"{self.segment(place)} should be "
+            base = left.value
+            told, pieces = self._told(
+                place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+            )
+            pieces |= {"old": self.segment(place), "new": first}
             cost = 1.1 if second.strip("()") == "2" else 1.5
-            change = Change(at, end, "", "power", cost, f"{told}{first}{around}")
+            change = Change(at, end, "", "power", cost, told, pieces=pieces)
             self.put(place, base, change)
             for other in (2, 3, 4, -1):
                 with np.errstate(all="ignore"):
                     value = np.power(base, float(other))
-                said = f"{told}{first}**{other}{around}"
-                self.put(place, value, Change(at + 2, end, str(other), "power", 1.3, said))
+                raised = pieces | {"new": f"{first}**{other}"}
+                change = Change(at + 2, end, str(other), "power", 1.3, told, pieces=raised)
+                self.put(place, value, change)
             return
-        told = f"the factor {second} does not belong{around}"
         if isinstance(node.op, ast.Div):
-            told = f"/{second} does not belong{around}"
-            self.put(place, left.value, Change(at, end, "", "factor", 1.25, told))
+            told, pieces = self._told(
+                place, N_("/{factor} does not belong"), N_("/{factor} does not belong in {term}")
+            )
+            pieces |= {"factor": second}
+            change = Change(at, end, "", "factor", 1.25, told, pieces=pieces)
+            self.put(place, left.value, change)
             return
-        self.put(place, left.value, Change(at, end, "", "extra factor", 1.3, told))
-        told = f"the factor {first} does not belong{around}"
+        told, pieces = self._told(
+            place,
+            N_("the factor {factor} does not belong"),
+            N_("the factor {factor} does not belong in {term}"),
+        )
+        one, two = pieces | {"factor": second}, pieces | {"factor": first}
+        change = Change(at, end, "", "extra factor", 1.3, told, pieces=one)
+        self.put(place, left.value, change)
         kind = "factor" if isinstance(left.node, ast.Constant) else "extra factor"
-        self.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told))
+        self.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told, pieces=two))
 
     def _as_factor(self, place: _Place) -> None:
         """Squares, and factors that are missing in front of a term."""
@@ -398,9 +416,9 @@ class Line:
         for name, value in self.atoms.items():
             for power, more in ((1, 0.0), (2, 0.4)):
                 word = name if power == 1 else f"{name}**{power}"
-                told = f"the factor {word} is missing in {piece}"
                 change = Change(place.span[1], place.span[1], f"*{word}", "missing factor",
-                                1.4 + more + extra, told)  # fmt: skip
+                                1.4 + more + extra, N_("the factor {factor} is missing in {term}"),
+                                pieces={"factor": word, "term": piece})  # fmt: skip
                 if _is_sum(node):
                     change = replace(change, start=place.span[0], new=f"{body}*{word}")
                 self.put(place, place.value * value**power, change)
@@ -409,8 +427,9 @@ class Line:
         for factor in (*moving, *waves):
             new = f"{body}*{self.spelled(factor)}"
             times = place.value * tree.evaluate(factor, self.at)
-            told = f"the factor {self.spelled(factor)} is missing in {piece}"
-            change = Change(place.span[0], place.span[1], new, "missing factor", 1.45 + extra, told)
+            change = Change(place.span[0], place.span[1], new, "missing factor", 1.45 + extra,
+                            N_("the factor {factor} is missing in {term}"),
+                            pieces={"factor": self.spelled(factor), "term": piece})  # fmt: skip
             self.put(place, times, change)
 
     def _as_term(self, place: _Place) -> None:
@@ -422,12 +441,12 @@ class Line:
         inside = self.segment(place)
         for piece, value in self.pieces.items():
             for sign in ("+", "-"):
-                told = f"the term {piece} is missing in ({self.segment(place)})"
-                told = told if sign == "+" else told.replace("term ", "term -", 1)
                 twice = re.search(rf"(?:^|[+-])\s*{re.escape(piece)}\s*(?:$|[+-])", inside)
                 cost = (1.12 if sign == "+" else 1.6) + 0.03 * piece.count("*") + 0.4 * bool(twice)
+                pieces = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
                 change = Change(place.span[1], place.span[1], f" {sign} {piece}", "missing term",
-                                cost, told)  # fmt: skip
+                                cost, N_("the term {term} is missing in {sum}"),
+                                pieces=pieces)  # fmt: skip
                 self.put(place, place.value + (value if sign == "+" else -value), change)
 
     @cached_property
@@ -459,7 +478,7 @@ class Line:
             shown = self.spelled(term)
             sign, body = ("-", shown[1:]) if shown.startswith("-") else ("+", shown)
             change = Change(end, end, f" {sign} {body}", "missing term", 1.3,
-                            f"the term {shown} is missing")  # fmt: skip
+                            N_("the term {term} is missing"), pieces={"term": shown})  # fmt: skip
             self.put(self.root, value, change)
 
     def _throughout(self) -> None:
@@ -470,8 +489,9 @@ class Line:
         for word in inside:
             for other in self.atoms:
                 if other != word:
-                    told = f"{word} should be {other} throughout"
-                    self._global(((word, other),), "parameter", 1.9, told)
+                    told = N_("{old} should be {new} throughout")
+                    pieces = {"old": word, "new": other}
+                    self._global(((word, other),), "parameter", 1.9, told, pieces)
         shown = {self.spelling.get(j, j) for j in joints}
         for i in range(1, self.names.n + 1):
             for k in range(i + 1, self.names.n + 1):
@@ -481,16 +501,24 @@ class Line:
                     two = self.spelling.get(f"{x}{k}", f"{x}{k}")
                     swap += [(one, two), (two, one)]
                 if {a for a, _ in swap} & set(words) & shown:
-                    told = f"{swap[0][0]} and {swap[0][1]} are exchanged throughout"
-                    self._global(tuple(swap), "index", 2.2, told)
+                    told = N_("{one} and {two} are exchanged throughout")
+                    pieces = {"one": swap[0][0], "two": swap[0][1]}
+                    self._global(tuple(swap), "index", 2.2, told, pieces)
         if {"sin", "cos"} & set(words):
             self._global((("sin", "cos"), ("cos", "sin")), "sin/cos", 1.9,
-                         "sin and cos are exchanged throughout")  # fmt: skip
+                         N_("sin and cos are exchanged throughout"), {})  # fmt: skip
         if words.count("g") > 1:
-            told = "gravity has the opposite sign: every g should be -g"
-            self._global((("g", "(-g)"),), "gravity sign", 1.5, told)
+            told = N_("gravity has the opposite sign: every g should be -g")
+            self._global((("g", "(-g)"),), "gravity sign", 1.5, told, {})
 
-    def _global(self, swap: tuple[tuple[str, str], ...], kind: str, cost: float, told: str) -> None:
+    def _global(
+        self,
+        swap: tuple[tuple[str, str], ...],
+        kind: str,
+        cost: float,
+        told: str,
+        pieces: Mapping[str, str],
+    ) -> None:
         new = exchanged(self.source, swap)
         if new == self.source:
             return
@@ -498,7 +526,7 @@ class Line:
             values = replace(self.text, text=new).values(self.at)
         except KeyError:
             return
-        change = Change(0, len(self.source), new, kind, cost, told, swap)
+        change = Change(0, len(self.source), new, kind, cost, told, swap, pieces)
         self.put(self.root, values, change)
 
 
@@ -618,6 +646,19 @@ def exchanged(text: str, swap: tuple[tuple[str, str], ...]) -> str:
 
 
 # -------- Small questions about places
+
+_LONGEST = 90
+"""Letters of a piece of a formula in a sentence above which its middle is left out."""
+
+
+def brief(text: str) -> str:
+    """A piece of a formula that is short enough for a sentence: its beginning and its end."""
+    if len(text) <= _LONGEST:
+        return text
+    ends = [m.start() for m in re.finditer(r" [+-] |\*(?!\*)", text)]
+    first = max((k for k in ends if k <= _LONGEST // 2), default=_LONGEST // 2)
+    last = min((k for k in ends if k >= len(text) - _LONGEST // 3), default=len(text) - 12)
+    return f"{text[:first]} ... {text[last:].strip()}"
 
 
 def _words(text: str) -> list[str]:

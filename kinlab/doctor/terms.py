@@ -11,16 +11,18 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
+from kinlab.check.diagnosis import shown_entry
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import pen, regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.edits import Edit, Names
-from kinlab.doctor.pen import Mended
+from kinlab.doctor.pen import Mended, brief
 from kinlab.doctor.search import Repair
 from kinlab.doctor.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
+from kinlab.host.language import N_, _
 from kinlab.symbolic.trig import Poly
 from kinlab.tolerances import TOLERANCES
 
@@ -104,7 +106,6 @@ def _label(name: str, index: tuple[int, ...]) -> str:
 # -------- Slips within single entries: the derived formula beside a user's text or function
 
 _POINTS = 24
-_CLOSE = 1e-9
 _WRITTEN_OUT = 60
 """Terms of an entry up to which a function may have been written out by hand."""
 _SHORT = 30
@@ -208,7 +209,10 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
 
 
 def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
-    told = "; ".join(f"{written.entry}: {c.told} ({c.kind})" for c in found.changes)
+    form = _("{entry}: {slip} ({kind})")
+    told = _("; ").join(
+        form.format(entry=written.entry, slip=c.sentence, kind=_(c.kind)) for c in found.changes
+    )
     kinds = tuple(c.kind for c in found.changes)
     values = replace(written, text=found.text).values(here)
     return Slip(written.entry, kinds, told, found.text, found.cost, values, True)
@@ -267,12 +271,22 @@ def _by_effect(
 ) -> list[Slip]:
     slips: list[Slip] = []
     for form, repair in sorted(repairs, key=lambda pair: pair[1].cost):
-        told = "; ".join(_told_function(label, form, e) for e in repair.edits)
+        told = _("; ").join(_told_function(label, form, e) for e in repair.edits)
         kinds = tuple(_TURNED.get(e.kind, e.kind) for e in repair.edits)
         values = tree.evaluate(repair.result, everywhere)
         if all(s.sentence != told for s in slips):
             slips.append(Slip(label, kinds, told, str(right), repair.cost, values, False))
     return slips
+
+
+_COEFFICIENT = (
+    N_("the coefficient of {term} is smaller than the engine's by {size}"),
+    N_("the coefficient of {term} is larger than the engine's by {size}"),
+)
+_CONSTANT = (
+    N_("the constant term is smaller than the engine's by {size}"),
+    N_("the constant term is larger than the engine's by {size}"),
+)
 
 
 def _as_terms(
@@ -282,10 +296,11 @@ def _as_terms(
     total = tree.evaluate(right, at)
     for term in found:
         total = total + term.coefficient * tree.evaluate(term.product, at)
-        side = "larger" if term.coefficient > 0 else "smaller"
         size = _as_parameters(term, right, names, at)
-        pieces.append(f"the coefficient of {term.product} is {side} than the engine's by {size}")
-    told = f"{label}: " + ", and ".join(pieces)
+        said = _CONSTANT if term.product == tree.num(1) else _COEFFICIENT
+        told = _(said[term.coefficient > 0])
+        pieces.append(told.format(term=brief(str(term.product)), size=brief(size)))
+    told = _("{entry}: {slip}").format(entry=shown_entry(label), slip=_(", and ").join(pieces))
     kinds = ("coefficient",) * len(found)
     # one term is simpler than most pairs of slips
     cost = 2.25 if len(found) == 1 else 2.0 + len(found)
@@ -307,15 +322,27 @@ def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[st
 
 def _told_function(label: str, form: Node, edit: Edit) -> str:
     old = tree.at_path(form, edit.path)
-    where = _context(form, edit.path, old)
-    if edit.kind == "extra term":
-        return f"{label}: the term {old} is missing"
-    if edit.kind == "extra factor":
-        return f"{label}: the factor {old} is missing{where}"
-    if edit.kind == "factor" and edit.new == tree.mul(tree.num(2), old):
-        return f"{label}: {old} is there twice"
+    term = _context(form, edit.path, old)
     kind = _TURNED.get(edit.kind, edit.kind)
-    return f"{label}: it has {edit.new} where the engine has {old}{where} ({kind})"
+    if edit.kind == "extra term":
+        said = _("{entry}: the term {old} is missing")
+    elif edit.kind == "extra factor" and term:
+        said = _("{entry}: the factor {old} is missing in {term}")
+    elif edit.kind == "extra factor":
+        said = _("{entry}: the factor {old} is missing")
+    elif edit.kind == "factor" and edit.new == tree.mul(tree.num(2), old):
+        said = _("{entry}: {old} is there twice")
+    elif term:
+        said = _("{entry}: it has {new} where the engine has {old} in {term} ({kind})")
+    else:
+        said = _("{entry}: it has {new} where the engine has {old} ({kind})")
+    return said.format(
+        entry=shown_entry(label),
+        old=brief(str(old)),
+        new=brief(str(edit.new)),
+        term=brief(term),
+        kind=_(kind),
+    )
 
 
 def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
@@ -324,7 +351,7 @@ def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
     if len(path) <= depth:
         return ""
     term = tree.at_path(root, path[:depth])
-    return f" in {term}" if term != old else ""
+    return str(term) if term != old else ""
 
 
 def _forms(derived: Derivation, poly: Poly) -> list[Node]:

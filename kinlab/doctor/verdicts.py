@@ -8,7 +8,7 @@ to 1e-9: nothing that the digits do not explain is excused.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -27,6 +27,7 @@ from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, names_for
 from kinlab.doctor.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
+from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.trig import Poly
 from kinlab.symbolic.vocabulary import vocabulary
@@ -133,7 +134,7 @@ def _fitted(
             out[members] += half * part
         return out
 
-    for _ in range(_STEPS):
+    for _step in range(_STEPS):
         values = text.values(at, numbers(moved))
         rest = (target - values) / scale
         if not np.isfinite(rest).all():
@@ -190,8 +191,18 @@ def _meant(value: float, at: Mapping[str, Array]) -> str:
 
 def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Array]) -> list[str]:
     """Each rounded number once: ``9.8 stands for g = 9.81``."""
-    said = (f"{one.text} stands for {_meant(value, at)}" for one, value in changed)
+    form = _("{written} stands for {meant}")
+    said = (form.format(written=one.text, meant=_meant(value, at)) for one, value in changed)
     return list(dict.fromkeys(said))
+
+
+def together(pieces: Iterable[str]) -> str:
+    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
+    told, *rest = [*pieces] or [""]
+    pair = _("{first} and {last}")
+    for piece in rest:
+        told = pair.format(first=told, last=piece)
+    return told
 
 
 # -------- Numbers in place of names
@@ -242,7 +253,7 @@ def _free_fit(
     for k, name in put.items():
         numbers[k] = float(at[name][0])
     scale = float(np.max(np.abs(target))) or 1.0
-    for _ in range(2 * _STEPS):
+    for _step in range(2 * _STEPS):
         values = text.values(at, numbers)
         rest = (target - values) / scale
         if not np.isfinite(rest).all():
@@ -282,15 +293,21 @@ def unusual(case: Case, engine: Array) -> Excuse | None:
     if name == "christoffel" and not case.index:
         symmetric = 0.5 * (hand + np.swapaxes(hand, 2, 3))
         if _same(symmetric, engine, engine):
-            said = "it is not symmetric in the last two indices, as Christoffel's symbols are; the "
-            return Excuse("unusual", (f"{said}sums over qd_j qd_k are the same",))
+            said = _(
+                "it is not symmetric in the last two indices, as Christoffel's symbols are; the "
+                "sums over qd_j qd_k are the same"
+            )
+            return Excuse("unusual", (said,))
     if name in _ENERGIES:
         gap = hand - engine
         constant = gap[:1]
         if _same(gap, np.broadcast_to(constant, gap.shape), engine):
             size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
-            said = f"the potential has another zero (the difference is {size:.6g} J everywhere)"
-            return Excuse("unusual", (f"{said}, which changes no torque",))
+            said = _(
+                "the potential has another zero (the difference is {size:.6g} J everywhere), "
+                "which changes no torque"
+            )
+            return Excuse("unusual", (said.format(size=size),))
     return None
 
 
@@ -299,14 +316,18 @@ def _another_split(case: Case, engine: Array) -> Excuse | None:
     torques = np.einsum("n...j,nj->n...", engine, speeds)
     if not _same(np.einsum("n...j,nj->n...", case.hand, speeds), torques, torques):
         return None
-    said = "C*qd is right, but C is not Christoffel's"
     if case.index:
-        return Excuse("unusual", (said,))
+        return Excuse("unusual", (_("C*qd is right, but C is not Christoffel's"),))
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
     skew = _same(rest, np.zeros_like(rest), slope)
-    also = "Mdot - 2C is skew-symmetric all the same" if skew else "Mdot - 2C is not skew-symmetric"
-    return Excuse("unusual", (f"{said}: {also}",))
+    if skew:
+        said = _(
+            "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
+        )
+    else:
+        said = _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
+    return Excuse("unusual", (said,))
 
 
 def _same(one: Array, two: Array, size: Array) -> bool:
@@ -331,8 +352,12 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
             exact = _angle(value)
             if exact is not None:
                 columns[column] = exact
-                said.append(f"{column} of link {i} is {value:g} in the robot's data and stands for "
-                            f"{_meant(exact, {})}")  # fmt: skip
+                told = _(
+                    "{column} of link {number} is {value:g} in the robot's data and stands for "
+                    "{meant}"
+                )
+                meant = _meant(exact, {})
+                said.append(told.format(column=column, number=i, value=value, meant=meant))
         links.append(replace(link, **columns))
     if not said:
         return None
@@ -392,7 +417,8 @@ def gravity_rounded(case: Case, engine: Array) -> Excuse | None:
         or not _same(rest, share * weight, engine)
     ):
         return None
-    return Excuse("rounded", (f"g = {one.text} stands for {size:.10g}",))
+    said = _("{written} stands for {meant}")
+    return Excuse("rounded", (said.format(written=f"g = {one.text}", meant=f"{size:.10g}"),))
 
 
 def roundings(case: Case, engine: Array, function: bool) -> Iterator[Excuse]:
@@ -430,8 +456,8 @@ def coefficients_rounded(
     columns = np.array([np.broadcast_to(tree.evaluate(w, at), entry.hand.shape) for w in words]).T
     if 2 * columns.shape[1] > len(entry.hand) or np.linalg.matrix_rank(columns) < columns.shape[1]:
         return None
-    mine, *_ = np.linalg.lstsq(columns, entry.hand, rcond=None)
-    theirs, *_ = np.linalg.lstsq(columns, entry.engine, rcond=None)
+    mine, *_rest = np.linalg.lstsq(columns, entry.hand, rcond=None)
+    theirs, *_rest = np.linalg.lstsq(columns, entry.engine, rcond=None)
     if entry.error(columns @ mine, entry.hand) > TOLERANCES.formula_agrees:
         return None
     said = []
@@ -449,10 +475,12 @@ def _coefficient(one: float, two: float) -> str | None:
     for exact in (*map(float, _ENDLESS), *_IRRATIONAL):
         part = short(one / two * exact, exact)
         if part is not None and part.digits > 1:
-            return f"{part.text} stands for {_meant(exact, {})}"
+            said = _("{written} stands for {meant}")
+            return said.format(written=part.text, meant=_meant(exact, {}))
     whole = short(one, two)
     if whole is not None and not whole.whole:
-        return f"the coefficient {whole.text} stands for {abs(two):.7g}"
+        said = _("the coefficient {written} stands for {meant:.7g}")
+        return said.format(written=whole.text, meant=abs(two))
     return None
 
 
@@ -484,7 +512,8 @@ def data_rounded(
         gap = tree.evaluate(derived, {**at, name: at[name] + moved}) - hand
         fits = np.max(np.abs(gap) / scale) <= TOLERANCES.formula_agrees
         if fits and abs(moved) <= one.half * (1 + TOLERANCES.same_relation):
-            return f"{name} = {one.text} in the robot's data stands for {own + moved:.7g}"
+            said = _("{name} = {written} in the robot's data stands for {meant:.7g}")
+            return said.format(name=name, written=one.text, meant=own + moved)
     return None
 
 

@@ -23,17 +23,14 @@ from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.engine.dynamics import inverse_dynamics, mass_matrix
 from kinlab.errors import MotorError, OptionError, StructureError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia
+from kinlab.tolerances import TOLERANCES
 
 _FIRST, _MOST = 2_000, 400_000
 """Instants of the first grid over a motion, and of the last."""
-_AGREES = 2e-7
-"""Relative change of the RMS torques between two grids, of half the steps, that ends the search."""
-_INSIDE = 1e-9
-"""Part of a piece by which its first and last instant lie inside it: there an acceleration that
-jumps has the value of the piece."""
 
 
 class JointMotion(Protocol):
@@ -69,6 +66,16 @@ class ArmSizing(Told):
     resolution: float = field(repr=False)
 
     @property
+    def evidence(self) -> Evidence:
+        """At how many instants the motion was looked at, and what that makes of its figures."""
+        return Evidence(
+            f"{len(self.demand.t):,} instants of the motion; every motor of the catalogue",
+            proved="",
+            found=f"RMS torques to {self.resolution:.1g} of the largest; peaks at those instants; "
+            "of a gear of any make the ratio of most margin",
+        )
+
+    @property
     def chosen(self) -> tuple[MotorFit | None, ...]:
         """The first drive that fits of each joint; ``None`` where none does."""
         return tuple(next((fit for fit in fits if fit.fits), None) for fits in self.fits)
@@ -87,7 +94,9 @@ class ArmSizing(Told):
         return np.stack(speeds, axis=1), np.stack(torques, axis=1)
 
     def __str__(self) -> str:
-        lines = [f"robot {self.robot!r}: drives for a motion of {self.demand.t[-1]:.4g} s"]
+        without = [name for name, one in zip(self.joints, self.chosen, strict=True) if one is None]
+        verdict = f"no drive fits {', '.join(without)}" if without else "a drive fits every joint"
+        lines = [f"robot {self.robot!r}: {verdict}, for a motion of {self.demand.t[-1]:.4g} s"]
         demand = self.demand
         for joint, (name, fits) in enumerate(zip(self.joints, self.fits, strict=True)):
             asked = (
@@ -122,16 +131,18 @@ def size_servos(
         motors: a catalogue (.toml or .csv), one motor or several, by name or as data; none tries
             the shipped ones.
         gears: gearboxes that can be bought, as a catalogue or as data: every motor is tried behind
-            each. Left out, a gear of any make with :attr:`efficiency`.
+            each. Left out, a gear of any make with the ``efficiency``.
         gear_ratio: j of every joint, motor turns per joint turn (rad/m of a sliding joint); left
             out, for each motor the one of most margin. Not together with ``gears``.
-        efficiency: of a gear of any make, above 0, at most 1.
+        efficiency: of a gear of any make (without ``gears``), above 0, at most 1.
         wrench: (f, n) that the tool exerts all the way, (6,), as for
             :func:`kinlab.inverse_dynamics`.
 
     Returns:
-        Torque, speed and power over the motion, and the drives of each joint. Instants are laid
-        so densely that the RMS torques do not change by more than 2e-7 when halved.
+        Torque, speed and power over the motion, and the drives of each joint. The steps between
+        instants are halved until the RMS torques change by no more than 2e-7 of the largest, or
+        there are 400,000 of them; ``resolution`` is the last change. Peaks are those of the
+        instants.
 
     Raises:
         StructureError: a motion of another number of joints, or no motion.
@@ -190,7 +201,7 @@ def demand_of(
         size = float(rms.max()) or 1.0
         if before is not None:
             change = float(np.abs(rms - before).max()) / size
-            if change <= _AGREES or len(demand.t) > _MOST:
+            if change <= TOLERANCES.rms_settles or len(demand.t) > _MOST:
                 return demand, change
         before, count = rms, 2 * count
 
@@ -200,7 +211,7 @@ def _at_instants(
 ) -> Demand:
     """The demand with ``count`` steps in each piece of the motion."""
     part = np.linspace(0.0, 1.0, count + 1)
-    part[0], part[-1] = _INSIDE, 1.0 - _INSIDE
+    part[0], part[-1] = TOLERANCES.inside_piece, 1.0 - TOLERANCES.inside_piece
     t = (knots[:-1, np.newaxis] + np.diff(knots)[:, np.newaxis] * part).ravel()
     q, v, a = motion.at(t)
     tau = inverse_dynamics(robot, q, v, a, wrench, friction=True)

@@ -9,9 +9,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.drives.gears import Drive, ideal_gear
 from kinlab.drives.motors import Motor
-
-_STANDS_STILL = 1e-9
-"""Part of its largest rate below which a joint stands still."""
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True)
@@ -128,7 +126,7 @@ class Demand:
         load, rotor = self._parts_at(drive)
         drives, driven = drive.gear.shares
         shaft = np.where(load * self.v > 0.0, drives, driven) * load + rotor
-        still = np.abs(self.v) <= _STANDS_STILL * self.peak_rate
+        still = np.abs(self.v) <= TOLERANCES.stands_still * self.peak_rate
         return np.where(still, self.bound_at(drive), shaft)
 
     def rms_at_shaft(self, drive: Drive) -> Array:
@@ -162,7 +160,7 @@ class Demand:
                 ends.append(np.where(way == 0.0, held, shaft))
             share = 0.5 * (high - low) * (ends[0] ** 2 + ends[1] ** 2)
             area = area + share * np.diff(self.t)[:, None]
-        still = np.abs(self.v) <= _STANDS_STILL * self.peak_rate
+        still = np.abs(self.v) <= TOLERANCES.stands_still * self.peak_rate
         signs = np.where(
             still, np.nan, np.sign(self.v)
         )  # of one at rest the shaft has a bound only

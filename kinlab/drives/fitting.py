@@ -15,12 +15,7 @@ from kinlab.drives.demand import Demand, cubic_mean, mean_size, root_mean_square
 from kinlab.drives.gears import Drive, Gearbox, ideal_gear
 from kinlab.drives.motors import Motor
 from kinlab.errors import MotorError
-
-_RATIO_SPAN = 1e-3
-"""Gear ratios are tried from this part of the bound up to the bound."""
-
-_TIE = 1e-3
-"""Margins that differ by less than this part are equal: the ratio is searched for to 1e-4."""
+from kinlab.tolerances import TOLERANCES
 
 PeakTorque = Callable[[Sequence[Drive]], Array]
 """Worst torque at the shaft of each of several drives, (D,), N m."""
@@ -144,7 +139,7 @@ class MotorFit:
     @property
     def limits(self) -> tuple[str, ...]:
         """The quantities with the least margin: at the best gear ratio mostly two at once."""
-        least = self.margin * (1.0 + _TIE)
+        least = self.margin * (1.0 + TOLERANCES.equal_margins)
         return tuple(name for name, margin in self.margins.items() if margin <= least)
 
     @property
@@ -206,7 +201,8 @@ def fit_motors(
             raise MotorError(
                 f"motor {motor.name!r}: nothing moves, so no gear ratio is the best; name one"
             )
-        ratio = _largest(least_margin, bound * _RATIO_SPAN, bound) if ratio is None else ratio
+        if ratio is None:
+            ratio = _largest(least_margin, bound * TOLERANCES.least_ratio, bound)
         drives.append(_any_gear(duty, motor, ratio))
     peaks = duty.peak(drives)
     fits = [

@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 
 from kinlab.arrays import Array
 from kinlab.errors import OptionError
+from kinlab.tolerances import TOLERANCES
 
 Slope = Callable[[float, Array], Array]
-RTOL, ATOL = 1e-10, 1e-12
 MOST_STEPS = 200_000
 _LOOKS = 9
 """Times inside a step at which a stop is looked for."""
@@ -43,8 +43,8 @@ def integrate(
     start: Array,
     times: Array,
     *,
-    rtol: float = RTOL,
-    atol: float = ATOL,
+    rtol: float = TOLERANCES.integrator_relative,
+    atol: float = TOLERANCES.integrator_absolute,
     settle: Callable[[Array], Array] | None = None,
     stop: Callable[[float, Array], float] | None = None,
 ) -> Stretch:

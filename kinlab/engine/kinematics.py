@@ -227,6 +227,20 @@ def frame_pose(robot: Robot, q: Array, index: int) -> Array:
     return pose
 
 
+def tool_poses(robot: Robot, q: Array) -> Array:
+    """Tool poses (N, 4, 4) of states (N, n) that have been checked, each by Pinocchio.
+
+    For those who have the last word: :func:`kinlab.fk` may run many on a compiled chain.
+    """
+    model, data, tool = robot.model, scratch(robot), robot.tool
+    forward, place = pin.forwardKinematics, pin.updateFramePlacement
+    poses = np.empty((len(q), 4, 4))
+    for row, values in enumerate(q):
+        forward(model, data, values)
+        poses[row] = place(model, data, tool).homogeneous
+    return poses
+
+
 def frame_jacobian(robot: Robot, q: Array, frame: Any, index: int) -> Array:
     """As :func:`frame_pose` for :func:`jacobian`, with the axes in Pinocchio's name of them."""
     data = scratch(robot)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 Residual = Callable[[Array], tuple[Array, Array]]
 _STEPS = 30
-_LEAST_STRIDE = 1e-6
 
 
 def follow_branch_to_zero(
@@ -45,7 +44,7 @@ def follow_branch_to_zero(
     """
     x, (first, _) = start, residual(start)
     done, stride = 0.0, 1.0
-    while done < 1.0 and stride > _LEAST_STRIDE:
+    while done < 1.0 and stride > TOLERANCES.shortest_stride:
         goal = min(1.0, done + stride)
         found = _newton(residual, x, (1.0 - goal) * first, inside, tolerance)
         if found is None:

@@ -127,7 +127,7 @@ def fastest_cycle(
 
     Raises:
         MotorError: the pair cannot do the cycle at any speed; says which limit fails.
-        As :func:`size_cycle`.
+        MechanismError: and its kin, as :func:`size_cycle`.
     """
     require_masses(linkage, massless)
     gears = gear if isinstance(gear, Gearbox) else None

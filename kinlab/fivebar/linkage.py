@@ -36,6 +36,7 @@ from kinlab.fivebar import (
     singularity,
     workspace,
 )
+from kinlab.host.introductions import Answer, Introduction, brief, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 
@@ -86,6 +87,11 @@ def _pair(value: ArrayLike, what: str) -> Array:
     return frozen(np.broadcast_to(array, (2,)))
 
 
+def _both(pair: Array) -> str:
+    """One number where both legs have the same."""
+    return " and ".join(f"{value:g}" for value in dict.fromkeys(pair.tolist()))
+
+
 def _number(value: ArrayLike, what: str) -> float:
     return float(shaped(value, (), what, MechanismError))
 
@@ -102,8 +108,8 @@ Vector = Converted[Array]
 """Given and kept as (2,)."""
 
 
-@dataclass(frozen=True, eq=False)
-class FiveBar:
+@dataclass(frozen=True, eq=False, repr=False)
+class FiveBar(Answer):
     """A five-bar linkage. Pairs are (leg 1, leg 2); one number serves both legs.
 
     Leg 1 is based at (+e, 0), leg 2 at (-e, 0); theta_i and u_i belong to crank i, w_i to rod i.
@@ -241,6 +247,24 @@ class FiveBar:
         if payload is not None:
             values["payload"] = payload
         return replace(self, **values)
+
+    def introduction(self) -> Introduction:
+        """Lengths and masses, and where the numbers come from."""
+        bars = (("cranks", self.l1, self.crank_mass), ("rods", self.l2, self.rod_mass))
+        lengths = [f"{name} {_both(length)} m" for name, length, _ in bars]
+        pins = f"base pins at x = ±{self.e:g} m" if self.e else "both cranks on one axis"
+        masses = [f"{name} {_both(mass)} kg" for name, _, mass in bars if np.any(mass)]
+        masses += [f"payload {self.payload:g} kg"] if self.payload else []
+        carried = f"{', '.join(masses)}, gravity {vector(self.gravity)} m/s²"
+        lines = (brief(self.source), carried if masses else "no masses given")
+        return Introduction(
+            f"five-bar {self.name}: {', '.join([*lengths, pins])}",
+            tuple(line for line in lines if line),
+        )
+
+    def __repr__(self) -> str:
+        lengths = f"l1 {_both(self.l1)}, l2 {_both(self.l2)}, e {self.e:g} m"
+        return f"<FiveBar {self.name!r}: {lengths}>"
 
     @property
     def base_x(self) -> Array:

@@ -197,7 +197,7 @@ def isotropic_poses(
         resolution: starts along the longer side of the workspace.
 
     Returns:
-        Poses with kappa = 1 to 1e-9, from the lowest up; empty if there are none.
+        Poses with kappa = 1 to 1e-9, from the lowest up; empty if none was found.
 
     Raises:
         OptionError: a mode that does not exist.

@@ -203,7 +203,7 @@ def workspace_map(linkage: FiveBar, mode: Mode = HANGING, resolution: int = 201)
 def largest_circle(
     linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1, resolution: int = 121
 ) -> Circle:
-    """The largest circle without a singularity in one working and assembly mode.
+    """The largest circle found without a singularity in one working and assembly mode.
 
     The grid's best places are refined by halving steps, so the answer is a local best to
     1e-6 m; a second region narrower than a cell of the grid can be missed. With both cranks on
@@ -244,10 +244,11 @@ def largest_rectangle(
     resolution: int = 121,
     max_condition: float = np.inf,
 ) -> Rectangle:
-    """The largest upright rectangle without a singularity in one working and assembly mode.
+    """The largest upright rectangle found without a singularity in one working and assembly mode.
 
     Cells of a grid that are free as a whole are joined; without a bound on the condition
-    number the sides are then moved outward as far as they go.
+    number the sides are then moved outward as far as they go: a local best. A bound on the
+    condition number is held at the corners of the grid's cells, and nowhere else.
 
     Args:
         linkage: the five-bar.

@@ -24,7 +24,7 @@ MOST_ROWS = 12
 """Rows of a table that are shown; the rest is counted."""
 
 _COLOURS = {"good": "#2e8b57", "bad": "#c0392b", "unsure": "#c98a00", "": "#8a8f98"}
-_BOX = "border-left: 4px solid {}; padding: 0.1em 0 0.1em 0.8em; max-width: 60em"
+_BOX = "border-left: 4px solid {}; padding: 0.1em 0 0.1em 0.8em; max-width: 60em; overflow-x: auto"
 _CELL = "padding: 0.1em 0.8em 0.1em 0; text-align: {}; white-space: nowrap"
 
 

@@ -1,13 +1,15 @@
 """How far a long calculation is: one line on a terminal or in a notebook, nothing elsewhere.
 
 The line comes after two seconds, so that what is quick says nothing; a pipe, a log or a test never
-sees it. It is written to stderr, over itself, and wiped at the end. Whatever runs inside a
-calculation only moves its line on.
+sees it, and ``KINLAB_PROGRESS=0`` silences it where a notebook is run to be printed. It is written
+to stderr, over itself, and wiped at the end. Whatever runs inside a calculation only moves its line
+on.
 """
 
 from __future__ import annotations
 
 import functools
+import os
 import sys
 import threading
 import time
@@ -129,6 +131,8 @@ def pulse() -> None:
 
 def watched() -> bool:
     """Whether somebody looks on: stderr is a terminal or a notebook's, in the main thread."""
+    if os.environ.get("KINLAB_PROGRESS") == "0":
+        return False
     if threading.current_thread() is not threading.main_thread():
         return False
     look: Any = getattr(sys.stderr, "isatty", None)

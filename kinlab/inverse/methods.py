@@ -20,8 +20,9 @@ from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, near
 from kinlab.inverse import kernel
 from kinlab.inverse.result import IKHistory
-from kinlab.inverse.setup import DAMPING, FLOOR, Setup, beyond_reach
+from kinlab.inverse.setup import DAMPING, Setup, beyond_reach
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _RUNAWAY = 1e6
 """Radians (or lengths of the arm) in one step, beyond which q has lost its digits."""
@@ -69,9 +70,10 @@ def gradient_exact(jac: Array, error: Array) -> Array:
 
 
 def lm(jac: Array, error: Array) -> Array:
-    """(J^T J + mu 1) dq = J^T e with mu = DAMPING ||e||^2 / 2 + FLOOR (Sugihara 2011)."""
+    """(J^T J + mu 1) dq = J^T e with mu = DAMPING ||e||^2 / 2 + damping_floor (Sugihara 2011)."""
     damped = jac.T @ jac
-    damped[np.diag_indices_from(damped)] += 0.5 * DAMPING * float(error @ error) + FLOOR
+    mu = 0.5 * DAMPING * float(error @ error) + TOLERANCES.damping_floor
+    damped[np.diag_indices_from(damped)] += mu
     return _solve(damped, jac.T @ error)
 
 
@@ -109,7 +111,7 @@ def choose(method: Any, alpha: Any) -> Step:
     return partial(gradient, alpha=float(value))
 
 
-class Limits(NamedTuple):
+class StopRule(NamedTuple):
     """When a search stops.
 
     Attributes:
@@ -128,7 +130,7 @@ class Limits(NamedTuple):
     patience: int
 
 
-class Outcome(NamedTuple):
+class SearchOutcome(NamedTuple):
     """As the kernel's: q, how it ended (its codes), iterations, searches; and the record."""
 
     q: Array
@@ -139,8 +141,8 @@ class Outcome(NamedTuple):
 
 
 def search(
-    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: Limits
-) -> Outcome:
+    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: StopRule
+) -> SearchOutcome:
     """Searches from q0, the starts nearest to the target, and others, until one succeeds.
 
     Args:
@@ -177,10 +179,10 @@ def search(
         elif best_end != kernel.OUTSIDE:
             _wrap(arm, q, q0)
             q = np.clip(q, arm.lower, arm.upper)
-            energy = _energy(_weighted(arm, _error(robot, q, target)))
+            energy = _energy(_weighted(arm, pose_error(fk(robot, q), target)))
             if energy < best:
                 best, best_q, best_end = energy, q, end
-    return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
+    return SearchOutcome(best_q, best_end, len(record), tried, _history(record, robot.n))
 
 
 def _one_search(
@@ -190,7 +192,7 @@ def _one_search(
     q: Array,
     q0: Array | None,
     step: Step,
-    limits: Limits,
+    limits: StopRule,
     number: int,
     record: list[tuple[Array, float, float, int]],
 ) -> tuple[int, Array]:
@@ -202,7 +204,7 @@ def _one_search(
     mark = math.inf
     outside: Array | None = None
     for count in range(limits.iterations):
-        error = _error(robot, q, target)
+        error = pose_error(fk(robot, q), target)
         asked = np.where(arm.weight > 0.0, error, 0.0)
         position, rotation = float(np.linalg.norm(asked[:3])), float(np.linalg.norm(asked[3:]))
         record.append((q.copy(), position, rotation, number))
@@ -244,10 +246,10 @@ def _one_search(
     return (kernel.STALLED, q) if outside is None else (kernel.OUTSIDE, outside)
 
 
-def _error(robot: Robot, q: Array, target: Array) -> Array:
-    """(p_d - p, log(R_d R^T)) in the base's axes, (6,)."""
+def pose_error(here: Array, goal: Array) -> Array:
+    """(p_d - p, log(R_d R^T)) in the base's axes, (6,), between two poses (4, 4)."""
     error, turned = np.empty(6), np.empty(9)
-    kernel.pose_error(fk(robot, q)[:3].ravel(), target[:3].ravel(), turned, error)
+    kernel.pose_error(here[:3].ravel(), goal[:3].ravel(), turned, error)
     return error
 
 

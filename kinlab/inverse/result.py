@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
 
 
@@ -38,12 +39,18 @@ class IKStatus(StrEnum):
 
 _WHY = {
     IKStatus.CONVERGED: "within the tolerances and the limits",
-    IKStatus.OUTSIDE_LIMITS: "the pose can be had, but only outside the joint limits",
+    IKStatus.OUTSIDE_LIMITS: "the pose can be had, but every q found for it breaks a joint limit",
     IKStatus.SINGULARITY: "the search came to rest at a singular posture",
     IKStatus.LOCAL_MINIMUM: "no more progress; more restarts may find it",
     IKStatus.UNREACHABLE: "the pose seems out of reach",
     IKStatus.ITERATION_LIMIT: "still coming closer when the iterations ran out",
 }
+
+_SUSPECTED = {
+    IKStatus.OUTSIDE_LIMITS: "that no solution is within the limits",
+    IKStatus.UNREACHABLE: "that the pose is out of reach",
+}
+"""What a failure is taken for, and does not prove."""
 
 BRANCH = "branch"
 """The task where a branch was asked for: what :func:`kinlab.ik_branches` asks of such an arm."""
@@ -94,6 +101,20 @@ class IKResult(Answer):
     history: IKHistory | None = None
     task: str = "pose"
 
+    @property
+    def evidence(self) -> Evidence:
+        """What was searched; a success is measured, a failure is never a proof."""
+        if self.task == BRANCH:
+            searched = "the branches of the pose"
+        else:
+            searched = f"{1 + self.restarts} searches, {self.iterations} iterations together"
+        measured = (
+            f"at q the tool is {self.position_error:.3g} m and {self.rotation_error:.3g} rad off"
+        )
+        if self.success:
+            return Evidence(searched, proved=f"{measured}, within the limits")
+        return Evidence(searched, proved=measured, found=_SUSPECTED.get(self.status, ""))
+
     def introduction(self) -> Introduction:
         """How it ended, how far off the tool is, and where the joints are."""
         ended = "solved" if self.success else f"NOT solved: {_WHY[self.status]}"
@@ -133,6 +154,16 @@ class IKBatch(Rows):
 
     def __len__(self) -> int:
         return len(self.q)
+
+    @property
+    def evidence(self) -> Evidence:
+        """What was searched for all poses together, and what is measured."""
+        solved = int(np.sum(self.success))
+        return Evidence(
+            f"{len(self) + int(np.sum(self.restarts))} searches for {len(self)} poses",
+            proved=f"{solved} poses are met within tolerance and limits",
+            found="" if solved == len(self) else f"why the other {len(self) - solved} are not",
+        )
 
     def columns(self) -> dict[str, Any]:
         """Pose by pose: joints, how the search ended, and the errors."""

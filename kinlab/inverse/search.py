@@ -11,18 +11,18 @@ import math
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number, truth
 from kinlab.engine.fast.compiled import kernel as compiled
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.engine.fast.threads import over_rows
+from kinlab.engine.kinematics import tool_poses
 from kinlab.errors import OptionError
 from kinlab.host.progress import takes_long
 from kinlab.inverse import kernel, methods
-from kinlab.inverse.branch_names import matching
-from kinlab.inverse.branches import IKBranches, ik_branches
+from kinlab.inverse.branches.names import matching
+from kinlab.inverse.branches.solutions import IKBranches, ik_branches
 from kinlab.inverse.request import RESTARTS, Request, read_request
 from kinlab.inverse.result import BRANCH, IKBatch, IKHistory, IKResult, IKStatus
 from kinlab.inverse.setup import (
@@ -36,10 +36,8 @@ from kinlab.inverse.setup import (
     setup,
 )
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot, scratch
-
-TOL_STEP = 1e-13
-"""||q_{k+1} - q_k|| below which the readable search stops, where the caller gives none."""
+from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _GRAIN = 32
 """Poses worth handing to a thread: some 0.2 ms of work."""
@@ -54,10 +52,6 @@ patience, for at a singularity a search halves its error slowly."""
 _FURTHER = 80
 """Searches more for a pose that has been met outside the limits only. Of 200,000 reachable poses
 on ten arms 64 were missed without them."""
-
-_SINGULAR = 1e-3
-"""sigma_min / sigma_max of J, metres over the arm's length, below which a rest is at a
-singularity."""
 
 
 def ik(
@@ -118,7 +112,8 @@ def ik(
         NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
-    robot = as_robot(robot)
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
@@ -270,9 +265,9 @@ def _readable(
 ) -> tuple[Array, Any, Array, IKHistory]:
     """As :func:`_search` for one target, over Pinocchio calls, with every iteration."""
     step = methods.choose(method, alpha)
-    limits = methods.Limits(
+    limits = methods.StopRule(
         *asked.tolerances,
-        TOL_STEP if tol_step is None else number(tol_step, "tol_step", above=0.0),
+        TOLERANCES.search_step if tol_step is None else number(tol_step, "tol_step", above=0.0),
         ITERATIONS[method] if asked.iterations is None else asked.iterations,
         asked.searches,
         PATIENCE[method],
@@ -374,7 +369,7 @@ def _why(
     rows = list(arm.rows)
     scaled = np.sqrt(arm.weight[rows])[:, None] * jacobian(robot, q[row])[rows]
     values = np.linalg.svd(scaled, compute_uv=False)
-    lost = values[-1] <= _SINGULAR * values[0]
+    lost = values[-1] <= TOLERANCES.rests_singular * values[0]
     return IKStatus.SINGULARITY if lost else IKStatus.LOCAL_MINIMUM
 
 
@@ -455,17 +450,8 @@ def _errors_of_rows(poses, targets, weight, errors):  # type: ignore[no-untyped-
 def _measure(robot: Robot, q: Array, targets: Array, weight: Array, errors: Array) -> None:
     """Position and rotation error of each row, metres and radians, by Pinocchio: the last word.
 
-    ``pin.forwardKinematics`` is called on purpose, not :func:`kinlab.fk`, whose batches may run on
-    the same compiled chain as the search.
-
     Args:
         robot: the robot. q: (N, n). targets: (N, 4, 4).
         weight: (6,), zero for coordinates not asked for. errors: (N, 2), written.
     """
-    model, data, tool = robot.model, scratch(robot), robot.tool
-    forward, place = pin.forwardKinematics, pin.updateFramePlacement
-    poses = np.empty((len(q), 4, 4))
-    for row, values in enumerate(q):
-        forward(model, data, values)
-        poses[row] = place(model, data, tool).homogeneous
-    _errors_of_rows(poses, targets, weight, errors)
+    _errors_of_rows(tool_poses(robot, q), targets, weight, errors)

@@ -15,6 +15,7 @@ from kinlab.engine.fast.arrays import chain
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.inverse.kernel import Search
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 STARTS = 256
 """States in the table of starts. From 64 to 256 the mean number of iterations falls by a tenth to
@@ -28,13 +29,10 @@ LENGTH = 0.35
 """Length that divides metres beside radians, as a share of the arm's; flat from 0.25 to 0.5."""
 
 DAMPING = 0.1
-"""mu = DAMPING * E + FLOOR; from 0.03 to 0.3 the number of iterations is flat."""
+"""mu = DAMPING * E + damping_floor; from 0.03 to 0.3 the number of iterations is flat."""
 
 SETTLE = 100
 """Iterations at most to bring a failed search to rest, for the closest pose."""
-
-FLOOR = 1e-9
-"""Keeps J^T J + mu 1 invertible at a singular solution; larger ones slow the last steps there."""
 
 ITERATIONS = {"newton": 60, "gradient": 5000, "lm": 60}
 """Iterations of one search, where the caller sets none."""
@@ -193,7 +191,7 @@ def search_of(
         arm.starts,
         np.array(tolerances),
         DAMPING,
-        FLOOR,
+        TOLERANCES.damping_floor,
         iterations,
         searches,
         PATIENCE["lm"],

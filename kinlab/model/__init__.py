@@ -11,7 +11,7 @@ module              what it holds
 ``payload``         A load in the tool: the same arm with a heavier last link
 ``robot``           Robot: a small frozen handle of a serial arm in Pinocchio. It only looks
                     things up
-``rotations``       Rotations as URDF writes them: fixed-axis roll, pitch, yaw
+``rotations``       Rotations: about an axis, along a rotation vector, and as URDF writes them
 ``strict_numbers``  The one reader of plain numbers in files: what it accepts, every other program
                     reads alike
 ``table_files``     DH tables as files: TOML (read and written) and CSV (read), as plain values

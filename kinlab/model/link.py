@@ -25,8 +25,9 @@ class Convention(StrEnum):
     """Which of the two DH conventions a table is written in.
 
     STANDARD: T_i = Rz(theta_i) Tz(d_i) Tx(a_i) Rx(alpha_i); frame i at the far end of link i.
+
     MODIFIED: T_i = Rx(alpha_{i-1}) Tx(a_{i-1}) Rz(theta_i) Tz(d_i); frame i on joint axis i.
-        The row of link i holds alpha_{i-1} and a_{i-1}, as Craig prints it.
+    The row of link i holds alpha_{i-1} and a_{i-1}, as Craig prints it.
     """
 
     STANDARD = "standard"
@@ -217,8 +218,8 @@ def _last_digit(value: float) -> float:
 # -------- One row of a DH table: geometry, limits and inertia of a link and its joint
 
 _GEOMETRY = ("a", "alpha", "d", "theta")
-_FRICTION = ("viscous_friction", "coulomb_friction")
-_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature", *_FRICTION)
+FRICTION = ("viscous_friction", "coulomb_friction")
+_NUMBERS = (*_GEOMETRY, "lower", "upper", "velocity", "effort", "mass", "armature", *FRICTION)
 
 
 @dataclass(frozen=True, eq=False)
@@ -293,7 +294,7 @@ class DHLink:
         assert self.lower is not None and self.upper is not None
         if self.lower > self.upper:
             raise TableError(f"{place}: lower {self.lower:g} is above upper {self.upper:g}")
-        for column in ("mass", "armature", "velocity", "effort", *_FRICTION):
+        for column in ("mass", "armature", "velocity", "effort", *FRICTION):
             if getattr(self, column) < 0:
                 raise TableError(f"{place}: {column} is {getattr(self, column):g}; it must be >= 0")
         check_symmetric(np.asarray(self.inertia), place, TableError)

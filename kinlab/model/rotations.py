@@ -1,4 +1,4 @@
-"""Rotations as URDF writes them: fixed-axis roll, pitch, yaw."""
+"""Rotations: about an axis, along a rotation vector, and as URDF writes them (roll, pitch, yaw)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
 
@@ -21,6 +22,27 @@ def rpy_matrix(roll: float, pitch: float, yaw: float) -> Array:
             [-sp, cp * sr, cp * cr],
         ]
     )
+
+
+def about_axis(axis: int, angle: ArrayLike) -> Array:
+    """Rotations about x, y or z (axis 0, 1, 2) by angles (...), shape (..., 3, 3)."""
+    c, s = np.cos(angle), np.sin(angle)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    out = np.zeros((*np.shape(angle), 3, 3))
+    out[..., axis, axis] = 1.0
+    out[..., i, i] = out[..., j, j] = c
+    out[..., j, i], out[..., i, j] = s, -s
+    return out
+
+
+def rotations_along(vector: Array, share: ArrayLike = 1.0) -> Array:
+    """exp([vector] share), shape (..., 3, 3) for shares (...), by Rodrigues; vector (3,), rad."""
+    angle = float(np.linalg.norm(vector))
+    x, y, z = vector / angle if angle > 0.0 else vector
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    phi = angle * np.asarray(share, dtype=np.float64)[..., np.newaxis, np.newaxis]
+    out: Array = np.eye(3) + np.sin(phi) * cross + 2.0 * np.sin(0.5 * phi) ** 2 * (cross @ cross)
+    return out
 
 
 def matrices_rpy(rotations: Iterable[Array]) -> list[tuple[float, float, float]]:

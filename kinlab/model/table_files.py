@@ -28,20 +28,19 @@ from kinlab.arrays import Array, truth
 from kinlab.errors import ExpressionError, FileError, TableError, near
 from kinlab.formulas.numbers import parse_angle, parse_number
 from kinlab.host.files import read_text, read_toml
-from kinlab.model.link import read_convention
+from kinlab.model.link import FRICTION, read_convention
 from kinlab.model.rotations import rpy_matrix
 
 MOST_LINKS = 100
 """Most links of a table: the engine's memory grows with the cube, 70 MB at 100."""
 
 _REQUIRED = ("joint", "a", "alpha", "d", "theta")
-_FRICTION = ("viscous_friction", "coulomb_friction")
-_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature", *_FRICTION)
+_LENGTHS = ("a", "d", "velocity", "effort", "mass", "armature", *FRICTION)
 _ANGLES = ("alpha", "theta")
 _LIMITS = ("lower", "upper")
 TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 COM = ("com_x", "com_y", "com_z")
-_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature", *_FRICTION)
+_DYNAMICS = ("velocity", "effort", "mass", "com", "inertia", "armature", *FRICTION)
 _LINK_KEYS = (*_REQUIRED, "flip", *_LIMITS, *_DYNAMICS, "name")
 _TABLE_KEYS = (
     *("name", "convention", "source", "gravity", "base", "tool", "tool_name"),

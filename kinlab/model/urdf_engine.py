@@ -20,8 +20,6 @@ from kinlab.tolerances import TOLERANCES
 MOST_JOINTS = 100
 """Most moving joints of a chain: the engine's memory grows with the cube, 70 MB at 100."""
 
-_LEAST = 1e-300
-
 
 def document(tree: UrdfTree, chain: list[str]) -> str:
     """Writes the records as a URDF without pictures.
@@ -130,7 +128,7 @@ def _text(values: Array) -> str:
 
 def _digits(value: float) -> str:
     """All digits; what is too small for a C++ stream to read is 0."""
-    return repr(float(value)) if abs(value) > _LEAST else "0.0"
+    return repr(float(value)) if abs(value) > TOLERANCES.subnormal else "0.0"
 
 
 def _compare(model: Any, tree: UrdfTree, chain: list[str], place: str) -> None:

@@ -2,9 +2,10 @@
 
 Limits are compared with exact extremes. For singularities the time is cut into pieces: on one of
 half-length h about its middle, |q - q_mid| <= |v_mid| h + A h²/2 with A the largest acceleration,
-and sigma_min(J) changes by at most K |q - q_mid| (:func:`kinlab.analysis.nearest.slope_bound`), so
-that a piece is free for certain, or is cut again. What is left at the end is either a change of
-sign of det J, which is a singularity for certain, or is said to be undecided.
+and sigma_min(J) changes by at most K |q - q_mid|
+(:func:`kinlab.analysis.singularities.nearest.slope_bound`), so that a piece is free for certain, or
+is cut again. What is left at the end is either a change of sign of det J, which is a singularity
+for certain, or is said to be undecided.
 """
 
 from __future__ import annotations
@@ -16,28 +17,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
-from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task
 from kinlab.arrays import Array
 from kinlab.drives.arm import demand_of
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import StructureError
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told, counted
-from kinlab.inverse.branches import ik_branches
+from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.motion.limits import positions_outside, read_limits
 from kinlab.motion.record import Motion, peak_of
+from kinlab.tolerances import TOLERANCES
 
 _MOST = 20_000
 """Pieces of time looked at before what is left counts as undecided."""
-_NARROW = 1e-7
-"""Part of the duration at which a piece is not cut any more."""
-_SAME = 1e-4
-"""Part of the duration within which two findings of one kind are one."""
-
-_BESIDE = 1e-3
-"""How far beside a singularity the branch is named, in parts of the duration."""
 
 
 @dataclass(frozen=True)
@@ -76,6 +72,17 @@ class MotionCheck(Told):
     task: str
     branches: tuple[str, str]
     instants: int = 0
+
+    @property
+    def evidence(self) -> Evidence:
+        """What holds at all times, and what was looked at in instants only."""
+        proved = (
+            "limits of positions, velocities and accelerations are compared with exact extremes"
+        )
+        if self.sigma is not None:
+            proved += f"; sigma_min stays above {self.sigma:.3g}, so that no singularity is met"
+        efforts = f"efforts at {self.instants:,} instants" if self.instants else ""
+        return Evidence("the whole motion, piece by piece", proved=proved, found=efforts)
 
     @property
     def ok(self) -> bool:
@@ -190,8 +197,8 @@ def _changes(space: TaskSpace, motion: Motion, singular: list[Finding]) -> list[
     for k, one in enumerate(singular):
         before = times[k - 1] if k else 0.0
         after = times[k + 1] if k + 1 < len(times) else motion.duration
-        low = one.t - min(_BESIDE * motion.duration, 0.5 * (one.t - before))
-        high = one.t + min(_BESIDE * motion.duration, 0.5 * (after - one.t))
+        low = one.t - min(TOLERANCES.beside_singularity * motion.duration, 0.5 * (one.t - before))
+        high = one.t + min(TOLERANCES.beside_singularity * motion.duration, 0.5 * (after - one.t))
         names = [_branch(space, motion.at(t)[0]) for t in (low, high)]
         if not _other_branch(*names):
             continue
@@ -238,13 +245,13 @@ def _singularities(space: TaskSpace, motion: Motion) -> tuple[float | None, list
     while len(centre):
         looked += len(centre)
         q, v, _ = motion.at(centre)
-        values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+        values = space.sigma(q)
         least = values[:, -1] - 1e-12 * values[:, 0]
         reach = slope * (np.linalg.norm(v, axis=1) * half + 0.5 * push * half**2)
         good = reach <= 0.5 * least
         if good.any():
             bound = min(bound, float((least - reach)[good].min()))
-        narrow = ~good & (half <= _NARROW * motion.duration)
+        narrow = ~good & (half <= TOLERANCES.narrowest_piece * motion.duration)
         left.extend(centre[narrow])
         again = ~good & ~narrow
         if looked > _MOST:
@@ -261,7 +268,7 @@ def _met(space: TaskSpace, motion: Motion, times: Array) -> list[Finding]:
     """The pieces that could not be shown free, as findings: crossings of det J = 0, or near."""
     robot = space.robot
     found = []
-    apart = np.flatnonzero(np.diff(times) > _SAME * motion.duration) + 1
+    apart = np.flatnonzero(np.diff(times) > TOLERANCES.same_finding * motion.duration) + 1
     for group in np.split(times, apart):
         wide = max(2e-6 * motion.duration, 0.05 * float(group[-1] - group[0]))
         low = max(0.0, float(group[0]) - wide)
@@ -283,7 +290,7 @@ def _met(space: TaskSpace, motion: Motion, times: Array) -> list[Finding]:
 
 
 def _sigma(space: TaskSpace, motion: Motion, t: Array) -> Array:
-    values = np.linalg.svd(space.jacobian(motion.at(t)[0], space.scale), compute_uv=False)
+    values = space.sigma(motion.at(t)[0])
     out: Array = values[:, -1] / values[:, 0]
     return out
 

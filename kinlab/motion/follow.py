@@ -8,23 +8,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.structure.task_space import TaskSpace
-from kinlab.arrays import Array
+from kinlab.arrays import Array, between
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import SingularError, UnreachableError
+from kinlab.inverse.methods import pose_error
 from kinlab.inverse.postures.path import IKPath, ik_path
 from kinlab.inverse.search import ik
 from kinlab.model.robot import Robot
 from kinlab.motion.ways import TimedWay
+from kinlab.tolerances import TOLERANCES
 
-_TOLERANCE = 1e-10
-"""m and rad of the inverse kinematics at the samples."""
-_LOST = 1e-4
-"""sigma_min / sigma_max of J, metres over the arm's length, at which a way is refused: joint
-rates are then 10⁴ times the tool's."""
 _ROWS = 20
 """Poses that are followed at a time: a way that ends is not searched on beyond its end."""
 
@@ -40,7 +36,8 @@ def follow(
 ) -> Array:
     """Joint positions at the times, (N, n), on one branch and clear of singularities."""
     mask = [row in space.rows for row in range(6)]
-    begin = ik(robot, goals[0], q0, "lm", _TOLERANCE, _TOLERANCE, seed, task=mask)
+    near = TOLERANCES.follows
+    begin = ik(robot, goals[0], q0, "lm", near, near, seed, task=mask)
     if not begin.success:
         raise UnreachableError(_unreachable(robot, goals[0], 0.0, begin, None))
     if space.m < robot.n:
@@ -67,10 +64,11 @@ def _on_one_branch(
     """:func:`kinlab.ik_path` from q on, some rows at a time, up to the first that ends the way."""
     mask = [row in space.rows for row in range(6)]
     rows = [q[np.newaxis]]
+    near = TOLERANCES.follows
     for first in range(0, len(goals), _ROWS):
         part = slice(first, first + _ROWS)
-        found = ik_path(robot, goals[part], rows[-1][-1], _TOLERANCE, _TOLERANCE, seed, task=mask)
-        ended = np.flatnonzero(found.conditioning < _LOST)
+        found = ik_path(robot, goals[part], rows[-1][-1], near, near, seed, task=mask)
+        ended = np.flatnonzero(found.conditioning < TOLERANCES.way_lost)
         bad = np.union1d(np.flatnonzero(~found.success), found.jumps).astype(int)
         if len(ended) and (not len(bad) or ended[0] < bad[0]):
             row = first + int(ended[0])
@@ -104,7 +102,7 @@ def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array
     """
     jac = space.jacobian(q, space.scale)
     values = np.linalg.svd(jac, compute_uv=False)
-    lost = values[:, -1] < _LOST * values[:, 0]
+    lost = values[:, -1] < TOLERANCES.way_lost * values[:, 0]
     if space.m == robot.n:
         sign = np.sign(np.linalg.det(jac))
         lost |= np.concatenate([[False], sign[1:] != sign[:-1]])
@@ -130,12 +128,12 @@ def _with_spare_joints(
         q = q + step / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
         for _ in range(8):
             error = pose_error(fk(robot, q), goals[k])[list(space.rows)]
-            if np.abs(error).max() <= _TOLERANCE:
+            if np.abs(error).max() <= TOLERANCES.follows:
                 break
             q = q + np.linalg.pinv(jacobian(robot, q)[list(space.rows)]) @ error
         else:
             raise SingularError(_singular(robot, space, times, goals, rows[-1], k - 1))
-        outside = (q < robot.lower - 1e-9) | (q > robot.upper + 1e-9)
+        outside = ~between(q, robot.lower, robot.upper, TOLERANCES.limit_digits)
         if outside.any():
             name = robot.joint_names[int(np.argmax(outside))]
             raise UnreachableError(
@@ -150,12 +148,6 @@ def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
     rows = list(space.rows)
     out: Array = np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
     return out
-
-
-def pose_error(here: Array, goal: Array) -> Array:
-    """What moves one pose to another, (6,), linear first, in base axes."""
-    turn = here[:3, :3] @ np.asarray(pin.log3(here[:3, :3].T @ goal[:3, :3]))
-    return np.concatenate([goal[:3, 3] - here[:3, 3], turn])
 
 
 # -------- What is said where a way cannot be had
@@ -187,7 +179,7 @@ def _unreachable(
 def _singular(
     robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, row: int
 ) -> str:
-    values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+    values = space.sigma(q)
     text = (
         f"robot {robot.name!r}: {_place(times[row], goals[row])}, the way meets a singularity of "
         f"task {space.name}: sigma_min / sigma_max is {values[-1] / values[0]:.2g}"

@@ -12,9 +12,7 @@ from kinlab.arrays import Array, real_array
 from kinlab.errors import LimitError, OptionError
 from kinlab.model.robot import Robot
 from kinlab.motion.record import peak_of, stretch
-
-_SLACK = 1e-9
-"""Relative: a motion planned to its limit may lie above it by rounding."""
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True)
@@ -100,7 +98,7 @@ def require_limits(robot: Robot, curve: Any, limits: Limits) -> None:
     """
     require_positions(robot, curve)
     factor = stretch_to(curve, limits)
-    if factor <= 1.0 + _SLACK:
+    if factor <= 1.0 + TOLERANCES.at_limit:
         return
     duration = float(curve.x[-1])
     for name, order, bound in (

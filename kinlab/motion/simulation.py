@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, frozen, number, real_array, shaped
+from kinlab.arrays import Array, between, frozen, number, real_array, shaped
 from kinlab.engine.dynamics import kinetic_energy, potential_energy
 from kinlab.engine.integrator import integrate
 from kinlab.engine.kinematics import jacobian, read_wrench
@@ -25,19 +26,21 @@ from kinlab.errors import OptionError, StateError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar import simulation as fivebar_simulation
 from kinlab.fivebar.linkage import as_mechanism
+from kinlab.fivebar.simulation import Torque
 from kinlab.host.introductions import Told
 from kinlab.model.library import ArmLike
 from kinlab.model.robot import Robot, require_inertia, scratch
 from kinlab.motion.record import even_times
-
-Torque = Callable[[float, Array, Array], ArrayLike]
+from kinlab.tolerances import TOLERANCES
 
 _MOST_CHANGES = 5_000
 """Instants at which joints stop or break loose before a simulation is given up."""
 _MOST_AT_ONCE = 60
 """The same within a millionth of the duration."""
-_REST = 1e-10
-"""rad/s or m/s below which a joint with friction counts as at rest where it turns round."""
+_ROUNDS = 400
+"""Rounds over the joints before all patterns of sticking and sliding are tried."""
+_MOST_PATTERNS = 8
+"""Joints with friction up to which that is done: 3^8 patterns, a second."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -205,7 +208,7 @@ class _Arm:
                     f"robot {self.robot.name!r}: joints stop and break loose without end at t = "
                     f"{here:.6g} s ({changes} times so far); soften the torque's gains"
                 )
-            turned = (self.mode != 0.0) & (self.mode * state[n : 2 * n] <= _REST)
+            turned = (self.mode != 0.0) & (self.mode * state[n : 2 * n] <= TOLERANCES.at_rest)
             state[n : 2 * n][turned] = 0.0
         table = np.array(rows)
         q, v = table[:, :n], table[:, n : 2 * n]
@@ -268,7 +271,7 @@ class _Arm:
         n = self.robot.n
         q, v = state[:n], state[n : 2 * n]
         sliding = self.mode != 0.0
-        least = float(np.min((self.mode * v + _REST)[sliding], initial=np.inf))
+        least = float(np.min((self.mode * v + TOLERANCES.at_rest)[sliding], initial=np.inf))
         held = ~sliding & (self.dry > 0.0)
         if held.any():
             tau = self.torque(t, q, v)
@@ -294,7 +297,7 @@ class _Arm:
         self.mode = np.where(rest, np.sign(a), self.mode)
 
     def _remarks(self, times: Array, q: Array) -> tuple[str, ...]:
-        outside = (q < self.robot.lower - 1e-9) | (q > self.robot.upper + 1e-9)
+        outside = ~between(q, self.robot.lower, self.robot.upper, TOLERANCES.limit_digits)
         return tuple(
             f"{self.robot.joint_names[joint]} is outside its limits from t = "
             f"{times[int(np.argmax(outside[:, joint]))]:.4g} s on: there are no end stops"
@@ -305,26 +308,51 @@ class _Arm:
 def least_constraint(inertia: Array, right: Array, dry: Array) -> Array:
     """The a that minimises ½ a^T M a - a^T r + sum c_i |a_i|, (n,).
 
-    Coordinate by coordinate until the pattern of zeros and signs explains itself: with it, the
-    free accelerations solve a linear equation, and the held joints need less than their friction.
+    A pattern says of each joint with friction whether it is held or slides, and which way; with it
+    the free accelerations solve a linear equation. Coordinate by coordinate the iterates come to
+    the pattern of the minimum; where that takes too long (joints of very unlike inertia), all
+    patterns are tried. An answer is given only if it explains itself: every free joint slides as
+    its pattern says, every held one needs no more than its friction. The function is strictly
+    convex, so that this proves it.
+
+    Raises:
+        OptionError: no pattern explains itself in double precision.
     """
-    n = len(right)
-    a = np.zeros(n)
-    for _ in range(400):
-        for i in range(n):
+    a = np.zeros(len(right))
+    for _ in range(_ROUNDS):
+        for i in range(len(right)):
             pull = right[i] - inertia[i] @ a + inertia[i, i] * a[i]
             a[i] = np.sign(pull) * max(abs(pull) - dry[i], 0.0) / inertia[i, i]
-        sign = np.sign(a)
-        free = (sign != 0.0) | (dry == 0.0)
-        exact = np.zeros(n)
-        if free.any():
-            exact[free] = np.linalg.solve(inertia[np.ix_(free, free)], (right - dry * sign)[free])
-        needed = right - inertia @ exact
-        slack = 1e-12 * (1.0 + np.abs(right).max())
-        same = np.all(np.sign(exact[free & (dry > 0.0)]) == sign[free & (dry > 0.0)])
-        if same and np.all(np.abs(needed[~free]) <= dry[~free] + slack):
+        exact = _explained(inertia, right, dry, np.where(dry > 0.0, np.sign(a), 0.0))
+        if exact is not None:
             return exact
-    return a
+    rubbing = np.flatnonzero(dry > 0.0)
+    if len(rubbing) <= _MOST_PATTERNS:
+        for signs in product((0.0, 1.0, -1.0), repeat=len(rubbing)):
+            pattern = np.zeros(len(right))
+            pattern[rubbing] = signs
+            exact = _explained(inertia, right, dry, pattern)
+            if exact is not None:
+                return exact
+    raise OptionError(
+        "at rest no joint is found to stick or slide without contradiction: the mass matrix is so "
+        f"ill-conditioned ({np.linalg.cond(inertia):.2g}) that rounding decides; give the links "
+        "inertias, or leave Coulomb friction out"
+    )
+
+
+def _explained(inertia: Array, right: Array, dry: Array, pattern: Array) -> Array | None:
+    """The accelerations of a pattern of -1, 0 and 1, (n,), if they agree with it."""
+    free = (pattern != 0.0) | (dry == 0.0)
+    a = np.zeros(len(right))
+    if free.any():
+        a[free] = np.linalg.solve(inertia[np.ix_(free, free)], (right - dry * pattern)[free])
+    slides = free & (dry > 0.0)
+    if not np.all(np.sign(a[slides]) == pattern[slides]):
+        return None
+    needed = np.abs(right - inertia @ a)[~free]
+    slack = 1e-12 * (1.0 + np.abs(right).max())
+    return a if np.all(needed <= dry[~free] + slack) else None
 
 
 # -------- Five-bar

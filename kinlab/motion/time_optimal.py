@@ -25,7 +25,7 @@ GRID = 800
 
 
 def plan(rows: Array, limits: Limits) -> Any:
-    """The fastest curve along the cubic spline through points (K, n), at rest at both ends.
+    """The fastest curve, on a grid, along the cubic spline through (K, n), from rest to rest.
 
     Raises:
         MissingExtraError: toppra is not installed. OptionError: it finds no motion.

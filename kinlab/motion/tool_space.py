@@ -16,9 +16,10 @@ from kinlab.drives import laws
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.engine.kinematics import jacobian_dot
 from kinlab.errors import OptionError
+from kinlab.inverse.methods import pose_error
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
-from kinlab.motion.follow import follow, pose_error
+from kinlab.motion.follow import follow
 from kinlab.motion.joint_space import STEP
 from kinlab.motion.limits import read_limits, require_limits
 from kinlab.motion.record import Motion, even_times, hermite, motion_of

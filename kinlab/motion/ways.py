@@ -20,6 +20,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, rigid_transform, shaped
 from kinlab.drives import laws
 from kinlab.errors import OptionError
+from kinlab.model.rotations import rotations_along
 
 
 @dataclass(frozen=True)
@@ -124,20 +125,10 @@ class TimedWay(NamedTuple):
                 carried = np.cross(twist[:, 3:], axis)
                 change[:, 3:] += gain[:, np.newaxis] * axis + speed[:, np.newaxis] * carried
                 twist[:, 3:] += speed[:, np.newaxis] * axis
-                rotation = rotation @ _turned(leg.turn, s)
+                rotation = rotation @ rotations_along(leg.turn, s)
         poses = np.zeros((count, 4, 4))
         poses[:, :3, :3], poses[:, :3, 3], poses[:, 3, 3] = rotation, place, 1.0
         return poses, twist, change
-
-
-def _turned(turn: Array, s: Array) -> Array:
-    """exp([turn] s), (N, 3, 3), by Rodrigues."""
-    angle = float(np.linalg.norm(turn))
-    axis = turn / angle
-    cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    phi = (s * angle)[:, np.newaxis, np.newaxis]
-    out: Array = np.eye(3) + np.sin(phi) * cross + 2.0 * np.sin(0.5 * phi) ** 2 * (cross @ cross)
-    return out
 
 
 def read_legs(name: str, poses: Sequence[Any] | ArrayLike) -> tuple[Array, tuple[Leg, ...]]:

@@ -5,6 +5,8 @@ from .canvas import save as save
 from .counts import solutions as solutions
 from .curves import singular_loci as singular_loci
 from .curves import singular_values as singular_values
+from .designs import fivebar_design as fivebar_design
+from .designs import fivebar_front as fivebar_front
 from .drives import torque_speed as torque_speed
 from .maps import workspace as workspace
 from .maps import workspace_cloud as workspace_cloud

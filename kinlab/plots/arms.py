@@ -94,5 +94,8 @@ def ellipses(
     axes.set_xlabel("x [m]")
     axes.set_ylabel("y [m]")
     axes.grid(alpha=0.25)
-    axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    if ax is None:
+        axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
+    else:  # the figure may hold other axes, with legends of their own
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), fontsize=9, frameon=False)
     return axes

@@ -28,9 +28,23 @@ def new_figure(size: tuple[float, float] = (6.4, 5.2)) -> Any:
         raise MissingExtraError(
             "figures need matplotlib: install it with pip install 'kinlab[plots]'"
         ) from None
-    figure = Figure(figsize=size, layout="constrained")
+
+    class Shown(Figure):
+        """A figure that a notebook shows, whether or not pyplot is there to teach it."""
+
+        def _repr_png_(self) -> bytes:
+            return picture(self, "png", dpi=100)
+
+    figure = Shown(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def picture(figure: Any, kind: str, dpi: float) -> bytes:
+    """The bytes of a figure as ``png``, ``svg`` or ``pdf``."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format=kind, dpi=dpi)
+    return buffer.getvalue()
 
 
 def figure_text(text: str) -> str:
@@ -103,7 +117,5 @@ def save(axes: Any, path: str | Path) -> Path:
     kind = file.suffix.lower().lstrip(".")
     if kind not in _FORMATS:
         raise FileError(f"{file}: a figure is a .png, .svg or .pdf file")
-    buffer = io.BytesIO()
-    axes.figure.savefig(buffer, format=kind, dpi=150)
-    write_bytes(file, buffer.getvalue())
+    write_bytes(file, picture(axes.figure, kind, dpi=150))
     return file

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.inverse.postures.solution_map import SolutionMap
+from kinlab.inverse.postures.solution_map import SolutionMap, solution_map
+from kinlab.model.library import ArmLike
 from kinlab.plots.canvas import RED, new_axes
 
 _LABELS = {
@@ -18,11 +19,11 @@ _LABELS = {
 _SHADES = ("#ffffff", "#eef2f7", "#cfe0f1", "#b5cfe8", "#86b0d8", "#5f93c6", "#3d76b0")
 
 
-def solutions(chart: SolutionMap, *, ax: Any = None) -> Any:
+def solutions(chart: SolutionMap | ArmLike, *, ax: Any = None) -> Any:
     """Cells coloured by how many solutions are within the limits, with curves, cusps and nodes.
 
     Args:
-        chart: the map.
+        chart: the map, or an arm, whose map is made.
         ax: where to draw; a new figure if left out.
 
     Returns:
@@ -30,7 +31,10 @@ def solutions(chart: SolutionMap, *, ax: Any = None) -> Any:
 
     Raises:
         MissingExtraError: matplotlib is not installed.
+        OptionError: an arm that has no such map, see :func:`kinlab.solution_map`.
     """
+    if not isinstance(chart, SolutionMap):
+        chart = solution_map(chart)
     axes = ax
     if axes is None:
         axes = new_axes(f"{chart.robot}: number of solutions\n{chart.text}")

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis import metrics
-from kinlab.analysis.loci import Loci
-from kinlab.analysis.loci import singular_loci as traced
+from kinlab.analysis.singularities.loci import Loci
+from kinlab.analysis.singularities.loci import singular_loci as traced
 from kinlab.analysis.structure.task_space import read_length, read_task
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError

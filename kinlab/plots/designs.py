@@ -13,8 +13,13 @@ from kinlab.plots.canvas import BLUE, GREY, new_axes, new_figure
 from kinlab.plots.mechanisms import bars, box_of
 
 
-def design_picture(design: FiveBarDesign, resolution: int = 121) -> Any:
+def fivebar_design(design: FiveBarDesign, *, resolution: int = 121, ax: Any = None) -> Any:
     """The condition number over the rectangle, with the linkage in the rectangle's middle.
+
+    Args:
+        design: the answer of :func:`kinlab.design_fivebar`.
+        resolution: points along each side.
+        ax: where to draw; a new figure if left out.
 
     Returns:
         The axes.
@@ -22,7 +27,7 @@ def design_picture(design: FiveBarDesign, resolution: int = 121) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    axes = new_axes(size=(8.0, 6.4))
+    axes = new_axes(size=(8.0, 6.4)) if ax is None else ax
     box, five = design.workspace, design.fivebar
     x, y = (np.linspace(a, b, resolution) for a, b in (box[:2], box[2:]))
     points = np.stack(np.meshgrid(x, y), axis=-1)
@@ -37,14 +42,19 @@ def design_picture(design: FiveBarDesign, resolution: int = 121) -> Any:
     axes.set_title(f"l1 = {l1:.4g} m, l2 = {l2:.4g} m, e = {e + 0.0:.4g} m")
     worst = design.goals["condition"]
     text = f"worst condition number {worst.value:.5g}, proved to {worst.bound:.5g}"
-    axes.figure.supxlabel(text, fontsize=9)
+    if ax is None:
+        axes.figure.supxlabel(text, fontsize=9)
     axes.use_sticky_edges = False
     axes.margins(0.06)
     return axes
 
 
-def front_picture(front: DesignFront) -> Any:
+def fivebar_front(front: DesignFront, *, ax: Any = None) -> Any:
     """The two goals along a Pareto front, and the three lengths beneath.
+
+    Args:
+        front: the answer of :func:`kinlab.fivebar_front`.
+        ax: where to draw, two axes one above the other; a new figure if left out.
 
     Returns:
         The first of its two axes.
@@ -52,8 +62,9 @@ def front_picture(front: DesignFront) -> Any:
     Raises:
         MissingExtraError: matplotlib is not installed.
     """
-    figure = new_figure((7.6, 6.8))
-    above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    if ax is None:
+        ax = new_figure((7.6, 6.8)).subplots(2, 1, sharex=True, height_ratios=(3, 2))
+    above, below = ax
     first, second = front.goals
     x, y = (np.array(front.values(goal)) for goal in (second, first))
     above.plot(x, y, color=BLUE, marker="o", lw=1.4)
@@ -70,5 +81,5 @@ def front_picture(front: DesignFront) -> Any:
     below.set(xlabel=f"{GOALS[second].words}{units[second]}", ylabel="lengths, m", ylim=(0.0, None))
     below.grid(color=GREY, alpha=0.25)
     below.legend(ncols=3, fontsize=9)
-    figure.suptitle(f"{len(front.designs)} five-bars of which none is better in both")
+    above.set_title(f"{len(front.designs)} five-bars of which none is better in both")
     return above

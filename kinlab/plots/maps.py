@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.boundary import PlanarBoundary, planar_boundary
-from kinlab.analysis.loci import singular_loci
-from kinlab.analysis.sections import WorkspaceSection, takes_limits, workspace_section
+from kinlab.analysis.singularities.loci import singular_loci
+from kinlab.analysis.workspace.boundary import PlanarBoundary, planar_boundary
+from kinlab.analysis.workspace.sections import WorkspaceSection, takes_limits, workspace_section
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import fk
 from kinlab.model.library import ArmLike, as_robot
@@ -114,7 +114,9 @@ def workspace_map(
     axes = ax
     if axes is None:
         part = "" if chart.complete else ", stopped early"
-        axes = new_axes(f"{chart.robot}: task {chart.task}, {len(chart.values)} samples{part}")
+        title = f"{chart.robot}: task {chart.task}, {len(chart.values)} samples{part}"
+        wide, high = np.ptp(flat.u), np.ptp(flat.v)
+        axes = new_axes(title, size=(float(np.clip(1.6 + 4.6 * wide / high, 5.2, 8.0)), 5.2))
     shown = _smooth(axes, flat)
     axes.figure.colorbar(shown, ax=axes, label=f"best {_METRICS[chart.metric]}", shrink=0.85)
     _lines(axes, flat, boundary, curves)
@@ -238,12 +240,13 @@ def _section_lines(axes: Any, section: WorkspaceSection) -> None:
         axes.plot(*inside.T, color=RED, lw=1.4, ls=style)
         axes.plot(*edge.T, color="black", lw=1.4, ls=style)
     named = (
-        ("edge", "black", "-"),
-        ("inside: solutions change", RED, "-"),
-        ("with a joint at a limit", "0.4", "--"),
+        ("edge", "black", "-", any(np.any(c.edge) for c in section.curves)),
+        ("inside: solutions change", RED, "-", not all(np.all(c.edge) for c in section.curves)),
+        ("with a joint at a limit", "0.4", "--", any(c.locked for c in section.curves)),
     )
-    for label, colour, style in named:
-        axes.plot([], [], color=colour, ls=style, lw=1.4, label=label)
+    for label, colour, style, drawn in named:
+        if drawn:
+            axes.plot([], [], color=colour, ls=style, lw=1.4, label=label)
     axes.figure.legend(loc="outside lower center", ncols=3, fontsize=9, frameon=False)
 
 

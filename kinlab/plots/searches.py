@@ -10,8 +10,7 @@ import numpy as np
 from kinlab.errors import OptionError
 from kinlab.inverse.result import IKHistory, IKResult
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes, whole_ticks
-
-_FLOOR = 1e-17
+from kinlab.tolerances import TOLERANCES
 
 
 def ik_history(
@@ -40,9 +39,10 @@ def ik_history(
     ):
         steps = np.arange(1, len(history.q) + 1)
         longest = max(longest, len(steps))
-        axes.plot(steps, np.maximum(history.position_error, _FLOOR), color=colour, label=label)
+        shown = np.maximum(history.position_error, TOLERANCES.drawn_error)
+        axes.plot(steps, shown, color=colour, label=label)
         if history.rotation_error.any():
-            shown = np.maximum(history.rotation_error, _FLOOR)
+            shown = np.maximum(history.rotation_error, TOLERANCES.drawn_error)
             axes.plot(steps, shown, color=colour, linestyle="--", alpha=0.7)
         for start in np.flatnonzero(np.diff(history.search)) + 1.5:
             axes.axvline(start, color=colour, linewidth=0.6, linestyle=":")

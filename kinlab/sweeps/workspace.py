@@ -12,14 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
 from kinlab.analysis.structure.task_space import TaskSpace, read_length, read_task, search_box
 from kinlab.arrays import Array, frozen, seed_of, whole, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import FileError, NameUnknownError, OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.files import write_bytes
+from kinlab.host.introductions import Introduction, Rows, counted
 from kinlab.host.progress import progress as line
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -32,8 +33,8 @@ Progress = Callable[[int, int], None]
 _FORMAT = 1
 
 
-@dataclass(frozen=True)
-class WorkspaceMap:
+@dataclass(frozen=True, repr=False)
+class WorkspaceMap(Rows):
     """Tool positions with a measure at each.
 
     Attributes:
@@ -57,6 +58,28 @@ class WorkspaceMap:
     seed: int
     complete: bool
     planar: bool
+
+    def columns(self) -> dict[str, Any]:
+        """Tool positions and the measure there."""
+        x, y, z = self.points.T
+        return {"x": x, "y": y, "z": z, self.metric: self.values}
+
+    def introduction(self) -> Introduction:
+        """How far the tool went, and the range of the measure."""
+        partly = "" if self.complete else ", stopped before its end"
+        lines = [str(self.evidence)]
+        if len(self.values):
+            low, high = self.points.min(axis=0), self.points.max(axis=0)
+            reach = ", ".join(
+                f"{axis} {a:.4g} to {b:.4g}" for axis, a, b in zip("xyz", low, high, strict=True)
+            )
+            span = f"{self.metric} {self.values.min():.4g} to {self.values.max():.4g}"
+            lines[:0] = [f"met: {reach} m", span]
+        return Introduction(
+            f"workspace map of {self.robot}, task {self.task}: "
+            f"{counted(len(self.values), 'tool position')}{partly}",
+            tuple(lines),
+        )
 
     @property
     def evidence(self) -> Evidence:

@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import poses_of, read_mine, reference_robot
 from kinlab.doctor.tables.diagnosis import diagnose_table
+from kinlab.doctor.tables.reference.against import poses_of, read_mine, reference_robot
 from kinlab.doctor.tables.result import TableDiagnosis
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
-from kinlab.viewer import shapes
-from kinlab.viewer.arm import draw_ghost, joint_paths, reach
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, joint_json, origins
-from kinlab.viewer.dh_picture import Carriers
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.arm import draw_ghost, joint_paths, reach
+from kinlab.viewer.drawing.dh_picture import Carriers
+from kinlab.viewer.drawing.shapes import look_at
 from kinlab.viewer.scene import Scene
-from kinlab.viewer.shapes import look_at
 
 _GHOST = 0x00897B
 _LIT = 0xD50000

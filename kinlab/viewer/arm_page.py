@@ -14,9 +14,9 @@ from kinlab.errors import StructureError
 from kinlab.model.extract import as_table
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
-from kinlab.viewer.arm import draw_arm, joint_paths, motion_subspace, reach
-from kinlab.viewer.dh_picture import columns, draw_dh, frames_only
-from kinlab.viewer.shapes import add_ellipsoids, empty_spec, look_at, set_stage
+from kinlab.viewer.drawing.arm import draw_arm, joint_paths, motion_subspace, reach
+from kinlab.viewer.drawing.dh_picture import columns, draw_dh, frames_only
+from kinlab.viewer.drawing.shapes import add_ellipsoids, empty_spec, look_at, set_stage
 
 DIRECTION = np.array([1.0, -1.3, 0.7])
 """From an arm towards the camera."""

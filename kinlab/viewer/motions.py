@@ -19,8 +19,8 @@ from kinlab.drives.laws import rising
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.model.robot import Robot
-from kinlab.viewer.arm import reach
 from kinlab.viewer.arm_page import judged_rows
+from kinlab.viewer.drawing.arm import reach
 
 # -------- A motion for the page: joint positions at given times, with straight lines
 #          between them

@@ -16,14 +16,14 @@ from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.linkage import as_five_bar
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.viewer import shapes
-from kinlab.viewer.arm import draw_ghost, reach
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
-from kinlab.viewer.fivebar_page import best_start, size_of
-from kinlab.viewer.fivebar_page import draw_page as draw_fivebar
-from kinlab.viewer.page import COLORS, Page, one_pose
-from kinlab.viewer.shapes import look_at
-from kinlab.viewer.static_page import new_scene
+from kinlab.viewer.drawing import shapes
+from kinlab.viewer.drawing.arm import draw_ghost, reach
+from kinlab.viewer.drawing.fivebar import best_start, size_of
+from kinlab.viewer.drawing.fivebar import draw_page as draw_fivebar
+from kinlab.viewer.drawing.shapes import look_at
+from kinlab.viewer.page.page import COLORS, Page, one_pose
+from kinlab.viewer.page.static_page import new_scene
 
 if TYPE_CHECKING:
     from kinlab.motion.record import Motion

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.analysis.design_model import open_chain
+from kinlab.analysis.isotropy.design_model import open_chain
 from kinlab.errors import OptionError
 
 

@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 import kinlab as kl
-from kinlab.analysis.determinant import vanishing_factors
+from kinlab.analysis.singularities.determinant import vanishing_factors
 from kinlab.analysis.structure.task_space import read_task
 from kinlab.errors import NameUnknownError, OptionError
 

@@ -17,7 +17,7 @@ from kinlab.errors import FileError, MissingExtraError, NameUnknownError, Option
 from kinlab.plots import arms, canvas, curves
 from kinlab.plots import maps as pictures
 from kinlab.sweeps.samples import BLOCK
-from kinlab.sweeps.workspace import WorkspaceMap, binned
+from kinlab.sweeps.workspace import binned
 
 PI = np.pi
 
@@ -149,7 +149,7 @@ def test_grid_includes_the_limits():
 def test_map_is_saved_and_reloaded(tmp_path):
     chart = kl.sample_workspace(kl.load("puma560"), "position", "asada", samples=500)
     chart.save(tmp_path / "map.npz")
-    again = WorkspaceMap.load(tmp_path / "map.npz")
+    again = kl.WorkspaceMap.load(tmp_path / "map.npz")
     assert np.array_equal(again.points, chart.points) and np.array_equal(again.values, chart.values)
     assert {k: v for k, v in vars(again).items() if k not in ("points", "values")} == {
         k: v for k, v in vars(chart).items() if k not in ("points", "values")
@@ -158,7 +158,7 @@ def test_map_is_saved_and_reloaded(tmp_path):
     np.savez(tmp_path / "other.npz", a=1)
     for name in ("bad.npz", "other.npz", "missing.npz"):
         with pytest.raises(FileError, match=name):
-            WorkspaceMap.load(tmp_path / name)
+            kl.WorkspaceMap.load(tmp_path / name)
 
 
 def test_stopping_keeps_what_was_computed():
@@ -258,7 +258,7 @@ def test_commands(arguments, words, tmp_path):
         assert word in result.stdout
     assert (tmp_path / "picture.png").read_bytes()[:4] == b"\x89PNG"
     if "--save" in arguments:
-        assert len(WorkspaceMap.load(tmp_path / "map.npz").values) == 5000
+        assert len(kl.WorkspaceMap.load(tmp_path / "map.npz").values) == 5000
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ import pinocchio as pin
 import pytest
 
 import kinlab as kl
-from kinlab.analysis import minors
-from kinlab.analysis.certified import nearest_zero
-from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.singularities import minors
+from kinlab.analysis.singularities.certified import nearest_zero
+from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import read_task
 
 PI = np.pi

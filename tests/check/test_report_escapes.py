@@ -194,7 +194,7 @@ def test_no_page_is_begun_but_by_the_two_templates():
         if file.suffix in (".py", ".j2", ".html", ".js")
         and re.search(r"<!doctype html|<html", file.read_text(encoding="utf-8"), re.IGNORECASE)
     }
-    assert begun == {"check/report/base.html.j2", "viewer/static_page.py"}
+    assert begun == {"check/report/base.html.j2", "viewer/page/static_page.py"}
     for name in begun:
         assert "{policy}" in (house / name).read_text(encoding="utf-8").replace("{ ", "{").replace(
             " }", "}"

@@ -176,16 +176,14 @@ def test_the_five_bar_says_the_same(shake, name):
 
 
 def analysis_verdicts(name):
-    from kinlab.analysis.singularity import find_singularities
-
-    search = find_singularities(kl.load(name))
+    search = kl.find_singularities(kl.load(name))
     return [f"{f.kind} {f.deciding} {np.round(f.pinned, 6) + 0.0} {f.beyond} {f.representative.rank} "
             f"{f.representative.joints}" for f in search.families]  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["planar2r", "planar3r", "spatial3r", "stanford", "puma560"])
 def test_the_analysis_says_the_same(shake, name):
-    from kinlab.analysis import edge, singular_set
+    from kinlab.analysis.singularities import edge, singular_set
     from kinlab.analysis.structure import axes, task_space
 
     plain = analysis_verdicts(name)

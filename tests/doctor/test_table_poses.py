@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.doctor.tables.poses import is_poses_file, read_poses
+from kinlab.doctor.tables.reference.poses import is_poses_file, read_poses
 from kinlab.model.rotations import matrices_rpy, rpy_matrix
 
 PUMA = kl.load("puma560").table

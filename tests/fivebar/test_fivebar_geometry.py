@@ -293,3 +293,13 @@ def test_copies_and_changes():
     for same in (pickle.loads(pickle.dumps(ISOTROPIC)), copy.deepcopy(ISOTROPIC)):
         assert same == ISOTROPIC
         np.testing.assert_array_equal(same.ik([0.1, -0.5]), ISOTROPIC.ik([0.1, -0.5]))
+
+
+def test_a_five_bar_introduces_itself():
+    bar = kl.FiveBar((0.3, 0.26), 0.5, 0.1, crank_mass=1.0, name="mine")
+    first, second = str(bar).splitlines()
+    assert first == "five-bar mine: cranks 0.3 and 0.26 m, rods 0.5 m, base pins at x = ±0.1 m"
+    assert second == "  cranks 1 kg, gravity [0, -9.81] m/s²"
+    assert repr(bar) == "<FiveBar 'mine': l1 0.3 and 0.26, l2 0.5, e 0.1 m>"
+    assert "rods 0.5 m" in bar._repr_html_()
+    assert "no masses given" in str(kl.FiveBar(0.3, 0.5, 0.0))

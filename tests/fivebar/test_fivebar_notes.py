@@ -52,7 +52,9 @@ def test_the_printed_equation_misses_by_a_tenth_of_a_radian():
     s = np.array([1.0, -1.0])
     a, b = 2 * (s * 0.1 - x) * 0.3, -2 * y * 0.3
     gaps = []
-    for c in (note.right_side(loop, theta, xy), note._c_printed(loop, theta, xy)):
+    (right_side,) = note.right_side.formulas
+    for form in (right_side.function, right_side.printed.function):
+        c = form(loop, theta, xy)
         both = [np.arctan2(b, a) + k * np.arccos(c / np.hypot(a, b)) for k in (1, -1)]
         gaps.append(np.min([np.abs(np.exp(1j * t) - np.exp(1j * theta)) for t in both], axis=0))
     assert gaps[0].max() < 1e-14

@@ -49,6 +49,9 @@ def answers():
         sizing = light.size_servo(box, 1.0, 10.0, motor="SGMAH-08A", gear_ratio=20.0, massless=True)
     # the task that suits a planar arm; T is within its reach
     T = kl.fk(robot, [0.4, 0.9])
+    singular = kl.find_singularities(robot, points=20)
+    near_the_end = kl.fk(robot, np.linspace([0.4, 0.9], [0.4, 0.0], 4))
+    design = kl.design_isotropic(kl.load("planar2r").table, free=["a2", "tool.x"])[0]
     return {
         "Comparison": (kl.compare(robot, "gravity_torques", evil, 20), "DIFFERS"),
         "Diagnosis": (kl.diagnose(robot, "gravity_torques", evil), "differs"),
@@ -57,10 +60,21 @@ def answers():
         "IKResult": (kl.ik(robot, T, task="xy"), "solved"),
         "IKBatch": (kl.ik_batch(robot, np.stack([T, T]), task="xy"), "2 of 2 poses solved"),
         "IKBranches": (kl.ik_branches(robot, T), "2 solutions"),
-        "SingularitySearch": (kl.find_singularities(robot, points=20), "families of singular"),
+        "SingularitySearch": (singular, "families of singular"),
         "IsotropySearch": (kl.find_isotropic(robot, seeds=40), "no isotropic configuration found"),
         "ServoSizing": (sizing, "FOR THE PAYLOAD ALONE"),
         "SweepResult": (kl.sweep(robot, ("position", "yoshikawa"), 500, workers=1), "500 states"),
+        "Singularity": (singular[0], "rank 1"),
+        "SingularFamily": (singular.families[0], "held by"),
+        "IsotropicDesign": (design, "a2 = 0.527208"),
+        "PlanarBoundary": (kl.planar_boundary(robot), "workspace in its plane"),
+        "Dexterity": (kl.dexterity(robot, [0.4, 0.0]), "singular, rank 1"),
+        "Ellipsoid": (kl.ellipsoid(robot, [0.4, 0.9]), "velocity ellipsoid, task xy (chosen"),
+        "WorkspaceMap": (kl.sample_workspace(robot, samples=50), "50 tool positions"),
+        "IKPath": (kl.ik_path(robot, near_the_end, [0.4, 0.9]), "4 of 4 poses solved"),
+        "SolutionCount": (kl.solution_count(robot, T), "2 solutions, 2 within the limits, all"),
+        "SolutionCounts": (kl.solution_count(robot, np.stack([T, T])), "2 poses: 2 with all"),
+        "SolutionMap": (kl.solution_map(robot, cells=12), "at most 2 solutions"),
         "TableDiagnosis": (kl.diagnose_table(other, table), "differs"),
     }
 

@@ -99,6 +99,14 @@ def test_a_notebook_sees_it(monkeypatch, clock):
     assert "5/10" in pipe.getvalue()
 
 
+def test_a_notebook_that_is_run_to_be_printed_does_not_see_it(terminal, monkeypatch, clock):
+    monkeypatch.setenv("KINLAB_PROGRESS", "0")
+    with progress("sweep", 10) as tell:
+        clock.value += 3.0
+        tell(5)
+    assert terminal.getvalue() == ""
+
+
 def test_what_runs_inside_only_moves_the_line_on(terminal, clock):
     @takes_long("inner")
     def inner():

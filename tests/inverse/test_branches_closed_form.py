@@ -9,7 +9,7 @@ from arms import random_arm
 
 import kinlab as kl
 from kinlab.errors import StateError, StructureError
-from kinlab.inverse import equations
+from kinlab.inverse.branches import equations
 
 HALF = math.pi / 2
 

@@ -9,9 +9,9 @@ from arms import HALF, random_arm, table
 
 import kinlab as kl
 from kinlab.engine.fast.arrays import chain
-from kinlab.inverse.branch_rows import all_branches
-from kinlab.inverse.continuation import generic_solutions
-from kinlab.inverse.structures import GENERAL, known_form
+from kinlab.inverse.branches.continuation import generic_solutions
+from kinlab.inverse.branches.rows import all_branches
+from kinlab.inverse.branches.structures import GENERAL, known_form
 
 
 def shoulder_arm(seed):

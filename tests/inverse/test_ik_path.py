@@ -1,5 +1,7 @@
 """Paths keep their branch; the command line and the figure of a search."""
 
+import logging
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -119,3 +121,10 @@ def test_the_figure_marks_new_starts():
     axes = ik_history({"lm": answer.history}, "puma560")
     lines = [line for line in axes.lines if len(line.get_xdata()) == answer.iterations]
     assert len(lines) == 2 and axes.get_yscale() == "log"
+
+
+def test_the_word_about_compiling_has_one_handler_however_often_ik_is_called():
+    logger = logging.getLogger("kinlab.engine.fast.compiled")
+    for _ in range(3):
+        assert RUN.invoke(app, ["ik", "planar2r", "--xyz", ".4", ".1", "0"]).exit_code == 0
+    assert [handler.get_name() for handler in logger.handlers].count("kinlab ik") == 1

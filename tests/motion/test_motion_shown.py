@@ -51,7 +51,7 @@ def test_the_command_plans_checks_and_writes(tmp_path):
     )
     assert done.returncode == 0, done.stderr
     assert "t = 0.576144 s" in done.stdout and "'elbow left' to 'elbow right'" in done.stdout
-    assert "drives for a motion of 1.04 s" in done.stdout
+    assert "a drive fits every joint, for a motion of 1.04 s" in done.stdout
     assert np.array_equal(kl.motion.read_motion(ELBOW, file).q, MOTION.q)
     page = tmp_path / "page.html"
     shown = run("view", "planar2r", "--animate", str(file), "--save", str(page))

@@ -8,6 +8,7 @@ import pytest
 
 import kinlab as kl
 from kinlab.errors import InertiaError, OptionError, StateError
+from kinlab.motion import simulation
 from kinlab.motion.simulation import least_constraint
 
 
@@ -129,6 +130,44 @@ def test_the_accelerations_of_least_constraint_are_the_least():
         friction = right - inertia @ a
         assert np.all(np.abs(friction) <= dry * (1 + 1e-9) + 1e-9)
         np.testing.assert_allclose(friction[a != 0], (dry * np.sign(a))[a != 0], atol=1e-9)
+
+
+def coupled(rng):
+    """M nearly singular, and r such that x is the minimiser: held joints pull less than c."""
+    m = int(rng.integers(3, 6))
+    half = rng.normal(size=(m, 2))
+    inertia = half @ half.T + 10.0 ** rng.uniform(-7, -4) * np.eye(m)
+    x = rng.normal(size=m) * (rng.random(m) < 0.7) * 10 ** rng.uniform(0, 3)
+    dry = rng.uniform(0.1, 2.0, m)
+    pulls = np.where(x == 0.0, rng.uniform(-0.9, 0.9, m), np.sign(x))
+    return inertia, inertia @ x + dry * pulls, dry, x
+
+
+def test_least_constraint_where_descent_is_slow():
+    """Rounds over the joints do not come to the pattern here; the patterns are tried."""
+    rng = np.random.default_rng(3)
+    for _ in range(60):
+        inertia, right, dry, x = coupled(rng)
+        a = least_constraint(inertia, right, dry)
+        np.testing.assert_array_equal(a == 0.0, x == 0.0)
+        np.testing.assert_allclose(a, x, rtol=0, atol=1e-6 * (1 + np.abs(x).max()))
+
+
+def test_least_constraint_is_no_guess(monkeypatch):
+    """Without an answer that explains itself there is none."""
+    monkeypatch.setattr(simulation, "_MOST_PATTERNS", 0)
+    monkeypatch.setattr(simulation, "_ROUNDS", 1)
+    rng, refused = np.random.default_rng(3), 0
+    for _ in range(60):
+        inertia, right, dry, x = coupled(rng)
+        try:
+            a = least_constraint(inertia, right, dry)
+        except OptionError as error:
+            refused += 1
+            assert "mass matrix" in str(error)
+        else:
+            np.testing.assert_allclose(a, x, rtol=0, atol=1e-6 * (1 + np.abs(x).max()))
+    assert refused > 10
 
 
 def test_friction_of_two_coupled_joints_keeps_its_energy():

@@ -11,7 +11,7 @@ import kinlab as kl
 from kinlab.plots.canvas import new_axes
 
 NAMES = {
-    "ellipses", "fivebar", "fivebar_cycle", "fivebar_gains", "ik_history", "save",
+    "ellipses", "fivebar", "fivebar_cycle", "fivebar_design", "fivebar_front", "fivebar_gains", "ik_history", "save",
     "singular_loci", "singular_values", "solutions", "torque_speed", "workspace", "workspace_cloud", "workspace_map",
 }  # fmt: skip
 
@@ -112,3 +112,35 @@ def test_a_map_ends_where_its_cells_end(chart):
     assert path.contains_points(places).all()
     corners = [[flat.u[0], flat.v[0]], [flat.u[-1], flat.v[-1]]]  # the tool never gets there
     assert not path.contains_points(ax.transData.transform(corners)).any()
+
+
+def test_ellipses_of_several_axes_have_a_legend_each(planar):
+    both = new_axes().figure.subplots(1, 2)
+    for axes in both:
+        kl.plots.ellipses(planar, [0.3, 1.2], ax=axes)
+    assert not both[0].figure.legends
+    for axes in both:
+        kinds = [text.get_text().split(":")[0] for text in axes.get_legend().get_texts()]
+        assert kinds == ["velocity", "force"]
+
+
+@pytest.mark.parametrize(
+    ("limit", "names"), [(np.pi, {"edge"}), (2.0, {"edge", "with a joint at a limit"})]
+)
+def test_a_section_names_the_lines_that_it_draws(limit, names):
+    turn = {"lower": -limit, "upper": limit}
+    first = kl.DHLink(d=0.4, alpha=np.pi / 2, lower=-np.pi, upper=np.pi)
+    links = [first, kl.DHLink(a=0.35, **turn), kl.DHLink(a=0.3, **turn)]
+    robot = kl.Robot.from_dh(kl.DHTable("elbow", "standard", links))
+    axes = kl.plots.workspace(robot, kl.sample_workspace(robot, samples=500, workers=1))
+    (legend,) = axes.figure.legends
+    assert {text.get_text() for text in legend.get_texts()} >= names
+    drawn = {
+        (line.get_color(), line.get_linestyle()) for line in axes.lines if len(line.get_xdata())
+    }
+    assert ("with a joint at a limit" in names) == any(style == "--" for _, style in drawn)
+
+
+def test_a_figure_shows_itself_in_a_notebook_without_pyplot(planar):
+    figure = kl.plots.ellipses(planar, [0.3, 1.2]).figure
+    assert figure._repr_png_().startswith(b"\x89PNG")

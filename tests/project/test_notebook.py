@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+
 import nbformat
 from nbclient import NotebookClient
 
@@ -21,13 +23,17 @@ CELLS = {
     'five.size_servo((-0.05, 0.05, -0.55, -0.5), 1, 10, motor="SGMAH-08A", gear_ratio=20)': "servo sizing",
 }
 
+FIGURE = "kl.plots.ellipses(robot, [0.4, 0.9]).figure"  # pyplot was not imported
+
 
 def test_every_result_shows_itself():
     book = nbformat.v4.new_notebook(
-        cells=[nbformat.v4.new_code_cell(code) for code in (*CELLS, "kl.fk(robot, [30, 45])")]
+        cells=[
+            nbformat.v4.new_code_cell(code) for code in (*CELLS, "kl.fk(robot, [30, 45])", FIGURE)
+        ]
     )
     NotebookClient(book, timeout=120, kernel_name="python3").execute()
-    *shown, asked = book.cells
+    *shown, asked, drawn = book.cells
     for cell, words in zip(shown, CELLS.values(), strict=True):
         (output,) = cell.outputs  # and nothing on stderr
         assert output.output_type == "execute_result", cell.source
@@ -40,3 +46,4 @@ def test_every_result_shows_itself():
     said = [output for output in asked.outputs if output.output_type == "stream"]
     assert "degrees?" in said[0].text
     assert said[0].name == "stderr"
+    assert base64.b64decode(drawn.outputs[0].data["image/png"]).startswith(b"\x89PNG")

@@ -13,10 +13,6 @@ ROOMS = sorted(file.parent for file in PACKAGE.rglob("__init__.py") if file.pare
 MARKERS = {"__init__.py", "__init__.pyi", "__main__.py", "py.typed", "__pycache__", "robots"}
 """What Python (and a wheel) asks for at the top, beside the house itself."""
 
-CROWDED = {"analysis": 18, "inverse": 15, "tables": 14, "viewer": 14}
-"""Rooms above :data:`MOST` files; a number here may only become smaller,
-and a room that has come down to it leaves the list."""
-
 MOST = 13
 TABLE = re.compile(r"^=+  =+$\n^\w+ +.*$\n^=+  =+$\n(.*?)^=+  =+$", re.DOTALL | re.MULTILINE)
 
@@ -46,7 +42,7 @@ def test_the_table_of_a_room_is_its_files(room):
     for name, file in files.items():
         assert rows[name], name
         assert docstring(file), f"{file}: no docstring"
-    assert len(files) <= max(MOST, CROWDED.get(room.name, 0))
+    assert len(files) <= MOST
 
 
 def test_few_things_stand_at_the_top():

@@ -11,7 +11,7 @@ from tornado.websocket import WebSocketClosedError
 
 import kinlab as kl
 from kinlab.errors import OptionError
-from kinlab.viewer.live import LiveServer
+from kinlab.viewer.page.live import LiveServer
 from kinlab.viewer.scene import Scene
 
 
@@ -65,9 +65,9 @@ def test_a_host_that_is_none_is_refused(host):
 def test_a_page_that_takes_nothing_is_let_wait():
     import asyncio
 
-    from kinlab.viewer import live
+    from kinlab.viewer.page import live
 
-    class Deaf(live._Socket):
+    class Deaf(live.PageSocket):
         def __init__(self) -> None:
             self.sent: list[str] = []
             self.initialize(None)
@@ -87,7 +87,7 @@ def test_a_page_that_takes_nothing_is_let_wait():
         page = Deaf()
         for _ in range(400):
             page.tell("x" * (1 << 20))
-        assert sum(map(len, page.sent)) <= live._DEAF + (1 << 20)
+        assert sum(map(len, page.sent)) <= live.DEAF + (1 << 20)
         for future in page.held:
             future.set_result(None)
         await asyncio.sleep(0)

@@ -29,9 +29,9 @@ from kinlab.fivebar.files import presets
 from kinlab.model.library import shipped
 from kinlab.viewer import fivebar_motions, motions, show
 from kinlab.viewer.arm_page import judged_rows
+from kinlab.viewer.drawing.shapes import round_step
+from kinlab.viewer.page.static_page import new_scene
 from kinlab.viewer.scene import FiveBarScene, Scene
-from kinlab.viewer.shapes import round_step
-from kinlab.viewer.static_page import new_scene
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -11,7 +11,7 @@ from browser import chromium, open_file, tab, wait_until  # noqa: F401
 import kinlab as kl
 from kinlab.viewer import motions
 from kinlab.viewer.arm_page import origins
-from kinlab.viewer.bodies import DrawnBodies
+from kinlab.viewer.drawing.bodies import DrawnBodies
 from kinlab.viewer.scene import Scene
 
 BODY = '<inertial><mass value="1"/><inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/></inertial>'

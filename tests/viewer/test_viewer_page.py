@@ -9,7 +9,7 @@ from browser import chromium, open_file, ready, slide, tab, wait_until, world  #
 from random_tables import random_table
 
 import kinlab as kl
-from kinlab.viewer.arm import joint_paths
+from kinlab.viewer.drawing.arm import joint_paths
 from kinlab.viewer.scene import FiveBarScene, Scene
 
 AGREE = 1e-9

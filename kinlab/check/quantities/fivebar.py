@@ -18,14 +18,12 @@ from kinlab.fivebar.closed_chain import CRANKS, PASSIVE, ClosedChain
 from kinlab.fivebar.files import presets
 from kinlab.fivebar.linkage import as_five_bar
 from kinlab.notes.loop import Loop
+from kinlab.tolerances import TOLERANCES
 
 # -------- Five-bars as a domain: names and groups, the plain numbers, random closed poses
 
 _CLEAR = 0.15
 """Least sine between two bars in a drawn pose: what is compared is the formula, not rounding."""
-
-_PLAIN = 1e-6
-"""Share of the mechanism by which rods must miss each other to be given up without a try."""
 
 _TRIES = 200
 """Poses tried for each one drawn."""
@@ -110,10 +108,10 @@ FIVEBAR = Domain("fivebar", as_five_bar, _label, numbers, members, sample, DRAWS
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
 
-Answer = Callable[..., Any]
+EngineCall = Callable[..., Any]
 
 
-def _engine(answer: Answer) -> Answer:
+def _engine(answer: EngineCall) -> EngineCall:
     """Runs ``answer(chain, *one state)`` over the states."""
 
     def engine(fivebar: FiveBar, *stacks: Any) -> Array:
@@ -123,7 +121,7 @@ def _engine(answer: Answer) -> Answer:
     return engine
 
 
-def _posed(answer: Answer, *, rods: bool) -> Answer:
+def _posed(answer: EngineCall, *, rods: bool) -> EngineCall:
     """Runs ``answer(chain, q, ...)`` with the tool at xy; without the rods' mass if asked."""
 
     def engine(fivebar: FiveBar, xy: Any, *stacks: Any) -> Array:
@@ -178,7 +176,7 @@ def _elbows_apart(chain: ClosedChain, theta: Array) -> bool:
     """Whether the rods cannot meet, plainly: Newton finds out too, after a long search."""
     elbows = _pins(chain, theta)[1]
     span, rods = np.linalg.norm(elbows[1] - elbows[0]), np.asarray(chain.linkage.l2)
-    slack = _PLAIN * chain.size
+    slack = TOLERANCES.rods_miss * chain.size
     return bool(span > rods.sum() + slack or span < abs(rods[0] - rods[1]) - slack)
 
 
@@ -223,7 +221,7 @@ def _load(chain: ClosedChain, q: Array) -> Any:
 
 
 def _quantity(
-    name: str, arguments: str, answer: Answer, about: str, *, rods: bool = True
+    name: str, arguments: str, answer: EngineCall, about: str, *, rods: bool = True
 ) -> Quantity:
     names = tuple(arguments.split())
     engine = _posed(answer, rods=rods) if "mode" in names else _engine(answer)

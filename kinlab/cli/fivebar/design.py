@@ -100,9 +100,12 @@ def design(
         found.fivebar.save(output)
         console.print(f"wrote {output}")
     if picture is not None:
-        from kinlab.plots.designs import design_picture, front_picture
+        from kinlab import plots
 
-        save(front_picture(front) if pareto is not None else design_picture(found), picture)
+        save(
+            plots.fivebar_front(front) if pareto is not None else plots.fivebar_design(found),
+            picture,
+        )
         console.print(f"wrote {picture}")
 
 

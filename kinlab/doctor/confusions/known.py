@@ -12,6 +12,7 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
+from kinlab.host.language import N_, _
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
@@ -36,6 +37,17 @@ _WEIGHED = {
 }
 """What depends on gravity."""
 
+_JACOBIANS = {
+    "base": N_("is the base Jacobian"),
+    "tool": N_("is the tool Jacobian"),
+    "spatial": N_("is the spatial Jacobian"),
+}
+_WRENCHES = {
+    "base": N_("takes the wrench in the base frame"),
+    "tool": N_("takes the wrench in the tool frame"),
+    "spatial": N_("takes the wrench in the spatial frame"),
+}
+
 
 def readings(case: Case) -> list[Confusion]:
     """Every reading for the case's quantity and robot."""
@@ -54,33 +66,38 @@ def _arguments(case: Case) -> Iterator[Confusion]:
     have = case.arguments
     motion = [name for name in ("q", "v", "a") if name in have]
     if "q" in have:
-        yield _argument("degrees", "takes q in degrees", ("q",), np.deg2rad)
+        yield _argument("degrees", _("takes q in degrees"), ("q",), np.deg2rad)
         if len(motion) > 1:
-            yield _argument("degrees", "takes q and its rates in degrees", motion, np.deg2rad)
-        yield _argument("degrees", "turns q into degrees first", ("q",), np.rad2deg, 1.2)
+            yield _argument("degrees", _("takes q and its rates in degrees"), motion, np.deg2rad)
+        yield _argument("degrees", _("turns q into degrees first"), ("q",), np.rad2deg, 1.2)
         yield _argument(
-            "turning sense", "counts every joint the other way", motion, np.negative, 1.2
+            "turning sense", _("counts every joint the other way"), motion, np.negative, 1.2
         )
         if case.robot.n > 1:
-            yield _argument("joint order", "takes the joints from tool to base", motion, _backwards)
             yield _argument(
-                "absolute angles", "takes every angle from the base", motion, _relative, 1.2
+                "joint order", _("takes the joints from tool to base"), motion, _backwards
+            )
+            yield _argument(
+                "absolute angles", _("takes every angle from the base"), motion, _relative, 1.2
             )
             yield _argument(
                 "absolute angles",
-                "adds up angles that are from the base already",
+                _("adds up angles that are from the base already"),
                 motion,
                 _absolute,
                 1.3,
             )
-    for name, words in (("v", "velocity"), ("a", "acceleration")):
+    for name, words, left_out, turned in (
+        ("v", "velocity", _("leaves the velocity terms out"),
+         _("has the velocity with the opposite sign")),
+        ("a", "acceleration", _("leaves the acceleration terms out"),
+         _("has the acceleration with the opposite sign")),
+    ):  # fmt: skip
         if name in have:
-            yield _argument(
-                f"{words} left out", f"leaves the {words} terms out", (name,), np.zeros_like, 1.1
-            )
+            yield _argument(f"{words} left out", left_out, (name,), np.zeros_like, 1.1)
             yield _argument(
                 f"{words} sign",
-                f"has the {words} with the opposite sign",
+                turned,
                 (name,),
                 np.negative,
                 1.3,
@@ -88,18 +105,18 @@ def _arguments(case: Case) -> Iterator[Confusion]:
     if "wrench" in have:
         yield _argument(
             "wrench sign",
-            "takes the wrench that acts on the tool (passive sign)",
+            _("takes the wrench that acts on the tool (passive sign)"),
             ("wrench",),
             np.negative,
         )
         yield _argument(
-            "wrench order", "takes the moment first in the wrench", ("wrench",), _halves
+            "wrench order", _("takes the moment first in the wrench"), ("wrench",), _halves
         )
         yield _argument(
-            "moment left out", "leaves the moment of the wrench out", ("wrench",), _force, 1.2
+            "moment left out", _("leaves the moment of the wrench out"), ("wrench",), _force, 1.2
         )
         yield _argument(
-            "force left out", "leaves the force of the wrench out", ("wrench",), _moment, 1.3
+            "force left out", _("leaves the force of the wrench out"), ("wrench",), _moment, 1.3
         )
 
 
@@ -108,69 +125,72 @@ def _engines(case: Case) -> Iterator[Confusion]:
     if name in _FRAMES:
         for frame in ("base", "tool", "spatial"):
             if frame != _FRAMES[name]:
-                yield _other("frame", f"is the {frame} Jacobian", otherwise.in_frame(frame))
+                yield _other("frame", _(_JACOBIANS[frame]), otherwise.in_frame(frame))
         yield _other(
             "frame",
-            "has the base's axes, but refers to the last DH frame's origin, not the tool",
+            _("has the base's axes, but refers to the last DH frame's origin, not the tool"),
             otherwise.without_tool,
             1.4,
         )
     if name in _STATICS:
         for frame in ("base", "tool", "spatial"):
             if frame != _STATICS[name]:
-                yield _other(
-                    "frame", f"takes the wrench in the {frame} frame", otherwise.wrench_in(frame)
-                )
+                yield _other("frame", _(_WRENCHES[frame]), otherwise.wrench_in(frame))
         yield _other(
             "inverse for transpose",
-            "uses the pseudo-inverse of J for its transpose",
+            _("uses the pseudo-inverse of J for its transpose"),
             otherwise.pseudo_inverse,
             1.3,
         )
         yield _other(
-            "transposed", "uses J for J^T (not transposed)", otherwise.jacobian_itself, 1.1
+            "transposed", _("uses J for J^T (not transposed)"), otherwise.jacobian_itself, 1.1
         )
     if name == "mass_matrix" and case.robot.n > 1:
-        said = "is M for absolute angles (each counted from the base), not for the joint angles"
+        said = _("is M for absolute angles (each counted from the base), not for the joint angles")
         for q_too in (False, True):
             yield _other("absolute angles", said, otherwise.in_absolute_angles(q_too), 1.1)
     if name == "coriolis_matrix":
         yield _other(
             "symmetric Coriolis",
-            "uses C_ij = ½ Σ (dM_ik/dq_j + dM_jk/dq_i) qd_k, the symmetric form, not Christoffel's",
+            _(
+                "uses C_ij = ½ Σ (dM_ik/dq_j + dM_jk/dq_i) qd_k, the symmetric form, not "
+                "Christoffel's"
+            ),
             otherwise.symmetric,
         )
         split = "C_ij = Σ (dM_ij/dq_k - ½ dM_jk/dq_i) qd_k"
-        said = f"splits C v otherwise: {split} gives the same torques, but Mdot - 2C is not skew"
+        said = _(
+            "splits C v otherwise: {split} gives the same torques, but Mdot - 2C is not skew"
+        ).format(split=split)
         yield _other("Coriolis split", said, otherwise.unskewed)
-        yield _other("Coriolis split", "is Mdot", otherwise.mass_rate, 1.2)
-        yield _other("Coriolis split", "is ½ Mdot", otherwise.half_mass_rate, 1.2)
+        yield _other("Coriolis split", _("is Mdot"), otherwise.mass_rate, 1.2)
+        yield _other("Coriolis split", _("is ½ Mdot"), otherwise.half_mass_rate, 1.2)
     if name in ("coriolis_torques", "inverse_dynamics", "inverse_dynamics_loaded"):
         yield _other(
             "symmetric Coriolis",
-            "uses the symmetric formula for C, not Christoffel's",
+            _("uses the symmetric formula for C, not Christoffel's"),
             otherwise.added(otherwise.symmetric_extra),
         )
         yield _other(
             "Coriolis terms",
-            "leaves the products qd_i qd_j out",
+            _("leaves the products qd_i qd_j out"),
             otherwise.added(otherwise.joint_products(-1.0)),
             1.1,
         )
         yield _other(
             "Coriolis terms",
-            "counts each product qd_i qd_j once, not twice",
+            _("counts each product qd_i qd_j once, not twice"),
             otherwise.added(otherwise.joint_products(-0.5)),
             1.1,
         )
         yield _other(
             "centrifugal terms",
-            "leaves the squares qd_i² out",
+            _("leaves the squares qd_i² out"),
             otherwise.added(otherwise.centrifugal(-1.0)),
             1.1,
         )
         yield _other(
-            "Mdot for C", "uses Mdot v for C v", otherwise.added(otherwise.mass_rate_extra), 1.2
+            "Mdot for C", _("uses Mdot v for C v"), otherwise.added(otherwise.mass_rate_extra), 1.2
         )
 
 
@@ -178,28 +198,28 @@ def _answers(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
     shape = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
     if name in _FRAMES or name == "jacobian_dot":
-        yield _answer("row order", "has the angular rows first", lambda x: np.roll(x, 3, axis=1))
+        yield _answer("row order", _("has the angular rows first"), lambda x: np.roll(x, 3, axis=1))
     if name == "fk":
-        yield _answer("inverse", "is the inverse transform (the base in the tool)", _inverse)
-        yield _answer("rotation transposed", "has the rotation transposed", _rotation_transposed)
+        yield _answer("inverse", _("is the inverse transform (the base in the tool)"), _inverse)
+        yield _answer("rotation transposed", _("has the rotation transposed"), _rotation_transposed)
     if len(shape) == 2 and (shape[0] > 1 or shape[1] > 1):
-        yield _answer("transposed", "is transposed", lambda x: np.swapaxes(x, 1, 2))
-    yield _answer("sign", "has the opposite sign as a whole", np.negative)
-    for factor, words in ((2.0, "twice"), (0.5, "half")):
-        yield _answer("factor", f"is {words} as large as a whole", _scaled(factor), 1.2)
-    yield _answer("degrees", "answers in degrees", np.rad2deg, 1.4)
+        yield _answer("transposed", _("is transposed"), lambda x: np.swapaxes(x, 1, 2))
+    yield _answer("sign", _("has the opposite sign as a whole"), np.negative)
+    yield _answer("factor", _("is twice as large as a whole"), _scaled(2.0), 1.2)
+    yield _answer("factor", _("is half as large as a whole"), _scaled(0.5), 1.2)
+    yield _answer("degrees", _("answers in degrees"), np.rad2deg, 1.4)
     if not shape or shape == (1,):
         return
-    words = "row" if len(shape) == 2 else "entry"
-    yield _answer("joint order", "answers from tool to base", lambda x: x[:, ::-1], 1.2)
+    rows = len(shape) == 2
+    yield _answer("joint order", _("answers from tool to base"), lambda x: x[:, ::-1], 1.2)
     if len(shape) == 2:
         yield _answer(
-            "joint order", "has the columns from tool to base", lambda x: x[:, :, ::-1], 1.2
+            "joint order", _("has the columns from tool to base"), lambda x: x[:, :, ::-1], 1.2
         )
         if shape[0] == shape[1]:
             yield _answer(
                 "joint order",
-                "has rows and columns from tool to base",
+                _("has rows and columns from tool to base"),
                 lambda x: x[:, ::-1, ::-1],
                 1.1,
             )
@@ -207,37 +227,55 @@ def _answers(case: Case) -> Iterator[Confusion]:
             for factor, said in _FACTORS:
                 yield _answer(
                     f"column {said}",
-                    f"has column {k + 1} {_SAID[said]}",
+                    _(_COLUMN_SAID[said]).format(number=k + 1),
                     _scaled_at(factor, (slice(None), slice(None), k)),
                     1.5,
                     f"column {k + 1}",
                 )
     for k in range(shape[0]):
         for factor, said in _FACTORS:
-            place = f"{words} {k + 1}"
+            place = f"{'row' if rows else 'entry'} {k + 1}"
+            told = _ROW_SAID[said] if rows else _ENTRY_SAID[said]
             yield _answer(
                 f"row {said}",
-                f"has {place} {_SAID[said]}",
+                _(told).format(number=k + 1),
                 _scaled_at(factor, (slice(None), k)),
                 1.4,
                 place,
             )
+        exchanged = (
+            N_("has rows {one} and {two} exchanged")
+            if rows
+            else N_("has entries {one} and {two} exchanged")
+        )
         for j in range(k):
             yield _answer(
                 "rows swapped",
-                f"has {words}s {j + 1} and {k + 1} exchanged",
+                _(exchanged).format(one=j + 1, two=k + 1),
                 _swapped(j, k),
                 1.5,
-                f"{words}s {j + 1} and {k + 1}",
+                f"{'rows' if rows else 'entries'} {j + 1} and {k + 1}",
             )
 
 
 _FACTORS = ((-1.0, "sign"), (2.0, "twice"), (0.5, "half"), (0.0, "zero"))
-_SAID = {
-    "sign": "with the opposite sign",
-    "twice": "twice as large",
-    "half": "half as large",
-    "zero": "zero",
+_COLUMN_SAID = {
+    "sign": N_("has column {number} with the opposite sign"),
+    "twice": N_("has column {number} twice as large"),
+    "half": N_("has column {number} half as large"),
+    "zero": N_("has column {number} zero"),
+}
+_ROW_SAID = {
+    "sign": N_("has row {number} with the opposite sign"),
+    "twice": N_("has row {number} twice as large"),
+    "half": N_("has row {number} half as large"),
+    "zero": N_("has row {number} zero"),
+}
+_ENTRY_SAID = {
+    "sign": N_("has entry {number} with the opposite sign"),
+    "twice": N_("has entry {number} twice as large"),
+    "half": N_("has entry {number} half as large"),
+    "zero": N_("has entry {number} zero"),
 }
 
 

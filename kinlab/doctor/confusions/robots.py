@@ -13,6 +13,7 @@ import pinocchio as pin
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Confusion
 from kinlab.errors import already_said
+from kinlab.host.language import N_, _
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
@@ -26,6 +27,16 @@ _DIRECTIONS = {
     "-z": (0, 0, -1),
 }
 
+_READ_AS = {
+    Convention.STANDARD: N_("reads the standard table as modified"),
+    Convention.MODIFIED: N_("reads the modified table as standard"),
+}
+_LEFT_OUT = {
+    "base": N_("leaves the base transform out"),
+    "tool": N_("leaves the tool transform out"),
+}
+_INVERTED = {"base": N_("inverts the base transform"), "tool": N_("inverts the tool transform")}
+
 
 def table_readings(robot: Robot) -> Iterator[Confusion]:
     """What can be read differently in the DH table; nothing for a robot without one."""
@@ -35,22 +46,20 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
     other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
     yield _table(
         "convention",
-        f"reads the {table.convention} table as {other}",
+        _(_READ_AS[Convention(str(table.convention))]),
         lambda t: replace(t, convention=other),
         cost=1.05,
     )
     for which in ("base", "tool"):
         if not np.array_equal(getattr(table, which), np.eye(4)):
-            yield _table(which, f"leaves the {which} transform out", _setting(which, np.eye(4)))
+            yield _table(which, _(_LEFT_OUT[which]), _setting(which, np.eye(4)))
             inverse = np.linalg.inv(np.asarray(getattr(table, which)))
-            yield _table(
-                which, f"inverts the {which} transform", _setting(which, inverse), cost=1.5
-            )
+            yield _table(which, _(_INVERTED[which]), _setting(which, inverse), cost=1.5)
     yield from _column_readings(table)
     for i, link in enumerate(table.links):
         yield _table(
             "turning sense",
-            f"turns joint {i + 1} the other way",
+            _("turns joint {joint} the other way").format(joint=i + 1),
             _linked(i, flip=not link.flip),
             cost=1.3,
             place=f"joint {i + 1}",
@@ -61,8 +70,10 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
             com, tensor = _from_the_joint(link)
             yield _inertial(
                 "centre's frame",
-                f"measures the centre of mass of link {i + 1} in the frame at its joint, not at "
-                "its far end",
+                _(
+                    "measures the centre of mass of link {number} in the frame at its joint, not "
+                    "at its far end"
+                ).format(number=i + 1),
                 i,
                 _placed(com, tensor),
                 cost=1.15,
@@ -70,21 +81,27 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
 
 
 def _column_readings(table: DHTable) -> Iterator[Confusion]:
-    for column, words in (("theta", "theta offsets"), ("d", "d offsets")):
+    for column, words in (
+        ("theta", _("leaves all theta offsets out")),
+        ("d", _("leaves all d offsets out")),
+    ):
         changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
         if len(changed) > 1:
-            yield _table("offset", f"leaves all {words} out", _emptied(column))
+            yield _table("offset", words, _emptied(column))
     if any(link.alpha for link in table.links):
         yield _table(
             "alpha sign",
-            "has every alpha with the opposite sign",
+            _("has every alpha with the opposite sign"),
             lambda t: replace(t, links=[replace(k, alpha=-k.alpha) for k in t.links]),
             cost=1.2,
         )
-    for shift, words in ((1, "the row before"), (-1, "the row behind")):
+    for shift, words in (
+        (1, _("takes a and alpha of the row before")),
+        (-1, _("takes a and alpha of the row behind")),
+    ):
         a = np.roll([link.a for link in table.links], shift)
         alpha = np.roll([link.alpha for link in table.links], shift)
-        yield _table("row shift", f"takes a and alpha of {words}", _shifted(a, alpha), cost=1.4)
+        yield _table("row shift", words, _shifted(a, alpha), cost=1.4)
 
 
 def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
@@ -92,12 +109,13 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
     if not value:
         return
     kind = "offset" if column in ("theta", "d") else "table entry"
-    yield _table(
-        kind, f"leaves {column} of {place} out", _linked(i, **{column: 0.0}), cost=1.2, place=place
-    )
+    forgets = _("leaves {column} of link {number} out").format(column=column, number=i + 1)
+    yield _table(kind, forgets, _linked(i, **{column: 0.0}), cost=1.2, place=place)
     yield _table(
         f"{column} sign",
-        f"has {column} of {place} with the opposite sign",
+        _("has {column} of link {number} with the opposite sign").format(
+            column=column, number=i + 1
+        ),
         _linked(i, **{column: -value}),
         cost=1.3,
         place=place,
@@ -110,24 +128,29 @@ def gravity_readings(robot: Robot) -> Iterator[Confusion]:
     size = float(np.linalg.norm(gravity))
     if not size:
         return
-    yield _model("gravity sign", "has gravity with the opposite sign", _gravity(-gravity))
-    yield _model("gravity left out", "leaves gravity out", _gravity(0 * gravity))
+    yield _model("gravity sign", _("has gravity with the opposite sign"), _gravity(-gravity))
+    yield _model("gravity left out", _("leaves gravity out"), _gravity(0 * gravity))
     for name, direction in _DIRECTIONS.items():
         turned = size * np.array(direction, dtype=float)
         if not (np.allclose(turned, gravity) or np.allclose(turned, -gravity)):
-            yield _model("gravity axis", f"has gravity along {name}", _gravity(turned), cost=1.1)
+            yield _model(
+                "gravity axis",
+                _("has gravity along {axis}").format(axis=name),
+                _gravity(turned),
+                cost=1.1,
+            )
 
 
 def inertia_readings(robot: Robot) -> Iterator[Confusion]:
     """Masses, centres, tensors and rotors: each link alone, and all together."""
     model = robot.model
     if np.any(model.armature):
-        yield _model("rotor inertia", "leaves all rotor inertias out", _armature(None))
+        yield _model("rotor inertia", _("leaves all rotor inertias out"), _armature(None))
         for i in np.flatnonzero(model.armature).tolist():
             if np.count_nonzero(model.armature) > 1:
                 yield _model(
                     "rotor inertia",
-                    f"leaves the rotor inertia of joint {i + 1} out",
+                    _("leaves the rotor inertia of joint {joint} out").format(joint=i + 1),
                     _armature(i),
                     cost=1.2,
                     place=f"joint {i + 1}",
@@ -135,10 +158,11 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
     for kind, words, change, cost in _BODY_CHANGES:
         touched = [i for i in range(robot.n) if _changes(model.inertias[i + 1], change)]
         if len(touched) > 1:
-            yield _inertial(kind, words.format("every link"), None, change, cost)
+            yield _inertial(kind, _(words).format(link=_("every link")), None, change, cost)
         for i in touched:
             extra = 0.2 if len(touched) > 1 else 0.0
-            yield _inertial(kind, words.format(f"link {i + 1}"), i, change, cost + extra)
+            link = _("link {number}").format(number=i + 1)
+            yield _inertial(kind, _(words).format(link=link), i, change, cost + extra)
 
 
 def _about_joint(old: Any) -> tuple[float, Array, Array]:
@@ -192,31 +216,34 @@ def _double_centre(old: Any) -> tuple[float, Array, Array]:
 _BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
     (
         "inertia point",
-        "counts m c² of {} twice: takes its inertia about the joint and adds m c² again",
+        N_("counts m c² of {link} twice: takes its inertia about the joint and adds m c² again"),
         _about_joint,
         1.0,
     ),
     (
         "inertia point",
-        "leaves m c² out for {}: the inertia about the centre stands for that about the joint",
+        N_(
+            "leaves m c² out for {link}: the inertia about the centre stands for that about the "
+            "joint"
+        ),
         _about_centre,
         1.0,
     ),
-    ("inertia left out", "leaves the inertia tensor of {} out", _no_tensor, 1.1),
+    ("inertia left out", N_("leaves the inertia tensor of {link} out"), _no_tensor, 1.1),
     (
         "products of inertia",
-        "has the products of inertia of {} with the opposite sign",
+        N_("has the products of inertia of {link} with the opposite sign"),
         _products,
         1.1,
     ),
-    ("products of inertia", "leaves the products of inertia of {} out", _no_products, 1.2),
-    ("centre", "puts the centre of mass of {} at the joint", _at_joint, 1.2),
-    ("centre", "measures the centre of mass of {} to the other side", _mirrored, 1.2),
-    ("centre", "has the centre of mass of {} at half its distance", _half_centre, 1.3),
-    ("centre", "has the centre of mass of {} at twice its distance", _double_centre, 1.3),
-    ("mass left out", "leaves the mass of {} out", _no_mass, 1.2),
-    ("link left out", "leaves {} out of the dynamics", _without_mass, 1.3),
-    ("mass", "counts the mass of {} twice", _double_mass, 1.4),
+    ("products of inertia", N_("leaves the products of inertia of {link} out"), _no_products, 1.2),
+    ("centre", N_("puts the centre of mass of {link} at the joint"), _at_joint, 1.2),
+    ("centre", N_("measures the centre of mass of {link} to the other side"), _mirrored, 1.2),
+    ("centre", N_("has the centre of mass of {link} at half its distance"), _half_centre, 1.3),
+    ("centre", N_("has the centre of mass of {link} at twice its distance"), _double_centre, 1.3),
+    ("mass left out", N_("leaves the mass of {link} out"), _no_mass, 1.2),
+    ("link left out", N_("leaves {link} out of the dynamics"), _without_mass, 1.3),
+    ("mass", N_("counts the mass of {link} twice"), _double_mass, 1.4),
 )
 
 

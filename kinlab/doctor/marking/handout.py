@@ -11,6 +11,7 @@ from kinlab.doctor.marking.sheet import Sheet
 from kinlab.doctor.marking.variation import numbers_for
 from kinlab.errors import FileError
 from kinlab.host.files import read_text, write_text
+from kinlab.host.language import _
 
 _STUDENTS = 5000
 
@@ -43,19 +44,26 @@ def handout(sheet: Sheet, student: str) -> str:
     lines = [f"# {_line(sheet.title)}", "#"]
     numbers = numbers_for(sheet, student)
     if numbers:
-        lines.append(f"# The robot's numbers for {_line(student)} (SI units):")
+        said = _("The robot's numbers for {student} (SI units):")
+        lines.append(f"# {said.format(student=_line(student))}")
         lines += [f"#   {name} = {value:g}" for name, value in numbers.items()]
         lines.append("#")
+    how = _(
+        "Write formulas as text (m1*l1^2*qdd1), LaTeX, MATLAB or Python, in the names above;\n"
+        "joints: q1, q2, ..., rates qd1, ..., accelerations qdd1, ...; c12 is cos(q1 + q2)."
+    )
     lines += [
-        "# Write formulas as text (m1*l1^2*qdd1), LaTeX, MATLAB or Python, in the names above;",
-        "# joints: q1, q2, ..., rates qd1, ..., accelerations qdd1, ...; c12 is cos(q1 + q2).",
+        *(f"# {line}" for line in how.splitlines()),
         "",
         f"student = {_quoted(student)}",
         "",
         "[answers]",
     ]
     for question in sheet.questions:
-        lines.append(f"# {question.points:g} points: {_line(question.text)}")
+        asked = _("{points:g} points: {question}").format(
+            points=question.points, question=_line(question.text)
+        )
+        lines.append(f"# {asked}")
         lines.append(f"{question.id} = ''")
     text = "\n".join(lines) + "\n"
     tomllib.loads(text)  # what we hand out can be read

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -13,7 +14,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
-from kinlab.check.diagnosis import Cause, Diagnosis
+from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
@@ -21,23 +22,25 @@ from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
 from kinlab.doctor.terms import split_name
-from kinlab.errors import ExpressionError, KinlabError, NameUnknownError
+from kinlab.doctor.verdicts import together
+from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
 from kinlab.formulas.text import FormulaFile, canonical, formula_file, parse
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import Marks, equation
+from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 
-RIGHT = "right"
-WRONG = "wrong"
-UNREAD = "could not be read"
-MISSING = "no answer"
+RIGHT = N_("right")
+WRONG = N_("wrong")
+UNREAD = N_("could not be read")
+MISSING = N_("no answer")
 _GRADES = {
     "": RIGHT,
-    "rounded": "right with rounded numbers",
-    "unusual": "right but written unusually",
+    "rounded": N_("right with rounded numbers"),
+    "unusual": N_("right but written unusually"),
 }
 _WRITTEN = 400
 _STATES = 60
@@ -177,7 +180,7 @@ def _free_of_numbers(file: FormulaFile, sheet: Sheet, own: Robot) -> bool:
         if robot.table is not None:
             values |= {abs(float(value)) for value in vocabulary(robot.table).values.values()}
     for node in [*file.formulas.values(), *file.symbols.values()]:
-        for _, part in tree.nodes(node):
+        for _path, part in tree.nodes(node):
             if part.op == "num" and (
                 part.value.denominator > 4 or abs(float(part.value)) in values
             ):
@@ -209,7 +212,8 @@ def _of_diagnoses(
 ) -> Outcome:
     asked = [one for one in found if split_name(one.quantity)[0] == question.plain]
     if not asked:
-        raise ExpressionError(f"{question.id}: none of the formulas is {question.entry}")
+        said = _("{question}: none of the formulas is {entry}")
+        raise ExpressionError(said.format(question=question.id, entry=question.entry))
     if "[" not in question.quantity and any("[" in one.quantity for one in asked):
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
@@ -224,7 +228,7 @@ def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None)
     verdict = _GRADES[kind]
     share = question.slips.get(kind, 0.0) if kind else 0.0
     remarks = [remark for one in asked for remark in one.remarks]
-    remark = "; ".join(dict.fromkeys(remarks))
+    remark = _("; ").join(dict.fromkeys(remarks))
     points = round(question.points * (1.0 - share), 6)
     return Outcome(
         question.id,
@@ -255,8 +259,8 @@ def _in_part(
         0.0,
         question.points,
         ("missing entries",),
-        place=f"{names}: right; the other entries are not given",
-        cause="entries are missing",
+        place=_("{entries}: right; the other entries are not given").format(entries=names),
+        cause=_("entries are missing"),
     )
 
 
@@ -275,7 +279,7 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
         question.points,
         tuple(kinds),
         (),
-        "; ".join(places),
+        _("; ").join(places),
         told(kinds),
         tuple(answer),
         formulas,
@@ -306,16 +310,17 @@ def _places(
             formula = parse(right)  # in the writer's names or in the robot's
             used = tree.names(written) | tree.names(formula)
             meaning = {n: _meaning(n, file, robot, entry) for n in used}
-            paths, _ = differences(written, tree.renamed(formula, meaning), meaning)
+            paths, _marks = differences(written, tree.renamed(formula, meaning), meaning)
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
-            places.append(f"{shown}: look at {' and '.join(pieces)}" if pieces else shown)
+            look = _("{entry}: look at {pieces}").format(entry=shown, pieces=together(pieces))
+            places.append(look if pieces else shown)
         formulas.append(equation(_named(entry), written, Marks("wrong", paths)))
     if best and not places:
         places = [_named(place) for place in dict.fromkeys(best.places) if _is_place(place)]
     if not best and found.worst_entry and len(file.formulas) > 1:
         places = [_named(found.worst_entry)]
-    return places or ["the formula as a whole"], tuple(formulas)
+    return places or [_("the formula as a whole")], tuple(formulas)
 
 
 def _piece(node: Node) -> str:
@@ -330,21 +335,24 @@ def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:
     return in_robot_names(tree.sym(name), file, robot, entry)
 
 
-_LETTERS = {
-    "inverse_dynamics": "tau", "gravity_torques": "g", "coriolis_torques": "c", "mass_matrix": "M",
-    "coriolis_matrix": "C", "jacobian": "J", "planar_jacobian": "J", "fk": "T",
-}  # fmt: skip
+_PLACE = re.compile(r"(link|joint|row|rows|entry|entries|column) (\d+)(?: and (\d+))?")
+_PLACES = {
+    "link": N_("link {number}"),
+    "joint": N_("joint {number}"),
+    "row": N_("row {number}"),
+    "entry": N_("entry {number}"),
+    "column": N_("column {number}"),
+    "rows": N_("rows {number} and {other}"),
+    "entries": N_("entries {number} and {other}"),
+}
 
 
 def _named(label: str) -> str:
-    """``mass_matrix[0,1]`` as M12."""
-    try:
-        plain, index = split_name(label)
-    except NameUnknownError:
-        return label
-    if plain not in _LETTERS or not all(isinstance(k, int) and 0 <= k < 9 for k in index):
-        return label
-    return _LETTERS[plain] + "".join(str(k + 1) for k in index)
+    """``mass_matrix[0,1]`` as M12; ``row 2`` in words."""
+    found = _PLACE.fullmatch(label)
+    if found is not None:
+        return _(_PLACES[found[1]]).format(number=found[2], other=found[3])
+    return ENTRY_LETTERS.get(label, shown_entry(label))
 
 
 # -------- Beside an own model answer
@@ -356,13 +364,14 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
     words = vocabulary(robot.table).values if robot.table is not None else {}
     for name in model.formulas:
         if name not in file.formulas:
-            raise ExpressionError(f"{question.id}: {name} is not given")
+            said = _("{question}: {entry} is not given")
+            raise ExpressionError(said.format(question=question.id, entry=name))
     formulas = [equation(name, file.formulas[name]) for name in model.formulas]
     for name, right in model.formulas.items():
         error, kinds = _gap(file, model, name, right, words)
         if error > question.tolerance:
             points = _points(question, kinds)
-            place = name if len(model.formulas) > 1 else "the formula as a whole"
+            place = name if len(model.formulas) > 1 else _("the formula as a whole")
             right_one = (f"{name} = {right}",)
             return Outcome(
                 question.id, WRONG, points, question.points, kinds, (), place, told(kinds),
@@ -406,9 +415,8 @@ def _gap(
     mine, theirs = _opened(file.formulas[name], file, name), _opened(right, model, name)
     strange = tree.names(mine) - tree.names(theirs) - set(words) - _joints()
     if strange:
-        raise ExpressionError(
-            f"{name}: {sorted(strange)[0][:40]!r} is unknown; give it a meaning in [symbols]"
-        )
+        said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
+        raise ExpressionError(said.format(entry=name, name=sorted(strange)[0][:40]))
     rng = np.random.default_rng(7)
     at = {}
     for one in sorted(tree.names(mine) | tree.names(theirs)):
@@ -436,7 +444,8 @@ def _joints() -> set[str]:
 
 def _opened(node: Node, file: FormulaFile, entry: str, depth: int = 0) -> Node:
     if depth > 20:
-        raise ExpressionError(f"{entry}: its symbols explain each other")
+        said = _("{entry}: its symbols explain each other")
+        raise ExpressionError(said.format(entry=entry))
     mapping = {}
     for name in tree.names(node):
         given = file.symbols.get(name)

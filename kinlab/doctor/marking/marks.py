@@ -10,10 +10,11 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from kinlab.doctor.marking.judge import Outcome
+from kinlab.doctor.marking.judge import UNREAD, Outcome
 from kinlab.doctor.marking.sheet import Sheet
 from kinlab.errors import NameUnknownError, near
 from kinlab.host.introductions import Told
+from kinlab.host.language import _, ngettext
 
 
 @dataclass(frozen=True, repr=False)
@@ -55,11 +56,19 @@ class Mark(Told):
         raise NameUnknownError(f"question {question!r} is unknown; {near(question, names)}")
 
     def __str__(self) -> str:
-        lines = [f"{self.student}: {self.total:g} of {self.of:g} points"]
+        said = _("{student}: {points:g} of {of:g} points")
+        lines = [said.format(student=self.student, points=self.total, of=self.of)]
         for one in self.outcomes:
-            told = "; ".join(t for t in (one.place, one.cause, *one.answer, one.remark) if t)
-            points = f"{one.points:g} of {one.of:g}"
-            lines.append(f"  {one.question}: {one.verdict}, {points}{': ' if told else ''}{told}")
+            told = (one.place, one.cause, *one.answer, one.remark)
+            reason = _("; ").join(text for text in told if text)
+            said = (
+                _("  {question}: {verdict}, {points:g} of {of:g}: {reason}")
+                if reason
+                else _("  {question}: {verdict}, {points:g} of {of:g}")
+            )
+            verdict = _(one.verdict)
+            fields = {"question": one.question, "verdict": verdict, "reason": reason}
+            lines.append(said.format(points=one.points, of=one.of, **fields))
         return "\n".join(lines)
 
 
@@ -98,26 +107,35 @@ class Marks:
         )
 
     def __str__(self) -> str:
-        return f"{self.sheet.title}: {self.summary}"
+        return _("{title}: {summary}").format(title=self.sheet.title, summary=self.summary)
 
     @property
     def summary(self) -> str:
         """How many there are, and how they did."""
         if not self.marks:
-            return "no submissions"
+            return _("no submissions")
         mean = math.fsum(mark.total for mark in self.marks) / len(self.marks)
-        unread = sum(one.verdict == "could not be read" for m in self.marks for one in m.outcomes)
-        several = "submission" if len(self.marks) == 1 else "submissions"
-        text = f"{len(self.marks)} {several}, mean {mean:.2f} of "
-        text += f"{self.sheet.points:g} points"
-        return text + (f"; {unread} answers could not be read" if unread else "")
+        unread = sum(one.verdict == UNREAD for m in self.marks for one in m.outcomes)
+        text = ngettext(
+            "{count} submission, mean {mean:.2f} of {of:g} points",
+            "{count} submissions, mean {mean:.2f} of {of:g} points",
+            len(self.marks),
+        ).format(count=len(self.marks), mean=mean, of=self.sheet.points)
+        if not unread:
+            return text
+        return _("{told}; {count} answers could not be read").format(told=text, count=unread)
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f"<tr><td>{html.escape(m.student)}</td><td>{m.total:g} of {m.of:g}</td></tr>"
+            f"<tr><td>{html.escape(m.student)}</td><td>{points(m.total, m.of)}</td></tr>"
             for m in self.marks
         )
         return f"<p><b>{html.escape(str(self))}</b></p><table>{rows}</table>"
+
+
+def points(got: float, of: float) -> str:
+    """``3 of 4``."""
+    return _("{points:g} of {of:g}").format(points=got, of=of)
 
 
 def slug_of(shown: str) -> str:

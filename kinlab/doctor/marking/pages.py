@@ -11,8 +11,10 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from kinlab.check.report import html as report
+from kinlab.doctor.marking.judge import MISSING, WRONG
 from kinlab.doctor.marking.marks import Mark, Marks
 from kinlab.doctor.marking.words import KINDS
+from kinlab.host.language import N_, _, language_tag, ngettext
 from kinlab.host.version import __version__
 from kinlab.host.web import page_text, policy
 
@@ -31,11 +33,12 @@ def student_page(marks: Marks, mark: Mark) -> str:
     return _render(
         "student.html.j2",
         title=marks.sheet.title,
-        lead=f"{mark.total:g} of {mark.of:g} points",
+        lead=_("{points:g} of {of:g} points").format(points=mark.total, of=mark.of),
         mark=mark,
         rows=rows,
-        footer=f"Compared at {marks.sheet.samples} random states with Pinocchio; "
-        f"kinlab {__version__}.",
+        footer=_("Compared at {states} random states with Pinocchio; kinlab {version}.").format(
+            states=marks.sheet.samples, version=__version__
+        ),
     )
 
 
@@ -64,20 +67,28 @@ def class_page(marks: Marks) -> str:
         questions=questions,
         bins=_histogram(marks),
         odd=[mark for mark in marks.marks if mark.note],
-        footer=f"Feedback to students: {marks.feedback}. kinlab {__version__}.",
+        footer=_("Feedback to students: {feedback}. kinlab {version}.").format(
+            feedback=marks.feedback, version=__version__
+        ),
     )
 
 
 def _phrase(kind: str) -> str:
-    return {"unread": "could not be read", "missing entries": "entries are missing"}.get(
-        kind, KINDS.get(kind, kind)
-    )
+    said = _UNSHEETED.get(kind, KINDS.get(kind, kind))
+    return _(said)
+
+
+_UNSHEETED = {
+    "unread": N_("could not be read"),
+    "missing entries": N_("entries are missing"),
+}
+"""What is said of kinds that a sheet cannot name."""
 
 
 def _tone(outcome: Any) -> str:
     if outcome.right:
         return "is-right"
-    return {"wrong": "is-wrong", "no answer": "is-none"}.get(outcome.verdict, "is-unread")
+    return {WRONG: "is-wrong", MISSING: "is-none"}.get(outcome.verdict, "is-unread")
 
 
 def _histogram(marks: Marks) -> list[dict[str, Any]]:
@@ -111,5 +122,5 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         keep_trailing_newline=True,
     )
-    made.globals["tone"] = _tone
+    made.globals |= {"tone": _tone, "_": _, "ngettext": ngettext, "language_tag": language_tag}
     return made

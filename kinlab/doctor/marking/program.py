@@ -27,6 +27,7 @@ from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
+from kinlab.host.language import N_, _
 
 SECONDS = 10.0
 """Processor and clock time of one program."""
@@ -59,12 +60,23 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
     outcomes = []
     for question in sheet.questions:
         if not isinstance(found, dict):
-            outcomes.append(lost(question, str(reply.get("error", "no answer"))[:200]))
+            outcomes.append(lost(question, str(reply.get("error", _("no answer")))[:200]))
         elif question.id not in found:
             outcomes.append(missing(question))
         else:
             outcomes.append(_of(sheet, question, submission, found[question.id], level))
-    return outcomes, f"run with limits of: {enforced or 'time'}"
+    return outcomes, _("run with limits of: {limits}").format(limits=enforced or _("time"))
+
+
+_LIMITS = (
+    N_("network"),
+    N_("processor time"),
+    N_("memory"),
+    N_("files written"),
+    N_("open files"),
+    N_("core dumps"),
+)
+"""What the process says that the system limits."""
 
 
 def _of(
@@ -102,17 +114,18 @@ def _run(request: str) -> tuple[dict[str, Any], str]:
                 process.stdin.write(request.encode() + b"\n")
                 process.stdin.close()
             except BrokenPipeError:
-                return {"error": "its process did not start"}, ""
+                return {"error": _("its process did not start")}, ""
             content, ending = _received(reading, process)
         finally:
             process.kill()
             process.wait()
             os.close(reading)
-    first, _, rest = content.decode("utf-8", "replace").partition("\n")
+    first, _newline, rest = content.decode("utf-8", "replace").partition("\n")
     limits, reply = _line(first), _line(rest)
-    enforced = ", ".join(str(part)[:20] for part in limits) if isinstance(limits, list) else ""
+    known = [part for part in limits if part in _LIMITS] if isinstance(limits, list) else []
+    enforced = _(", ").join(_(limit) for limit in known)
     if ending or not isinstance(reply, dict):
-        reply = {"error": ending or "no answer"}
+        reply = {"error": ending or _("no answer")}
     return reply, enforced
 
 
@@ -130,14 +143,17 @@ def _received(reading: int, process: subprocess.Popen[bytes]) -> tuple[bytes, st
     while content.count(b"\n") < 2:
         left = until - time.monotonic()
         if left <= 0 or not select.select([reading], [], [], left)[0]:
-            return content, f"did not come back within {SECONDS:g} s"
+            late = _("did not come back within {seconds:g} s")
+            return content, late.format(seconds=SECONDS)
         part = os.read(reading, 1 << 16)
         if not part:
             process.wait(5.0)
             if process.returncode < 0:
-                return content, f"ended its process by signal {-process.returncode} (its limits)"
-            return content, f"ended its process with exit code {process.returncode}"
+                ended = _("ended its process by signal {number} (its limits)")
+                return content, ended.format(number=-process.returncode)
+            ended = _("ended its process with exit code {number}")
+            return content, ended.format(number=process.returncode)
         content += part
         if len(content) > _LARGEST:
-            return content, "answered with more than 8 MB"
+            return content, _("answered with more than 8 MB")
     return content, ""

@@ -22,6 +22,7 @@ from kinlab.doctor.marking.marks import Mark, Marks
 from kinlab.doctor.marking.pages import class_page, student_page
 from kinlab.errors import FileError
 from kinlab.host.files import write_text
+from kinlab.host.language import _
 
 _FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "|", "%")
 """What a spreadsheet would take for the beginning of a formula or a command."""
@@ -98,7 +99,11 @@ def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
 
 def told(outcome: Outcome) -> str:
     """An outcome in a few lines, as much as its feedback lets through."""
-    first = outcome.verdict[:1].upper() + outcome.verdict[1:]
-    lines = [f"{first}.", outcome.place and f"Place: {outcome.place}."]
-    lines += [outcome.cause and f"Kind: {outcome.cause}.", *outcome.answer, outcome.remark]
+    verdict = _(outcome.verdict)
+    lines = [_("{verdict}.").format(verdict=verdict[:1].upper() + verdict[1:])]
+    if outcome.place:
+        lines.append(_("Place: {place}.").format(place=outcome.place))
+    if outcome.cause:
+        lines.append(_("Kind: {kind}.").format(kind=outcome.cause))
+    lines += [*outcome.answer, outcome.remark]
     return "\n".join(line for line in lines if line)

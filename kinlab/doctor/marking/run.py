@@ -27,6 +27,7 @@ from kinlab.doctor.marking.submission import Submission, found_in, of_document, 
 from kinlab.errors import FileError, KinlabError
 from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
+from kinlab.host.language import _, language
 from kinlab.host.processes import end_with_parent
 from kinlab.host.version import __version__ as VERSION
 
@@ -98,7 +99,8 @@ def _of_mapping(sheet: Sheet, student: Any, given: Mapping[str, Any], level: str
     who = str(student)
     try:
         if not isinstance(given, Mapping):
-            raise FileError(f"{who}: {type(given).__name__}; give answers by question's id")
+            said = _("{student}: {type}; give answers by question's id")
+            raise FileError(said.format(student=who, type=type(given).__name__))
         submission = of_document({**given, "student": who}, sheet, who, who)
     except KinlabError as problem:
         return _unread(sheet, who, who, str(problem), slug_of(who))
@@ -169,7 +171,8 @@ class _Work:
 
     def fingerprint(self, path: Path) -> str:
         digest = hashlib.sha256()
-        parts = (VERSION, self.sheet.text, str(self.sheet.robot.urdf), self.level, self.run_python)
+        settings = (self.level, self.run_python, language())
+        parts = (VERSION, self.sheet.text, str(self.sheet.robot.urdf), *settings)
         digest.update(repr(parts).encode())
         with contextlib.suppress(OSError):
             if path.is_file() and not path.is_symlink() and path.stat().st_size < 1 << 20:
@@ -186,9 +189,10 @@ class _Work:
                 outcomes = judge(self.sheet, submission, self.level)
             elif self.run_python:
                 outcomes, limits = judge_program(self.sheet, submission, self.level)
-                note = "; ".join(part for part in (note, limits) if part)
+                note = _("; ").join(part for part in (note, limits) if part)
             else:
-                raise FileError(f"{shown}: a Python file; it is run only with --run-python")
+                said = _("{file}: a Python file; it is run only with --run-python")
+                raise FileError(said.format(file=shown))
             return _finished(shown, submission, tuple(outcomes), note, slug)
         except KinlabError as problem:
             return _unread(self.sheet, shown, path.stem, str(problem), slug)
@@ -209,7 +213,8 @@ def _finished(
 
 def _unread(sheet: Sheet, file: str, student: str, reason: str, slug: str) -> Mark:
     outcomes = tuple(lost(question, reason) for question in sheet.questions)
-    return Mark(file, student[:64], "", outcomes, "the submission could not be read", slug)
+    note = _("the submission could not be read")
+    return Mark(file, student[:64], "", outcomes, note, slug)
 
 
 def _with_notes(marks: Iterable[Mark]) -> list[Mark]:
@@ -222,8 +227,10 @@ def _with_notes(marks: Iterable[Mark]) -> list[Mark]:
     for one in ordered:
         same = files[one.student.casefold()]
         if len(same) > 1:
-            twice = f"handed in {len(same)} times: {', '.join(sorted(same)[:5])}"
-            one = replace(one, note="; ".join(part for part in (one.note, twice) if part))
+            twice = _("handed in {count} times: {files}").format(
+                count=len(same), files=_(", ").join(sorted(same)[:5])
+            )
+            one = replace(one, note=_("; ").join(part for part in (one.note, twice) if part))
         result.append(one)
     return result
 
@@ -333,14 +340,15 @@ class _Worker:
             if self.pipe.poll(0):
                 mark_: Mark = self.pipe.recv()
                 return mark_
-            reason = f"took longer than {SECONDS:g} s"
+            reason = _("{file}: took longer than {seconds:g} s")
         except (EOFError, OSError):
-            reason = "ended the process that marked it"
+            reason = _("{file}: ended the process that marked it")
         self.end()
         self._start()
         shown = self._work.shown(path)
         slug = self._work.slug(path)
-        return _unread(self._work.sheet, shown, path.stem, f"{shown}: {reason}", slug)
+        reason = reason.format(file=shown, seconds=SECONDS)
+        return _unread(self._work.sheet, shown, path.stem, reason, slug)
 
     def end(self) -> None:
         self._process.kill()

@@ -23,6 +23,7 @@ from kinlab.doctor.terms import split_name
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
 from kinlab.host.files import read_text, read_toml
+from kinlab.host.language import _
 
 LARGEST = 256 * 1024
 """Bytes of a submission above which it is not read."""
@@ -151,7 +152,7 @@ def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str
 
 
 def _note(student: str) -> str:
-    return "" if student else "no student id in the file; its name is taken"
+    return "" if student else _("no student id in the file; its name is taken")
 
 
 def _safe(text: str) -> str:
@@ -273,9 +274,11 @@ def _sorted(
         if isinstance(value, dict) and all(isinstance(v, str) for v in value.values()):
             answers.setdefault(question.id, {}).update(value)
         elif not isinstance(value, str):
-            problems[question.id] = f"{type(value).__name__}; write the formula as text"
+            said = _("{type}; write the formula as text")
+            problems[question.id] = said.format(type=type(value).__name__)
         elif name in answers.get(question.id, {}):
-            problems[question.id] = f"{name or question.id} is given twice; keep the last line only"
+            said = _("{entry} is given twice; keep the last line only")
+            problems[question.id] = said.format(entry=name or question.id)
         else:
             answers.setdefault(question.id, {})[name] = value
     return answers, problems
@@ -339,12 +342,11 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
         if said in ("", question.id, question.entry, default, _head(question)):
             named[default] = right
             continue
-        found, _ = _asked(said, sheet, hand([]))
+        found, _name = _asked(said, sheet, hand([]))
         if said not in question.answer and (found is None or found.id != question.id):
             if question.quantity != quantity_of(said, sheet.robot.table):
-                raise ExpressionError(
-                    f"the line begins with {said} =, and the question asks for {question.entry}"
-                )
+                other = _("the line begins with {name} =, and the question asks for {entry}")
+                raise ExpressionError(other.format(name=said, entry=question.entry))
             said = default
         named[said] = right
     return named

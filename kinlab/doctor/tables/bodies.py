@@ -12,12 +12,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations, product
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import Chain, frames, inverse
-from kinlab.doctor.tables.words import Cause, number
+from kinlab.doctor.tables.words import Cause, at_row, listed, number
+from kinlab.host.language import N_, _
 from kinlab.model.dh import DHLink, DHTable, with_links
 from kinlab.model.link import steiner
 from kinlab.tolerances import TOLERANCES
@@ -162,7 +164,10 @@ def _together(causes: list[Cause], n: int) -> list[Cause]:
         if same[0] is not cause:
             continue
         rows = tuple(row for c in same for row in c.rows)
-        said = cause.sentence.split(": ", 1)[1]
+        told = _("rows {rows}: {slip}")
+        named = _(", ").join(map(str, rows))
+        if rows == tuple(range(rows[0], rows[-1] + 1)):
+            told = _("rows {first} to {last}: {slip}")
         out.append(
             Cause(
                 rows,
@@ -170,133 +175,185 @@ def _together(causes: list[Cause], n: int) -> list[Cause]:
                 [c.written for c in same],
                 [c.meant for c in same],
                 cause.kind,
-                f"rows {rows[0]} to {rows[-1]}: {said.split(':')[0]}"
-                if rows == tuple(range(rows[0], rows[-1] + 1))
-                else f"rows {', '.join(map(str, rows))}: {said.split(':')[0]}",
+                told.format(rows=named, first=rows[0], last=rows[-1], slip=cause.short),
                 cause.cost,
             )
         )
     return out
 
 
+_BOTH = N_("{slip}: {written} written, {meant} meant")
+_MEANT = N_("{slip}: {meant}")
+_WRITTEN = N_("{slip}: {written} written")
+
+
+def _body_cause(
+    row: int,
+    column: str,
+    values: tuple[Any, Any],
+    kind: str,
+    slip: str,
+    cost: float,
+    told: tuple[str, str, str],
+) -> Cause:
+    """A slip of a body: ``told`` is the form of the sentence and both numbers in words."""
+    form, written, meant = told
+    said = _(form).format(slip=slip, written=written, meant=meant)
+    return Cause(row, column, *values, kind, at_row(row, said), cost, slip)
+
+
 def _mass_cause(one: _Link) -> Cause:
     written, meant = float(one.written.mass), one.mass
-    at = f"row {one.row}: mass"
-    numbers = f"{number(written)} written, {number(meant)} kg meant"
 
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(one.row, "mass", written, meant, kind, told, cost)
+    def cause(kind: str, slip: str, cost: float, form: str = _BOTH, unit: str = "") -> Cause:
+        told = (form, f"{number(written)}{unit}", f"{number(meant)} kg")
+        return _body_cause(one.row, "mass", (written, meant), kind, slip, cost, told)
 
     if written == 0.0:
-        return cause("missing", f"{at} is forgotten: {number(meant)} kg", 1.0)
+        return cause("missing", _("mass is forgotten"), 1.0, _MEANT)
     if meant == 0.0:
-        return cause("superfluous", f"{at} must be zero: {number(written)} kg written", 1.5)
+        return cause("superfluous", _("mass must be zero"), 1.5, _WRITTEN, " kg")
     if one.power(written, meant) == 3:
-        return cause("grams", f"{at} is in grams: {numbers}", 1.0)
+        return cause("grams", _("mass is in grams"), 1.0)
     power = one.power(meant, written)
     if power:
-        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
-    return cause("value", f"{at} is wrong: {numbers}", 2.0)
+        return cause("decimal", _("mass: the decimal point is displaced"), 1.0)
+    return cause("value", _("mass is wrong"), 2.0)
 
 
 def _frames_of(one: _Link) -> Iterator[tuple[str, Array]]:
     """Other frames and their poses in frame i, at q = 0."""
     here = inverse(one.poses[one.row])
     n = len(one.poses) - 2
-    yield f"frame {one.row - 1}", here @ one.poses[one.row - 1]
+    yield _frame(one.row - 1), here @ one.poses[one.row - 1]
     if one.row < n:
-        yield f"frame {one.row + 1}", here @ one.poses[one.row + 1]
-    yield "the tool", here @ one.poses[-1]
-    yield "the world", here
+        yield _frame(one.row + 1), here @ one.poses[one.row + 1]
+    yield _("the tool"), here @ one.poses[-1]
+    yield _("the world"), here
     if one.row > 1:
-        yield "the base", here @ one.poses[0]
+        yield _("the base"), here @ one.poses[0]
     for other in range(1, n + 1):
         if abs(other - one.row) > 1:
-            yield f"frame {other}", here @ one.poses[other]
+            yield _frame(other), here @ one.poses[other]
+
+
+def _frame(number_: int) -> str:
+    return _("frame {number}").format(number=number_)
 
 
 def _com_cause(one: _Link) -> Cause:
     written, meant = np.asarray(one.written.com), one.com
-    at = f"row {one.row}: com"
-    numbers = f"{_vector(written)} written, {_vector(meant)} meant"
 
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(one.row, "com", written, meant, kind, f"{at} {told}: {numbers}", cost)
+    def cause(kind: str, slip: str, cost: float) -> Cause:
+        told = (_BOTH, _vector(written), _vector(meant))
+        return _body_cause(one.row, "com", (written, meant), kind, slip, cost, told)
 
     if not written.any():
-        return cause("missing", "is missing", 1.2)
+        return cause("missing", _("com is missing"), 1.2)
     for signs in _signs(3):
         if one.alike(written, signs * meant):
             some = [name for name, s, x in zip("xyz", signs, meant, strict=True) if s < 0 and x]
-            told = "has the wrong sign" + ("" if len(some) == 3 else f" in {', '.join(some)}")
+            if len(some) == 3:
+                return cause("sign", _("com has the wrong sign"), 1.0)
+            told = _("com has the wrong sign in {axes}").format(axes=", ".join(some))
             return cause("sign", told, 1.0)
     for factor in (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001):
         if one.alike(written, factor * meant):
             if factor == 1000.0:
-                return cause("millimetres", "is in millimetres", 1.0)
-            return cause("decimal", "has the decimal point displaced", 1.0)
+                return cause("millimetres", _("com is in millimetres"), 1.0)
+            return cause("decimal", _("com has the decimal point displaced"), 1.0)
     wrong = np.flatnonzero(
         np.abs(written - meant) > 1e-8 * np.max(np.abs(meant)) + 1e-12 + one.slack
     )
     if len(wrong) == 1:
         k = int(wrong[0])
         if meant[k] and written[k] and one.power(float(meant[k]), float(written[k])):
-            return cause("decimal", f"has the decimal point displaced in {'xyz'[k]}", 1.0)
+            return cause(
+                "decimal",
+                _("com has the decimal point displaced in {axis}").format(axis="xyz"[k]),
+                1.0,
+            )
     for order in permutations(range(3)):
         if one.alike(written, meant[list(order)]):
-            return cause("axes", "has its axes in another order", 1.0)
+            return cause("axes", _("com has its axes in another order"), 1.0)
     for name, pose in _frames_of(one):
-        plain = name == f"frame {one.row + 1}" and np.allclose(pose[:3, :3], np.eye(3), atol=1e-9)
+        plain = name == _frame(one.row + 1) and np.allclose(pose[:3, :3], np.eye(3), atol=1e-9)
         if plain and one.alike(written, meant - pose[:3, 3]):  # as well in that frame
-            return cause("other end", f"is counted from the origin of {name}", 1.0)
+            return cause(
+                "other end", _("com is counted from the origin of {name}").format(name=name), 1.0
+            )
         if one.alike(written, (inverse(pose) @ [*meant, 1.0])[:3]):
-            return cause("frame", f"is given in {name}", 1.0)
+            return cause("frame", _("com is given in {name}").format(name=name), 1.0)
         if one.alike(written, meant - pose[:3, 3]):
-            return cause("other end", f"is counted from the origin of {name}", 1.0)
+            return cause(
+                "other end", _("com is counted from the origin of {name}").format(name=name), 1.0
+            )
         if one.alike(written, pose[:3, :3].T @ meant):
-            return cause("frame", f"has the axes of {name}", 1.05)
+            return cause("frame", _("com has the axes of {name}").format(name=name), 1.05)
     for order in permutations(range(3)):
         for signs in _signs(3):
             if one.alike(written, signs * meant[list(order)]):
-                return cause("axes", "has its axes turned", 1.2)
+                return cause("axes", _("com has its axes turned"), 1.2)
     for name, pose in _frames_of(one):
         if one.alike(written, meant + pose[:3, 3]):
-            return cause("other end", f"is shifted against the origin of {name}", 1.2)
+            return cause(
+                "other end", _("com is shifted against the origin of {name}").format(name=name), 1.2
+            )
         if one.alike(written, (pose @ [*meant, 1.0])[:3]):
-            return cause("frame", f"is transformed the wrong way from {name}", 1.2)
+            return cause(
+                "frame", _("com is transformed the wrong way from {name}").format(name=name), 1.2
+            )
         if one.alike(written, pose[:3, :3] @ meant):
-            return cause("frame", f"is turned the wrong way from the axes of {name}", 1.2)
-    return cause("value", "is wrong", 2.0)
+            return cause(
+                "frame",
+                _("com is turned the wrong way from the axes of {name}").format(name=name),
+                1.2,
+            )
+    return cause("value", _("com is wrong"), 2.0)
 
 
 def _inertia_cause(one: _Link) -> Cause:
     written, meant = np.asarray(one.written.inertia), one.inertia
-    at = f"row {one.row}: inertia"
 
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        numbers = f"{_tensor(written)} written, {_tensor(meant)} meant"
-        return Cause(one.row, "inertia", written, meant, kind, f"{at} {told}: {numbers}", cost)
+    def cause(kind: str, slip: str, cost: float) -> Cause:
+        told = (_BOTH, _tensor(written), _tensor(meant))
+        return _body_cause(one.row, "inertia", (written, meant), kind, slip, cost, told)
 
     if not written.any():
-        return cause("missing", "is missing", 1.0)
-    for com, whose in ((one.com, ""), (np.asarray(one.written.com), " (of the com written)")):
+        return cause("missing", _("inertia is missing"), 1.0)
+    for com, own in ((one.com, True), (np.asarray(one.written.com), False)):
         shift = steiner(one.mass, com)
         if shift.any() and one.alike(written, meant + shift):
-            return cause(
-                "origin",
-                f"is about the origin of frame {one.row}, not the centre of mass{whose}",
-                1.0,
+            told = (
+                _("inertia is about the origin of frame {number}, not the centre of mass")
+                if own
+                else _(
+                    "inertia is about the origin of frame {number}, not the centre of mass (of "
+                    "the com written)"
+                )
             )
+            return cause("origin", told.format(number=one.row), 1.0)
         if shift.any() and one.alike(written, meant - shift):
-            return cause("origin", f"has the shift of origin taken off twice{whose}", 1.1)
+            told = (
+                _("inertia has the shift of origin taken off twice")
+                if own
+                else _("inertia has the shift of origin taken off twice (of the com written)")
+            )
+            return cause("origin", told, 1.1)
     found = _products(one)
     if found:
-        return cause("products", f"has the wrong sign of {found}", 1.0)
+        return cause("products", found, 1.0)
     for factor in (10.0, 0.1, 100.0, 0.01, 1e3, 1e-3, 1e4, 1e6, 1e9):
         if one.alike(written, factor * meant):
             if factor >= 1e4:
-                return cause("units", f"is {factor:g} times too large, as in other units", 1.0)
-            return cause("decimal", "has the decimal point displaced", 1.0)
+                return cause(
+                    "units",
+                    _("inertia is {factor:g} times too large, as in other units").format(
+                        factor=factor
+                    ),
+                    1.0,
+                )
+            return cause("decimal", _("inertia has the decimal point displaced"), 1.0)
     limit = 1e-8 * float(np.max(np.abs(meant))) + one.slack
     off = np.abs(written - meant) > limit
     wrong = [(i, j) for i in range(3) for j in range(i, 3) if off[i, j]]
@@ -304,34 +361,44 @@ def _inertia_cause(one: _Link) -> Cause:
         i, j = wrong[0]
         name = f"I{'xyz'[i]}{'xyz'[j]}"
         if meant[i, j] and one.power(float(written[i, j]), float(meant[i, j])):
-            return cause("decimal", f"has the decimal point displaced in {name}", 1.0)
+            return cause(
+                "decimal",
+                _("inertia has the decimal point displaced in {name}").format(name=name),
+                1.0,
+            )
         if written[i, j] == 0.0:
-            return cause("missing", f"lacks {name}", 1.2)
+            return cause("missing", _("inertia lacks {name}").format(name=name), 1.2)
     off = ~np.eye(3, dtype=bool)
     if one.alike(written[off], meant[off], np.max(np.abs(meant))):
         for order in permutations(range(3)):
             if one.alike(np.diag(written), np.diag(meant)[list(order)]):
-                return cause("order", "has its principal values in another order", 1.0)
+                return cause("order", _("inertia has its principal values in another order"), 1.0)
     if not written[off].any() and one.alike(np.diag(written), np.diag(meant)):
-        return cause("missing", "lacks its products", 1.2)
+        return cause("missing", _("inertia lacks its products"), 1.2)
     for name, pose in _frames_of(one):
         turn = pose[:3, :3]
         if one.alike(written, turn.T @ meant @ turn):
-            return cause("frame", f"has the axes of {name}", 1.0)
+            return cause("frame", _("inertia has the axes of {name}").format(name=name), 1.0)
         if one.alike(written, turn @ meant @ turn.T):
-            return cause("frame", f"is turned the wrong way from the axes of {name}", 1.1)
+            return cause(
+                "frame",
+                _("inertia is turned the wrong way from the axes of {name}").format(name=name),
+                1.1,
+            )
     for order in permutations(range(3)):
         if one.alike(written, meant[np.ix_(order, order)]):
-            return cause("axes", "has its axes in another order", 1.1)
+            return cause("axes", _("inertia has its axes in another order"), 1.1)
     for name, pose in _frames_of(one):
         shift = steiner(one.mass, one.com - pose[:3, 3])
         if shift.any() and one.alike(written, meant + shift):
-            return cause("origin", f"is about the origin of {name}", 1.1)
-    return cause("value", "is wrong", 2.0)
+            return cause(
+                "origin", _("inertia is about the origin of {name}").format(name=name), 1.1
+            )
+    return cause("value", _("inertia is wrong"), 2.0)
 
 
 def _products(one: _Link) -> str:
-    """The products of inertia whose sign alone is wrong, in words."""
+    """Which products of inertia have the wrong sign and nothing else, in words."""
     written, meant = np.asarray(one.written.inertia), one.inertia
     places = [(0, 1), (0, 2), (1, 2)]
     if not one.alike(np.diag(written), np.diag(meant)):
@@ -344,58 +411,56 @@ def _products(one: _Link) -> str:
                 other[i, j] = other[j, i] = -meant[i, j]
             if one.alike(written, other):
                 if count == len(nonzero):
-                    return "its products"
-                return " and ".join(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
+                    return _("inertia has the wrong sign of its products")
+                named = listed(f"I{'xyz'[i]}{'xyz'[j]}" for i, j in some)
+                return _("inertia has the wrong sign of {entries}").format(entries=named)
     return ""
 
 
 def _armature_cause(row: int, written: float, meant: float) -> Cause:
-    at = f"row {row}: armature"
-    numbers = f"{number(written)} written, {number(meant)} meant"
 
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(row, "armature", written, meant, kind, told, cost)
+    def cause(kind: str, slip: str, cost: float, form: str = _BOTH) -> Cause:
+        told = (form, number(written), number(meant))
+        return _body_cause(row, "armature", (written, meant), kind, slip, cost, told)
 
     if written == 0.0:
-        return cause("missing", f"{at} is missing: {number(meant)}", 1.0)
+        return cause("missing", _("armature is missing"), 1.0, _MEANT)
     if meant == 0.0:
-        return cause("superfluous", f"{at} must be zero: {number(written)} written", 1.5)
+        return cause("superfluous", _("armature must be zero"), 1.5, _WRITTEN)
     power = _power(meant / written)
     if abs(power) in (1, 3):
-        return cause("decimal", f"{at}: the decimal point is displaced: {numbers}", 1.0)
+        return cause("decimal", _("armature: the decimal point is displaced"), 1.0)
     gear = float(np.sqrt(meant / written))
     if gear > 1.0:
-        return cause(
-            "gear",
-            f"{at} is that of the motor, J in place of G^2 J with G = {gear:.6g}: {numbers}",
-            1.0,
-        )
-    return cause("gear", f"{at} has a factor {number(written / meant)} too much: {numbers}", 1.5)
+        told = _("armature is that of the motor, J in place of G^2 J with G = {gear:.6g}")
+        return cause("gear", told.format(gear=gear), 1.0)
+    told = _("armature has a factor {factor} too much")
+    return cause("gear", told.format(factor=number(written / meant)), 1.5)
 
 
 def _gravity_cause(written: Array, meant: Array, poses: Array) -> Cause:
-    numbers = f"{_vector(written)} written, {_vector(meant)} meant"
 
-    def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(None, "gravity", written, meant, kind, f"gravity {told}: {numbers}", cost)
+    def cause(kind: str, slip: str, cost: float) -> Cause:
+        told = _(_BOTH).format(slip=slip, written=_vector(written), meant=_vector(meant))
+        return Cause(None, "gravity", written, meant, kind, told, cost)
 
     if not written.any():
-        return cause("missing", "is missing", 1.0)
+        return cause("missing", _("gravity is missing"), 1.0)
     if _alike(written, -meant):
-        return cause("sign", "points the other way", 1.0)
+        return cause("sign", _("gravity points the other way"), 1.0)
     for order in permutations(range(3)):
         for signs in _signs(3, True):
             if _alike(written, signs * meant[list(order)]):
-                return cause("direction", "points along another axis", 1.0)
+                return cause("direction", _("gravity points along another axis"), 1.0)
     turn = poses[0, :3, :3]
     if _alike(written, turn.T @ meant) or _alike(written, turn @ meant):
-        return cause("frame", "is given in the axes of frame 0", 1.0)
+        return cause("frame", _("gravity is given in the axes of frame 0"), 1.0)
     if abs(np.linalg.norm(written) - np.linalg.norm(meant)) < 1e-8 * np.linalg.norm(meant):
-        return cause("direction", "points in another direction", 1.5)
+        return cause("direction", _("gravity points in another direction"), 1.5)
     power = _power(float(np.linalg.norm(meant) / np.linalg.norm(written)))
     if power and _alike(written * 10.0**power, meant):
-        return cause("decimal", "has the decimal point displaced", 1.0)
-    return cause("value", "is wrong", 2.0)
+        return cause("decimal", _("gravity has the decimal point displaced"), 1.0)
+    return cause("value", _("gravity is wrong"), 2.0)
 
 
 def _signs(count: int, all_plus: bool = False) -> Iterator[Array]:

@@ -31,7 +31,7 @@ from kinlab.doctor.tables.chain import (
     stacked_frames,
 )
 from kinlab.doctor.tables.readings import Reading
-from kinlab.doctor.tables.target import Target
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.words import (
     Cause,
     angle_cause,
@@ -42,6 +42,8 @@ from kinlab.doctor.tables.words import (
     tidy_length,
     wrapped,
 )
+from kinlab.host.language import _
+from kinlab.model.rotations import about_axis
 from kinlab.tolerances import TOLERANCES
 
 _AXES = {A: 0, ALPHA: 0, D: 2, THETA: 2}
@@ -125,18 +127,9 @@ def _screw(motion: Array, axis: int) -> tuple[float, float, float]:
     length = float(motion[axis, 3])
     rest = np.array(motion)
     rest[axis, 3] = 0.0
-    rest[:3, :3] -= _turn(axis, angle)
+    rest[:3, :3] -= about_axis(axis, angle)
     rest[3, 3] = 0.0
     return angle, length, float(np.max(np.abs(rest)))
-
-
-def _turn(axis: int, angle: float) -> Array:
-    out = np.eye(3)
-    u, v = (axis + 1) % 3, (axis + 2) % 3
-    out[u, u] = out[v, v] = np.cos(angle)
-    out[v, u] = np.sin(angle)
-    out[u, v] = -out[v, u]
-    return out
 
 
 def changed(first: Reading, values: dict[tuple[int, int], float], slack: float = 0.0) -> Reading:
@@ -206,12 +199,14 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
     if len(values) <= 2:
         return [changed(first, values, target.slack)]
     new = chain
-    for (_, column), value in values.items():
+    for (_row, column), value in values.items():
         new = new.with_cell(row, column, value)
     told = row_text(new.cells[row])
     for other in (row - 1, row + 1):
         if 0 <= other < chain.n and np.array_equal(chain.cells[other], written):
-            said = f"row {row + 1} repeats row {other + 1}: meant is {told}"
+            said = _("row {row} repeats row {other}: meant is {meant}").format(
+                row=row + 1, other=other + 1, meant=told
+            )
             cause = Cause(row + 1, "order", written, new.cells[row], "doubled", said, 1.2)
             return [Reading(new, (*first.causes, cause))]
     return []
@@ -219,10 +214,8 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
 
 def row_text(row: Array) -> str:
     """A row in words."""
-    return (
-        f"a {number(row[A])}, alpha {degrees(row[ALPHA])}, d {number(row[D])}, "
-        f"theta {degrees(row[THETA])}"
-    )
+    a, d = number(row[A]), number(row[D])
+    return f"a {a}, alpha {degrees(row[ALPHA])}, d {d}, theta {degrees(row[THETA])}"
 
 
 def inserted(chain: Chain, target: Target) -> list[Reading]:
@@ -241,7 +234,7 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                     (*chain.source[:row], None, *chain.source[row:]),
                 )
                 frame = row if chain.modified else row + 1
-                gap, _ = _differences(frames(new, target.few.q)[None], target.few)
+                gap, _last = _differences(frames(new, target.few.q)[None], target.few)
                 if _spread(gap, target.size)[0, frame] > target.steady:
                     continue
                 solved = row_of(chain.modified, np.mean(gap[0, :, frame], axis=0), target.steady)
@@ -255,14 +248,18 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                     )
                 if not target.met(new):
                     continue
-                kind = "prismatic" if slides else "revolute"
+                left_out = (
+                    _("row {row} is left out: prismatic, {meant}")
+                    if slides
+                    else _("row {row} is left out: revolute, {meant}")
+                )
                 cause = Cause(
                     row + 1,
                     "order",
                     None,
                     new.cells[row],
                     "left out",
-                    f"row {row + 1} is left out: {kind}, {row_text(new.cells[row])}",
+                    left_out.format(row=row + 1, meant=row_text(new.cells[row])),
                     1.0 if sign > 0 else 1.4,
                 )
                 found.append(Reading(new, (cause,)))
@@ -286,7 +283,9 @@ def removed(chain: Chain) -> list[Reading]:
             for k in (row - 1, row + 1)
             if 0 <= k < chain.n and np.array_equal(chain.cells[k], chain.cells[row])
         ]
-        told = f"repeats row {twins[0] + 1}" if twins else "is too many"
+        told = _("row {row} is too many").format(row=row + 1)
+        if twins:
+            told = _("row {row} repeats row {other}").format(row=row + 1, other=twins[0] + 1)
         cost = 1.0 if twins and twins[0] < row else 1.1 if twins else 1.5
         cause = Cause(
             row + 1,
@@ -294,7 +293,7 @@ def removed(chain: Chain) -> list[Reading]:
             chain.cells[row],
             None,
             "doubled" if twins else "too many",
-            f"row {row + 1} {told}",
+            told,
             cost,
         )
         found.append(Reading(new, (cause,)))
@@ -339,7 +338,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
     for k in np.flatnonzero((still < target.steady) & (np.abs(product) > 1e-6)):
         first = float(np.angle(product[k]))
         rest = np.swapaxes(between[:, k, :3, :3], -1, -2) @ (
-            _turn(int(axis1[k]), -first) @ wanted[:, k, :3, :3]
+            about_axis(int(axis1[k]), -first) @ wanted[:, k, :3, :3]
         )
         s, t = (axis2[k] + 1) % 3, (axis2[k] + 2) % 3
         sine = np.sum(rest[:, t, s] - rest[:, s, t])
@@ -371,14 +370,14 @@ def _turned(chain: Chain, target: Target) -> list[Reading]:
     """Single angles that make the rotations agree, whatever the positions."""
     few = target.few
     poses = frames(chain, few.q)
-    gap, _ = _differences(poses[None], few)
+    gap, _last = _differences(poses[None], few)
     found = []
     for row, column in _in_order(chain, (ALPHA, THETA)):
         motion = gap[0, :, chain.frame_of(row, column)].copy()
         motion[:, :3, 3] = 0.0
         if _spread(motion[None], 1.0)[0] > target.steady:
             continue
-        angle, _, rest = _screw(np.mean(motion, axis=0), _AXES[column])
+        angle, _length, rest = _screw(np.mean(motion, axis=0), _AXES[column])
         if rest <= target.steady and abs(angle) > target.steady:
             value = wrapped(float(chain.cells[row, column]) + angle)
             found.append(changed(Reading(chain), {(row, column): value}, target.slack))

@@ -12,7 +12,9 @@ from kinlab.arrays import Array, seed_of
 from kinlab.doctor.tables import bodies as table_bodies
 from kinlab.doctor.tables import noise as table_noise
 from kinlab.doctor.tables import zeros as table_zeros
-from kinlab.doctor.tables.against import (
+from kinlab.doctor.tables.chain import Chain
+from kinlab.doctor.tables.readings import Reading
+from kinlab.doctor.tables.reference.against import (
     Reference,
     check_joints,
     joint_counts,
@@ -20,12 +22,11 @@ from kinlab.doctor.tables.against import (
     read_mine,
     read_reference,
 )
-from kinlab.doctor.tables.chain import Chain
-from kinlab.doctor.tables.readings import Reading
 from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.search import explain
 from kinlab.doctor.tables.words import SIX, Cause, listed
 from kinlab.errors import InertiaError, OptionError, StructureError, TableError
+from kinlab.host.language import N_, _, ngettext
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 
@@ -53,7 +54,8 @@ def diagnose_table(
     Args:
         mine: the table that may be wrong: a DHTable, a .toml or .csv file, a shipped name.
         against: the other description: a DHTable, a Robot, a name, a .toml, .csv or .urdf file,
-            URDF text, a CSV of poses (see :mod:`kinlab.doctor.tables.poses`), or ``(q, T)``.
+            URDF text, a CSV of poses (see :mod:`kinlab.doctor.tables.reference.poses`), or ``(q,
+            T)``.
         poses: ``(q, T)``: joint positions (N, n), rad and m, and tool poses (N, 4, 4) in the
             frame in which the table's base stands, simulated or measured.
         tool: for a URDF: the link that is the tool.
@@ -93,17 +95,20 @@ def _compares_bodies(
         return False
     lacking = ""
     if reference.axes is None:
-        lacking = "poses say nothing of masses" if dynamics else ""
+        lacking = N_("poses say nothing of masses") if dynamics else ""
     elif reference.bodies is None and (has or dynamics):
-        lacking = (
-            f"{reference.name!r} has no masses: give a table or a URDF whose links have <inertial>"
+        lacking = N_(
+            "{reference!r} has no masses: give a table or a URDF whose links have <inertial>"
         )
     elif not has and (reference.bodies is not None or dynamics):
-        lacking = f"table {table.name!r} has no masses: fill in mass, com and inertia of its rows"
+        lacking = N_("table {table!r} has no masses: fill in mass, com and inertia of its rows")
+    names = {"reference": reference.name, "table": table.name}
     if lacking and dynamics:
-        raise InertiaError(f"dynamics cannot be compared: {lacking}, or leave dynamics out")
+        why = lacking.format(**names)
+        raise InertiaError(f"dynamics cannot be compared: {why}, or leave dynamics out")
     if lacking:
-        notes.append(f"kinematics alone are compared; {lacking}")
+        why = _(lacking).format(**names)
+        notes.append(_("kinematics alone are compared; {why}").format(why=why))
     return reference.bodies is not None and has
 
 
@@ -174,12 +179,19 @@ def _told(
     if len(dynamic) > MOST or (len(causes) > MOST and not many):
         rows = sorted({row for cause in dynamic for row in cause.rows})
         kinematic = tuple(c for c in causes if c not in dynamic)
-        said = f"{joined(kinematic)}; " if kinematic else "the kinematics agree; "
-        what = sorted({c.column for c in dynamic})
+        said = (
+            _("{kinematics}; {columns} differ in rows {rows}, more than one or two slips explain")
+            if rows
+            else _("{kinematics}; {columns} differ, more than one or two slips explain")
+        )
+        said = said.format(
+            kinematics=joined(kinematic) if kinematic else _("the kinematics agree"),
+            columns=listed(sorted({c.column for c in dynamic})),
+            rows=listed(rows) if rows else "",
+        )
         return TableDiagnosis(
             agrees=False,
-            sentence=f"{said}{listed(what)} differ in rows {listed(rows) if rows else 'of base'}, "
-            "more than one or two slips explain",
+            sentence=said,
             certain_rows=tuple(i for i in range(1, table.n + 1) if i not in rows),
             rows_in_question=tuple(rows),
             evidence=tuple(c.sentence for c in dynamic),
@@ -191,7 +203,9 @@ def _told(
     whole = any(c.row is None and c.column in ("convention", "units", "order") for c in causes)
     rest = tuple(i for i in range(1, repaired.n + 1) if i not in wrong and not whole)
     if not causes:
-        told = f"{table.name} and {reference.name} are the same arm"
+        told = _("{table} and {reference} are the same arm").format(
+            table=table.name, reference=reference.name
+        )
         if reference.chain is not None:
             differences = _gauge(chain, reference.chain)
     else:
@@ -255,12 +269,20 @@ def _foreign(chain: Chain, reference: Reference) -> int:
 
 
 def _unknown(sure: tuple[int, ...], doubt: tuple[int, ...], reference: Reference) -> str:
-    text = f"not the arm of {reference.name}; no one or two slips explain the difference"
-    if sure:
-        text += f"; row{'s' if len(sure) > 1 else ''} {listed(sure)} certainly right"
-    if doubt and sure:
-        text += f", row{'s' if len(doubt) > 1 else ''} {listed(doubt)} in question"
-    return text
+    text = _("not the arm of {reference}; no one or two slips explain the difference").format(
+        reference=reference.name
+    )
+    if not sure:
+        return text
+    right = ngettext("row {rows} certainly right", "rows {rows} certainly right", len(sure))
+    told = _("{verdict}; {rows}").format(verdict=text, rows=right.format(rows=listed(sure)))
+    if not doubt:
+        return told
+    rest = ngettext("{told}, row {rows} in question", "{told}, rows {rows} in question", len(doubt))
+    return rest.format(told=told, rows=listed(doubt))
+
+
+_OTHER_END = {"base": N_("the base is another"), "tool": N_("the tool is another")}
 
 
 def _frames_told(causes: tuple[Cause, ...], chain: Chain) -> tuple[str, ...]:
@@ -268,7 +290,7 @@ def _frames_told(causes: tuple[Cause, ...], chain: Chain) -> tuple[str, ...]:
     told = []
     for cause in causes:
         if cause.column in ("base", "tool"):
-            told.append(f"the {cause.column} is another")
+            told.append(_(_OTHER_END[cause.column]))
             continue
         if len(cause.rows) != 1 or cause.column not in ("theta", "d"):
             return ()
@@ -279,16 +301,17 @@ def _frames_told(causes: tuple[Cause, ...], chain: Chain) -> tuple[str, ...]:
         gap *= float(chain.sign[row - 1])
         if cause.column == "theta":
             gap = float(np.degrees(np.angle(np.exp(1j * gap))))
-            told.append(f"zero of joint {row} differs by {gap:.9g} deg")
+            said = _("zero of joint {joint} differs by {gap:.9g} deg")
         else:
-            told.append(f"zero of joint {row} differs by {gap:.9g} m")
+            said = _("zero of joint {joint} differs by {gap:.9g} m")
+        told.append(said.format(joint=row, gap=gap))
     return tuple(told)
 
 
 def _gauge(mine: Chain, theirs: Chain) -> tuple[str, ...]:
     """How two tables of one arm differ, row by row."""
     if mine.modified != theirs.modified:
-        return ("the conventions differ",)
+        return (_("the conventions differ"),)
     if mine.n != theirs.n:
         return ()
     gaps = [
@@ -297,15 +320,23 @@ def _gauge(mine: Chain, theirs: Chain) -> tuple[str, ...]:
     rows = [i + 1 for i, gap in enumerate(gaps) if gap > 1e-9]
     told = []
     if rows:
-        told.append(f"row{'s' if len(rows) > 1 else ''} {listed(rows)} place the frames elsewhere")
+        elsewhere = ngettext(
+            "row {rows} place the frames elsewhere",
+            "rows {rows} place the frames elsewhere",
+            len(rows),
+        )
+        told.append(elsewhere.format(rows=listed(rows)))
     flips = [i + 1 for i in range(mine.n) if mine.sign[i] != theirs.sign[i]]
     if flips:
-        told.append(
-            f"z of joint{'s' if len(flips) > 1 else ''} {listed(flips)} points the other way"
+        turned = ngettext(
+            "z of joint {joints} points the other way",
+            "z of joints {joints} points the other way",
+            len(flips),
         )
+        told.append(turned.format(joints=listed(flips)))
     for which in ("base", "tool"):
         if np.max(np.abs(getattr(mine, which) - getattr(theirs, which))) > 1e-9:
-            told.append(f"the {which} is another")
+            told.append(_(_OTHER_END[which]))
     return tuple(told)
 
 

@@ -16,14 +16,16 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import Reference
 from kinlab.doctor.tables.cells import changed
 from kinlab.doctor.tables.chain import ALPHA, THETA, A, Chain, D, frames, inverse, stacked_frames
 from kinlab.doctor.tables.readings import Reading, readings
+from kinlab.doctor.tables.reference.against import Reference
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.result import TableDiagnosis, joined
-from kinlab.doctor.tables.target import Target
 from kinlab.doctor.tables.words import pose_cause
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
+from kinlab.model.rotations import rotations_along
 from kinlab.tolerances import TOLERANCES
 
 _LARGEST = (5e-3, 5e-3)
@@ -99,7 +101,9 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     if written <= room:
         return TableDiagnosis(
             agrees=True,
-            sentence=f"{table.name} agrees with {reference.name} within their noise",
+            sentence=_("{table} agrees with {reference} within their noise").format(
+                table=table.name, reference=reference.name
+            ),
             repaired=table,
             same_arm=True,
             clear=clear,
@@ -113,8 +117,10 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     if not good or written < _CLEAR**2 + room:
         return TableDiagnosis(
             agrees=False,
-            sentence=f"{table.name} is not the arm of {reference.name}, beyond the noise; no "
-            "single slip explains it",
+            sentence=_(
+                "{table} is not the arm of {reference}, beyond the noise; no single slip explains "
+                "it"
+            ).format(table=table.name, reference=reference.name),
             rows_in_question=tuple(range(1, table.n + 1)),
             clear=clear,
             **common,
@@ -168,7 +174,7 @@ def _candidates(plain: Reading, target: Target) -> list[Reading]:
 def _solve_cell(chain: Chain, row: int, column: int, target: Target) -> float:
     """Least squares for one cell, by Gauss and Newton from a start near it."""
     value = float(chain.cells[row, column])
-    for _ in range(6):
+    for _step in range(6):
         current = chain.with_cell(row, column, value)
         poses = frames(current, target.q)
         slope = _slopes(current, poses)[:, 4 * row + column]
@@ -192,7 +198,7 @@ def _solve_end(chain: Chain, which: str, target: Target) -> Chain:
     else:
         each = target.poses @ inverse(poses[:, -1]) @ chain.base
     mean = np.mean(each, axis=0)
-    U, _, Vt = np.linalg.svd(mean[:3, :3])
+    U, _sizes, Vt = np.linalg.svd(mean[:3, :3])
     mean[:3, :3] = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     if which == "base":  # the mean weighs errors of rotation by their lever; fit the place anew
         lever = inverse(chain.base) @ poses[:, -1]
@@ -306,7 +312,7 @@ def _calibrated(chain: Chain, target: Target) -> Chain:
         return float(np.sum((_rest(frames(one, target.q)[:, -1], target) * weight) ** 2))
 
     current, least = chain, error(chain)
-    for _ in range(12):
+    for _step in range(12):
         poses = frames(current, target.q)
         slopes = _slopes(current, poses) * weight
         rest = (_rest(poses[:, -1], target) * weight).reshape(-1)
@@ -337,21 +343,10 @@ def _stepped(chain: Chain, step: Array) -> Chain:
     for k, which in ((0, "base"), (6, "tool")):
         part = step[4 * n + k : 4 * n + k + 6]
         move = np.eye(4)
-        move[:3, :3] = _rotation(part[3:])
+        move[:3, :3] = rotations_along(part[3:])
         move[:3, 3] = part[:3]
         ends[which] = getattr(chain, which) @ move
     return chain.but(cells=chain.cells + step[: 4 * n].reshape(n, 4), **ends)
-
-
-def _rotation(vector: Array) -> Array:
-    """Rodrigues' formula."""
-    angle = float(np.linalg.norm(vector))
-    if angle < 1e-15:
-        return np.eye(3)
-    x, y, z = vector / angle
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    out: Array = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * cross @ cross
-    return out
 
 
 def _noise(chain: Chain, target: Target) -> tuple[tuple[float, float], int]:

@@ -15,7 +15,8 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import ALPHA, COLUMNS, THETA, A, Chain, D, inverse
-from kinlab.doctor.tables.words import Cause, listed, pose_cause, where
+from kinlab.doctor.tables.words import FRAMES, Cause, at_row, listed, pose_cause
+from kinlab.host.language import N_, _
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +80,9 @@ def _convention(chain: Chain) -> Iterator[Reading]:
         written,
         meant,
         "convention",
-        f"the rows are in the {meant} convention, not the {written}",
+        _("the rows are in the modified convention, not the standard")
+        if meant == "modified"
+        else _("the rows are in the standard convention, not the modified"),
         0.9,
     )
     yield Reading(chain.but(modified=not chain.modified), (cause,))
@@ -88,7 +91,10 @@ def _convention(chain: Chain) -> Iterator[Reading]:
 def _shifted(chain: Chain) -> Iterator[Reading]:
     """a and alpha stand in the row before or behind the one they belong to."""
     every = tuple(range(1, chain.n + 1))
-    for step, told in ((1, "behind"), (-1, "before")):
+    for step, told in (
+        (1, _("a and alpha belong to the row behind the one they stand in")),
+        (-1, _("a and alpha belong to the row before the one they stand in")),
+    ):
         for fill in (True, False):
             cells = chain.cells.copy()
             moved = np.roll(cells[:, [A, ALPHA]], step, axis=0)
@@ -96,8 +102,8 @@ def _shifted(chain: Chain) -> Iterator[Reading]:
                 moved[0 if step > 0 else -1] = 0.0
             cells[:, [A, ALPHA]] = moved
             end = 1 if step > 0 else chain.n
-            rest = f"; row {end} has none" if fill else ""
-            sentence = f"a and alpha belong to the row {told} the one they stand in{rest}"
+            none = _("{slip}; row {row} has none").format(slip=told, row=end)
+            sentence = none if fill else told
             cost = 1.1 if fill else 1.15
             written = chain.cells[:, [A, ALPHA]]
             cause = Cause(every, "a, alpha", written, moved, "shifted", sentence, cost)
@@ -105,18 +111,18 @@ def _shifted(chain: Chain) -> Iterator[Reading]:
 
 
 _SCALES = (
-    (1e-3, "millimetres", "millimetres"),
-    (1e-2, "centimetres", "centimetres"),
-    (0.0254, "inches", "inches"),
-    (1e3, "metres for millimetres", "thousandths of metres"),
+    (1e-3, "millimetres", N_("in millimetres")),
+    (1e-2, "centimetres", N_("in centimetres")),
+    (0.0254, "inches", N_("in inches")),
+    (1e3, "metres for millimetres", N_("in thousandths of metres")),
 )
 
 
 def _units(chain: Chain) -> Iterator[Reading]:
     turn = np.pi / 180.0
     angles = (
-        (turn, "degrees", "in degrees"),
-        (1.0 / turn, "radians for degrees", "turned into radians twice"),
+        (turn, "degrees", N_("in degrees")),
+        (1.0 / turn, "radians for degrees", N_("turned into radians twice")),
     )
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
         if _entries(chain, columns) < 2:
@@ -124,7 +130,7 @@ def _units(chain: Chain) -> Iterator[Reading]:
         for factor, kind, told in angles:
             cells = chain.cells.copy()
             cells[:, columns] *= factor
-            yield Reading(chain.with_cells(cells), (_unit_cause(columns, kind, told, ""),))
+            yield Reading(chain.with_cells(cells), (_unit_cause(columns, kind, told, ()),))
     for factor, kind, told in _SCALES:
         for columns in ((A,), (D,), (A, D)):
             if len(columns) == 1 and _entries(chain, columns) < 2:
@@ -132,7 +138,7 @@ def _units(chain: Chain) -> Iterator[Reading]:
             cells = chain.cells.copy()
             cells[:, columns] *= factor
             other = chain.with_cells(cells)
-            yield Reading(other, (_unit_cause(columns, kind, f"in {told}", ""),))
+            yield Reading(other, (_unit_cause(columns, kind, told, ()),))
             if len(columns) == 2:
                 ends = {}
                 for which in ("base", "tool"):
@@ -141,10 +147,9 @@ def _units(chain: Chain) -> Iterator[Reading]:
                     ends[which] = pose
                 for some in (("tool",), ("base",), ("base", "tool")):
                     changed = {which: ends[which] for which in some}
-                    extra = f", {' and '.join(some)}"
                     yield Reading(
                         other.but(**changed),
-                        (_unit_cause(columns, kind, f"in {told}", extra),),
+                        (_unit_cause(columns, kind, told, some),),
                     )
     cells = chain.cells.copy()
     cells[:, [A, D]] *= 1e-3
@@ -158,7 +163,7 @@ def _units(chain: Chain) -> Iterator[Reading]:
                 "degrees and millimetres",
                 "radians and metres",
                 "units",
-                "the table is in degrees and millimetres",
+                _("the table is in degrees and millimetres"),
                 1.3,
             ),
         ),
@@ -170,10 +175,17 @@ def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
     return int(np.count_nonzero(chain.cells[:, columns]))
 
 
-def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: str) -> Cause:
-    names = listed([COLUMNS[c] for c in columns]) + extra
-    verb = "are" if len(columns) > 1 or extra else "is"
-    sentence = f"column{'s' if verb == 'are' else ''} {names} {verb} {told}"
+def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: tuple[str, ...]) -> Cause:
+    names = listed([COLUMNS[c] for c in columns])
+    if extra:
+        ends = listed(_(FRAMES[which]) for which in extra)
+        sentence = _("columns {columns}, {frames} are {units}").format(
+            columns=names, frames=ends, units=_(told)
+        )
+    elif len(columns) > 1:
+        sentence = _("columns {columns} are {units}").format(columns=names, units=_(told))
+    else:
+        sentence = _("column {column} is {units}").format(column=names, units=_(told))
     written = told.removeprefix("in ")
     meant = "radians" if columns[0] in (ALPHA, THETA) else "metres"
     cost = 1.0 + 0.05 * (len(columns) - 1) + (0.05 if extra else 0.0)
@@ -189,7 +201,7 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         rows = tuple(int(k) + 1 for k in np.flatnonzero(chain.cells[:, column]))
         if len(rows) < 2:
             continue  # a cell of its own
-        told = f"column {name} has the wrong sign"
+        told = _("column {column} has the wrong sign").format(column=name)
         place = every if len(rows) == chain.n else rows
         cause = Cause(place, name, chain.cells[:, column], cells[:, column], "sign", told, 1.1)
         yield Reading(chain.with_cells(cells), (cause,))
@@ -199,7 +211,7 @@ def _signs(chain: Chain) -> Iterator[Reading]:
         list(chain.sign < 0),
         list(chain.sign > 0),
         "sense",
-        "every joint turns the other way",
+        _("every joint turns the other way"),
         1.2,
     )
     yield Reading(chain.but(sign=-chain.sign), (cause,))
@@ -223,7 +235,7 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
             cells = chain.cells.copy()
             cells[rows, one], cells[rows, two] = chain.cells[rows, two], chain.cells[rows, one]
             named = tuple(k + 1 for k in rows)
-            at = where(named[0]) if len(rows) == 1 else where(named)
+            told = _("{one} and {two} are exchanged").format(one=names[0], two=names[1])
             yield Reading(
                 chain.with_cells(cells),
                 (
@@ -233,7 +245,7 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
                         chain.cells[rows][:, [one, two]],
                         cells[rows][:, [one, two]],
                         "exchanged",
-                        f"{at}: {names[0]} and {names[1]} are exchanged",
+                        at_row(named[0] if len(rows) == 1 else named, told),
                         likely + (0.1 if len(rows) > 1 else 0.0),
                     ),
                 ),
@@ -253,7 +265,7 @@ def _order(chain: Chain) -> Iterator[Reading]:
                 (i + 1, j + 1),
                 (j + 1, i + 1),
                 "exchanged",
-                f"rows {i + 1} and {j + 1} are exchanged",
+                _("rows {one} and {two} are exchanged").format(one=i + 1, two=j + 1),
                 1.0 + near,
             )
             yield Reading(_permuted(chain, order), (cause,))
@@ -271,7 +283,7 @@ def _order(chain: Chain) -> Iterator[Reading]:
                 i + 1,
                 j + 1,
                 "displaced",
-                f"row {i + 1} belongs at place {j + 1}",
+                _("row {row} belongs at place {place}").format(row=i + 1, place=j + 1),
                 1.3,
             )
             yield Reading(_permuted(chain, order), (cause,))
@@ -282,7 +294,7 @@ def _order(chain: Chain) -> Iterator[Reading]:
             "tool to base",
             "base to tool",
             "reversed",
-            "the rows stand in reversed order",
+            _("the rows stand in reversed order"),
             1.3,
         )
         yield Reading(_permuted(chain, list(range(n))[::-1]), (cause,))
@@ -309,20 +321,29 @@ def _joints(chain: Chain) -> Iterator[Reading]:
             kinds[slides],
             kinds[not slides],
             "type",
-            f"row {k + 1}: the joint is {kinds[not slides]}, not {kinds[slides]}",
+            at_row(
+                k + 1,
+                _("the joint is revolute, not prismatic")
+                if slides
+                else _("the joint is prismatic, not revolute"),
+            ),
             1.0,
         )
         yield Reading(chain.but(prismatic=kind), (cause,))
         sign = chain.sign.copy()
         sign[k] *= -1.0
-        verb = "slides" if slides else "turns"
         cause = Cause(
             k + 1,
             "flip",
             bool(chain.sign[k] < 0),
             bool(sign[k] < 0),
             "sense",
-            f"row {k + 1}: the joint {verb} the other way",
+            at_row(
+                k + 1,
+                _("the joint slides the other way")
+                if slides
+                else _("the joint turns the other way"),
+            ),
             1.0,
         )
         yield Reading(chain.but(sign=sign), (cause,))
@@ -347,7 +368,7 @@ def _frames(chain: Chain, base: list[Array], tool: list[Array]) -> Iterator[Read
             "base, tool",
             "tool, base",
             "exchanged",
-            "base and tool are exchanged",
+            _("base and tool are exchanged"),
             1.2,
         )
         yield Reading(chain.but(base=chain.tool, tool=chain.base), (cause,))

@@ -11,9 +11,10 @@ from kinlab.check.report.words import origin
 from kinlab.check.report.write import check_report_path
 from kinlab.doctor.tables.result import TableDiagnosis
 from kinlab.host.files import write_text
+from kinlab.host.language import N_, _
 
-_TITLE = "DH tables beside another description of the arm"
-_HOW = (
+_TITLE = N_("DH tables beside another description of the arm")
+_HOW = N_(
     "The tool's pose (and where both sides have masses the bodies) of a table are compared with "
     "those of the reference at the same joint positions. A cause is named only if taking it back "
     "gives the reference's pose at every state."
@@ -38,19 +39,27 @@ def write_table_report(path: str | Path, found: Sequence[TableDiagnosis]) -> Non
 def page(found: Sequence[TableDiagnosis]) -> str:
     """The whole page."""
     return render(
-        "table.html.j2", title=_TITLE, lead=_lead(found), how=_HOW, found=found, footer=origin(())
+        "table.html.j2",
+        title=_(_TITLE),
+        lead=_lead(found),
+        how=_(_HOW),
+        found=found,
+        footer=origin(()),
     )
 
 
 def text(found: Sequence[TableDiagnosis]) -> str:
     """The report as Markdown."""
-    lines = [f"# {_TITLE}", "", _lead(found), "", _HOW, ""]
+    lines = [f"# {_(_TITLE)}", "", _lead(found), "", _(_HOW), ""]
+    against, said = _("{table} against {reference}"), _("{verdict}: {sentence}.")
     for one in found:
-        lines += [f"## {code(one.name)} against {code(one.reference)}", ""]
-        lines += [f"**{one.verdict.capitalize()}**: {words(one.sentence)}.", ""]
+        pair = against.format(table=code(one.name), reference=code(one.reference))
+        verdict = _(one.verdict).capitalize()
+        lines += [f"## {pair}", ""]
+        lines += [said.format(verdict=f"**{verdict}**", sentence=words(one.sentence)), ""]
         lines += [*(f"- {words(line)}" for line in one.told), ""]
         if one.repaired is not None and one.causes:
-            lines += ["The repaired table:", "", block(one.repaired.to_toml(), "toml"), ""]
+            lines += [_("The repaired table:"), "", block(one.repaired.to_toml(), "toml"), ""]
     return "\n".join([*lines, origin(())]) + "\n"
 
 
@@ -58,6 +67,12 @@ def _lead(found: Sequence[TableDiagnosis]) -> str:
     right = sum(one.agrees for one in found)
     named = sum(not one.agrees and bool(one.causes) for one in found)
     unknown = len(found) - right - named
-    said = f"{right} of {len(found)} agree"
-    said += f", what is wrong is known of {named}" if named else ""
-    return said + (f", unknown of {unknown}." if unknown else ".")
+    if named and unknown:
+        said = _("{right} of {all} agree, what is wrong is known of {named}, unknown of {unknown}.")
+    elif named:
+        said = _("{right} of {all} agree, what is wrong is known of {named}.")
+    elif unknown:
+        said = _("{right} of {all} agree, unknown of {unknown}.")
+    else:
+        said = _("{right} of {all} agree.")
+    return said.format(right=right, all=len(found), named=named, unknown=unknown)

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 from markupsafe import Markup
 
-from kinlab.doctor.tables.words import Cause, degrees, listed, number, where
+from kinlab.doctor.tables.words import Cause, at_row, degrees, listed, number
 from kinlab.host.introductions import Introduction, Rows
+from kinlab.host.language import N_, _, ngettext
 from kinlab.model.dh import DHTable
-
-_ROW = re.compile(r"rows? [^:]*")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,45 +63,73 @@ class TableDiagnosis(Rows):
     def verdict(self) -> str:
         """``"agrees"``, ``"differs"`` or ``"differs, cause unknown"``."""
         if self.agrees:
-            return "agrees"
-        return "differs" if self.causes else "differs, cause unknown"
+            return N_("agrees")
+        return N_("differs") if self.causes else N_("differs, cause unknown")
 
     @property
     def told(self) -> tuple[str, ...]:
         """Everything below the verdict, line by line."""
         lines = []
         if self.same_arm and self.differences:
-            lines.append(f"same arm; {'; '.join(self.differences)}")
-        lines += [f"or as well: {joined(other)}" for other in self.alternatives[:5]]
+            same = _("same arm; {differences}")
+            lines.append(same.format(differences=_("; ").join(self.differences)))
+        lines += [
+            _("or as well: {slips}").format(slips=joined(other)) for other in self.alternatives[:5]
+        ]
         if len(self.alternatives) > 5:
-            lines.append(f"and {len(self.alternatives) - 5} more that repair it as well")
-        lines += list(self.evidence)
-        numbers = f"compared at {self.states} states"
-        if self.clear:
-            numbers += f": {self._noise()}"
-        elif self.agrees:
-            numbers += f": poses differ by {self.error_before:.1e} of the arm's size at most"
-        elif math.isinf(self.error_before):
-            numbers += ", with another number of joints"
-        else:
-            numbers += f": poses differ by {self.error_before:.3g} of the arm's size"
-            if self.error_after is not None:
-                numbers += f", by {self.error_after:.1e} once repaired"
-        lines.append(numbers)
+            more = _("and {count} more that repair it as well")
+            lines.append(more.format(count=len(self.alternatives) - 5))
+        lines += [*self.evidence, self._numbers()]
         if self.causes and self.certain_rows:
-            rows = "row" if len(self.certain_rows) == 1 else "rows"
-            lines.append(f"{rows} {listed(self.certain_rows)}: nothing to repair")
-        return (*lines, *(f"note: {note}" for note in self.notes))
+            right = ngettext(
+                "row {rows}: nothing to repair",
+                "rows {rows}: nothing to repair",
+                len(self.certain_rows),
+            )
+            lines.append(right.format(rows=listed(self.certain_rows)))
+        return (*lines, *(_("note: {note}").format(note=note) for note in self.notes))
+
+    def _numbers(self) -> str:
+        """At how many states the poses were compared, and how far apart they are."""
+        if self.clear:
+            told = _("compared at {states} states: {noise}")
+            return told.format(states=self.states, noise=self._noise())
+        if self.agrees:
+            told = _(
+                "compared at {states} states: poses differ by {before:.1e} of the arm's size at "
+                "most"
+            )
+        elif math.isinf(self.error_before):
+            told = _("compared at {states} states, with another number of joints")
+        elif self.error_after is None:
+            told = _("compared at {states} states: poses differ by {before:.3g} of the arm's size")
+        else:
+            told = _(
+                "compared at {states} states: poses differ by {before:.3g} of the arm's size, by "
+                "{after:.1e} once repaired"
+            )
+        return told.format(states=self.states, before=self.error_before, after=self.error_after)
 
     def _noise(self) -> str:
         """The noise in words."""
         c = self.clear
-        text = f"noise {1000 * c['sigma_position']:.3g} mm, {c['sigma_angle_deg']:.3g} deg"
-        if "effect" in c:
-            text += f"; the slip is {c['effect']:.3g} times the noise"
-        if "runner_up" in c:
-            text += f", the next best cause leaves {c['runner_up']:.3g} times the noise"
-        return text
+        if "effect" not in c:
+            told = _("noise {position:.3g} mm, {angle:.3g} deg")
+        elif "runner_up" not in c:
+            told = _(
+                "noise {position:.3g} mm, {angle:.3g} deg; the slip is {effect:.3g} times the noise"
+            )
+        else:
+            told = _(
+                "noise {position:.3g} mm, {angle:.3g} deg; the slip is {effect:.3g} times the "
+                "noise, the next best cause leaves {next:.3g} times the noise"
+            )
+        return told.format(
+            position=1000 * c["sigma_position"],
+            angle=c["sigma_angle_deg"],
+            effect=c.get("effect"),
+            next=c.get("runner_up"),
+        )
 
     def columns(self) -> dict[str, Any]:
         """Slip by slip: row and column, what is written and what is meant."""
@@ -113,7 +139,9 @@ class TableDiagnosis(Rows):
 
     def introduction(self) -> Introduction:
         """The verdict, the slips in one sentence, and what they rest on."""
-        verdict = f"{self.name}: {self.verdict} (against {self.reference})"
+        verdict = _("{table}: {verdict} (against {reference})").format(
+            table=self.name, verdict=_(self.verdict), reference=self.reference
+        )
         mood: Any = "good" if self.agrees else "bad" if self.causes else "unsure"
         return Introduction(verdict, (self.sentence, *self.told), mood=mood)
 
@@ -124,13 +152,13 @@ class TableDiagnosis(Rows):
             (str(i), *(pair.format(was, shall) if shall else was for was, shall in row))
             for i, row in enumerate(self.cells, 1)
         )
-        columns = ("row", "a", "alpha", "d", "theta")
+        columns = (_("row"), "a", "alpha", "d", "theta")
         return replace(self.introduction(), columns=columns, rows=rows).html()
 
     @property
     def name(self) -> str:
         """The table's name."""
-        return self.mine.name if self.mine is not None else "table"
+        return self.mine.name if self.mine is not None else _("table")
 
     @property
     def cells(self) -> list[list[tuple[str, str]]]:
@@ -189,14 +217,21 @@ def joined(causes: tuple[Cause, ...]) -> str:
         if k in done:
             continue
         rows = list(cause.rows)
-        tail = _ROW.sub("", cause.sentence, count=1) if cause.sentence.startswith("row") else ""
+        tail = _behind_the_rows(cause)
         for other in range(k + 1, len(causes)):
-            two = causes[other]
-            if tail and two.sentence.startswith("row") and _ROW.sub("", two.sentence, 1) == tail:
-                rows += two.rows
+            if tail and _behind_the_rows(causes[other]) == tail:
+                rows += causes[other].rows
                 done.add(other)
         if len(rows) > len(cause.rows):
-            said.append(f"{where(tuple(sorted(rows)))}{tail}")
+            said.append(at_row(tuple(sorted(rows)), tail))
         else:
             said.append(cause.sentence)
-    return "; ".join(said)
+    return _("; ").join(said)
+
+
+def _behind_the_rows(cause: Cause) -> str:
+    """What a sentence says of its rows; empty where it does not begin with them."""
+    if cause.row is None:
+        return ""
+    front = at_row(cause.row, "")
+    return cause.sentence.removeprefix(front) if cause.sentence.startswith(front) else ""

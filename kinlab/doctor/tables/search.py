@@ -10,7 +10,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.tables.cells import inserted, one_change, removed, two_cells
 from kinlab.doctor.tables.chain import Chain
 from kinlab.doctor.tables.readings import Reading, readings
-from kinlab.doctor.tables.target import Target
+from kinlab.doctor.tables.reference.target import Target
 from kinlab.doctor.tables.words import SIX
 
 

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
 SIX = 2.7
@@ -40,6 +41,7 @@ class Cause:
         kind: what sort of slip it is, in a word or two.
         sentence: the slip in words.
         cost: the less, the likelier among explanations that repair equally much.
+        short: the slip alone, without its row and numbers, where several rows may share it.
     """
 
     row: int | tuple[int, ...] | None
@@ -49,6 +51,7 @@ class Cause:
     kind: str
     sentence: str
     cost: float = field(default=1.0, repr=False)
+    short: str = field(default="", repr=False)
 
     @property
     def rows(self) -> tuple[int, ...]:
@@ -83,14 +86,22 @@ def plain(value: Any) -> Any:
 def where(row: int | tuple[int, ...]) -> str:
     """``row 3``, or ``rows 2 and 3``."""
     if isinstance(row, int):
-        return f"row {row}"
-    return f"rows {listed(row)}"
+        return _("row {number}").format(number=row)
+    return _("rows {numbers}").format(numbers=listed(row))
 
 
 def listed(items: Any) -> str:
     """``1``, ``1 and 2``, ``1, 2 and 3``."""
     words = [str(item) for item in items]
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+    if len(words) == 1:
+        return words[0]
+    several = _("{first} and {last}")
+    return several.format(first=_(", ").join(words[:-1]), last=words[-1])
+
+
+def at_row(row: int | tuple[int, ...], told: str) -> str:
+    """``row 3: alpha lacks 90 deg``: where, and what is wrong there."""
+    return _("{rows}: {slip}").format(rows=where(row), slip=told)
 
 
 def number(value: float) -> str:
@@ -131,27 +142,20 @@ def angle_cause(
         slack: how far ``solved`` may be off, rad. Within it the number that a relation gives is
             the one meant.
     """
-    at = f"row {row}: {column}"
     for kind, value, cost in _angle_relations(written):
         if not _same_angle(value, solved, slack):
             continue
         meant = wrapped(value)
         if kind == "missing" and not _round(solved, slack):
             meant, cost = wrapped(solved), 1.6
-        numbers = f"{degrees(written)} written, {degrees(meant)} meant"
-        change = degrees(wrapped(meant - written))
-        told = {
-            "degrees": f"is in degrees: {number(written)} written, {degrees(meant)} meant",
-            "missing": f"lacks {change}",
-            "sign": f"has the wrong sign: {numbers}",
-            "half-turn": f"is 180 deg off: {numbers}",
-            "quarter-turn": f"lacks {change}: {numbers}",
-            "radians for degrees": f"was turned into radians twice: {numbers}",
-            "decimal": f"has the decimal point displaced: {number(written)} rad written, "
-            f"{number(meant)} rad meant",
-            "superfluous": f"must be zero: {degrees(written)} written",
-        }[kind]
-        return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+        fields = {"written": degrees(written), "meant": degrees(meant)}
+        if kind == "degrees":
+            fields["written"] = number(written)
+        if kind == "decimal":
+            fields = {"written": f"{number(written)} rad", "meant": f"{number(meant)} rad"}
+        fields["change"] = degrees(wrapped(meant - written))
+        told = _(_ANGLE_SLIPS[kind]).format(cell=column, **fields)
+        return Cause(row, column, written, meant, kind, at_row(row, told), cost)
     meant = wrapped(solved)
     change = degrees(wrapped(meant - written))
     if _close(written, 0.0):
@@ -161,14 +165,37 @@ def angle_cause(
             written,
             meant,
             "missing",
-            f"{at} lacks {change}",
+            at_row(row, _("{cell} lacks {change}").format(cell=column, change=change)),
             1.0 if _round(meant, TOLERANCES.solved_angle) else 1.6,
         )
     kind, cost = _typed(written, meant)
     if cost > 1.7:
         kind, cost = _typed(math.degrees(written), math.degrees(meant))
-    told = f"{at} lacks {change}: {degrees(written)} written, {degrees(meant)} meant"
-    return Cause(row, column, written, meant, kind, told, cost)
+    told = _("{cell} lacks {change}: {written} written, {meant} meant").format(
+        cell=column, change=change, written=degrees(written), meant=degrees(meant)
+    )
+    return Cause(row, column, written, meant, kind, at_row(row, told), cost)
+
+
+_ANGLE_SLIPS = {
+    "degrees": N_("{cell} is in degrees: {written} written, {meant} meant"),
+    "missing": N_("{cell} lacks {change}"),
+    "sign": N_("{cell} has the wrong sign: {written} written, {meant} meant"),
+    "half-turn": N_("{cell} is 180 deg off: {written} written, {meant} meant"),
+    "quarter-turn": N_("{cell} lacks {change}: {written} written, {meant} meant"),
+    "radians for degrees": N_(
+        "{cell} was turned into radians twice: {written} written, {meant} meant"
+    ),
+    "decimal": N_("{cell} has the decimal point displaced: {written} written, {meant} meant"),
+    "superfluous": N_("{cell} must be zero: {written} written"),
+}
+_LENGTH_SLIPS = {
+    "sign": _ANGLE_SLIPS["sign"],
+    "millimetres": N_("{cell} is in millimetres: {written} written, {meant} meant"),
+    "decimal": _ANGLE_SLIPS["decimal"],
+    "inches": N_("{cell} is in inches: {written} written, {meant} meant"),
+    "superfluous": _ANGLE_SLIPS["superfluous"],
+}
 
 
 def _angle_relations(written: float) -> Iterator[tuple[str, float, float]]:
@@ -204,28 +231,26 @@ def length_cause(
         slides: the cell is the offset of a prismatic joint.
         slack: how far ``solved`` may be off, m.
     """
-    at = f"row {row}: {column}"
+    cell = column
     if slides and column == "d":
-        at += ", the offset of the prismatic joint,"
+        cell = _("{cell}, the offset of the prismatic joint,").format(cell=column)
     if not _close(written, 0.0):
         for kind, meant, cost in _length_relations(written):
             if abs(meant - solved) > slack and not _close(meant, solved):
                 continue
-            numbers = f"{number(written)} written, {number(meant)} meant"
-            told = {
-                "sign": f"has the wrong sign: {numbers}",
-                "millimetres": f"is in millimetres: {numbers}",
-                "decimal": f"has the decimal point displaced: {numbers}",
-                "inches": f"is in inches: {numbers}",
-                "superfluous": f"must be zero: {number(written)} written",
-            }[kind]
-            return Cause(row, column, written, meant, kind, f"{at} {told}", cost)
+            told = _(_LENGTH_SLIPS[kind]).format(
+                cell=cell, written=number(written), meant=number(meant)
+            )
+            return Cause(row, column, written, meant, kind, at_row(row, told), cost)
     meant = _rounded(solved, slack)
     if _close(written, 0.0):
-        return Cause(row, column, written, meant, "missing", f"{at} lacks {number(meant)} m", 1.3)
+        told = _("{cell} lacks {meant} m").format(cell=cell, meant=number(meant))
+        return Cause(row, column, written, meant, "missing", at_row(row, told), 1.3)
     kind, cost = _typed(written, meant)
-    numbers = f"{number(written)} written, {number(meant)} meant"
-    return Cause(row, column, written, meant, kind, f"{at} is wrong: {numbers}", cost)
+    told = _("{cell} is wrong: {written} written, {meant} meant").format(
+        cell=cell, written=number(written), meant=number(meant)
+    )
+    return Cause(row, column, written, meant, kind, at_row(row, told), cost)
 
 
 def _length_relations(written: float) -> Iterator[tuple[str, float, float]]:
@@ -271,19 +296,24 @@ def pose_cause(
     meant = solved
 
     def cause(kind: str, told: str, cost: float) -> Cause:
-        return Cause(None, which, written, meant, kind, f"{which} {told}", cost)
+        said = _(told).format(frame=_(FRAMES[which]), meant=pose_text(meant))
+        return Cause(None, which, written, meant, kind, said, cost)
 
     if _same_pose(written, np.eye(4)):
         sure = known is not None and _same_pose(known, meant, slack)
-        return cause("missing", f"is missing: {pose_text(meant)}", 1.2 if sure else 1.9)
+        return cause("missing", N_("{frame} is missing: {meant}"), 1.2 if sure else 1.9)
     for kind, value, told in _pose_relations(written):
         if _same_pose(value, solved, slack):
             meant = value
-            return cause(kind, told.format(meant=pose_text(meant)), 1.0)
+            return cause(kind, told, 1.0)
     if _same_pose(meant, np.eye(4), slack):
         meant = np.eye(4)
-        return cause("superfluous", "must be the identity", 1.8)
-    return cause("value", f"is wrong: meant is {pose_text(meant)}", SIX)
+        return cause("superfluous", N_("{frame} must be the identity"), 1.8)
+    return cause("value", N_("{frame} is wrong: meant is {meant}"), SIX)
+
+
+FRAMES = {"base": N_("base"), "tool": N_("tool")}
+"""The frames at the ends of a chain, as they are told."""
 
 
 def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
@@ -291,19 +321,21 @@ def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
     turned[:3, :3] = written[:3, :3].T
     back = np.array(turned)
     back[:3, 3] = -turned[:3, :3] @ written[:3, 3]
-    yield "inverted", back, "is inverted: meant is {meant}"
-    yield "transposed", turned, "has its rotation transposed"
+    yield "inverted", back, N_("{frame} is inverted: meant is {meant}")
+    yield "transposed", turned, N_("{frame} has its rotation transposed")
     if not np.any(written[:3, 3]):
         return
-    for factor, kind in (
-        (1e-3, "millimetres"),
-        (0.1, "decimal"),
-        (10.0, "decimal"),
-        (-1.0, "sign"),
-    ):
+    for factor, kind, told in (
+        (1e-3, "millimetres",
+         N_("{frame} has the slip 'millimetres' in its translation: meant is {meant}")),
+        (0.1, "decimal", N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")),
+        (10.0, "decimal",
+         N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")),
+        (-1.0, "sign", N_("{frame} has the slip 'sign' in its translation: meant is {meant}")),
+    ):  # fmt: skip
         scaled = np.array(written)
         scaled[:3, 3] *= factor
-        yield kind, scaled, f"has the slip '{kind}' in its translation: meant is {{meant}}"
+        yield kind, scaled, told
 
 
 def pose_text(pose: Array) -> str:
@@ -312,9 +344,9 @@ def pose_text(pose: Array) -> str:
 
     place = ", ".join(number(float(round(x, 9))) for x in pose[:3, 3])
     if np.max(np.abs(pose[:3, :3] - np.eye(3))) < 1e-9:
-        return f"shift ({place}) m"
+        return _("shift ({place}) m").format(place=place)
     turn = ", ".join(f"{math.degrees(x) + 0.0:.6g}" for x in matrices_rpy([pose[:3, :3]])[0])
-    return f"shift ({place}) m, roll, pitch, yaw ({turn}) deg"
+    return _("shift ({place}) m, roll, pitch, yaw ({turn}) deg").format(place=place, turn=turn)
 
 
 def _same_pose(one: Array, two: Array, slack: float = 0.0) -> bool:

@@ -12,10 +12,10 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.against import Reference, ReferenceAxes
 from kinlab.doctor.tables.cells import changed, one_change
 from kinlab.doctor.tables.chain import THETA, Chain, D, frames, inverse, tool_poses
 from kinlab.doctor.tables.readings import Reading
+from kinlab.doctor.tables.reference.against import Reference, ReferenceAxes
 from kinlab.doctor.tables.words import pose_cause, tidy_length, wrapped
 from kinlab.tolerances import TOLERANCES
 

@@ -24,19 +24,14 @@ from kinlab.fivebar.bounds.enclosure import pose_over
 from kinlab.fivebar.dynamics import RodModel, torques
 from kinlab.fivebar.geometry import Pose, rate_bias, rate_matrix, solve_pose
 from kinlab.fivebar.workspace import Rectangle, free_region
+from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import FiveBar
 
-GAP = 1e-7
-"""Part of the largest value to which value and bound are brought together."""
-
 _FIRST, _LEVELS, _MOST_CELLS = 8, 34, 6000
 """Cells a side of the first division; how often cells are halved; cells of one level after which
 the search stops, its bound standing."""
-
-_ROUNDING = 1e-11
-"""Part of a bound by which it is widened: the rounding of a few hundred operations."""
 
 
 @dataclass(frozen=True)
@@ -65,12 +60,16 @@ class Worst:
         return float(np.max((self.bound - self.value) / size))
 
 
-Quantity = Callable[[Pose], Any]
+PoseQuantity = Callable[[Pose], Any]
 """Quantities (N, k) at N poses; it must run on poses over cells too."""
 
 
 def bound_over(
-    linkage: FiveBar, box: Rectangle, mode: Mode, quantity: Quantity, gap: float = GAP
+    linkage: FiveBar,
+    box: Rectangle,
+    mode: Mode,
+    quantity: PoseQuantity,
+    gap: float = TOLERANCES.worst_case_gap,
 ) -> tuple[Array, Array, Array]:
     """The largest of each of k quantities over a rectangle, edges included.
 
@@ -113,7 +112,7 @@ def bound_over(
             break
         low, high = _split(low[open_cells], high[open_cells])
     bound = np.maximum(settled, best)
-    return best, place, bound + _ROUNDING * np.abs(bound)
+    return best, place, bound + TOLERANCES.bound_rounding * np.abs(bound)
 
 
 def _cells(box: Rectangle) -> tuple[Array, Array]:
@@ -138,7 +137,7 @@ def worst(
     box: Rectangle,
     mode: Mode,
     measure: Callable[[Pose], dict[str, Any]],
-    gap: float = GAP,
+    gap: float = TOLERANCES.worst_case_gap,
 ) -> dict[str, Worst]:
     """Several quantities of the two cranks by :func:`bound_over`, all at once.
 

@@ -1,4 +1,4 @@
-"""The Pareto front of two goals: for each bound on the one, the best of the other.
+"""The Pareto front of two goals: for each bound on the one, the best found of the other.
 
 The bounds lie between the two ends of the front, so that a front that is not convex is found too
 (epsilon-constraint method: Haimes, Lasdon & Wismer 1971); a weighed sum would miss its hollows.
@@ -20,8 +20,10 @@ from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.design.goals import GOALS
 from kinlab.fivebar.design.problem import Problem
 from kinlab.fivebar.design.synthesis import FiveBarDesign, Range, finish, read_problem, solve
+from kinlab.host.evidence import Evidence
 from kinlab.host.files import read_text, write_text
 from kinlab.host.introductions import Told
+from kinlab.tolerances import TOLERANCES
 
 _NEXT = 45
 """Generations of a point that starts from its neighbour's design."""
@@ -29,21 +31,28 @@ _NEXT = 45
 _CONDITION = 10.0
 """Largest condition number where none is asked: the smallest machine ends at a singularity."""
 
-_EASED = 1e-6
-"""Part by which a bound is eased, so that the end it comes from still meets it."""
-
 
 @dataclass(frozen=True, repr=False)
 class DesignFront(Told):
-    """Designs of which none is better than another in both goals.
+    """Designs found of which none is better than another in both goals.
 
     Attributes:
         goals: the two names.
-        designs: from the best of the first goal to the best of the second.
+        designs: from the best found of the first goal to the best found of the second; each
+            carries its own evidence.
     """
 
     goals: tuple[str, str]
     designs: tuple[FiveBarDesign, ...]
+
+    @property
+    def evidence(self) -> Evidence:
+        """What each design rests on, and what the front as a whole does not show."""
+        return Evidence(
+            f"{len(self.designs)} searches, as each design's evidence says",
+            proved="no pose of the rectangle is worse than the bounds of a design",
+            found="that nothing lies beyond the front",
+        )
 
     def values(self, goal: str) -> list[float]:
         """Worst values of one goal along the front."""
@@ -75,7 +84,7 @@ def fivebar_front(
     progress: Callable[[int, int], None] | None = None,
     resume: str | Path | None = None,
 ) -> DesignFront:
-    """The Pareto front of two goals over a rectangle.
+    """Designs along the Pareto front of two goals over a rectangle, each by its own search.
 
     Args:
         workspace, l1, l2, e, height, limits, payload, mode, seed: as
@@ -125,7 +134,7 @@ def fivebar_front(
     last = best_one
     for part in np.linspace(0.0, 1.0, number)[1:-1]:
         bound = ends[0] + part * (ends[1] - ends[0])
-        bound = bound + _EASED * abs(bound)
+        bound = bound + TOLERANCES.eased_bound * abs(bound)
         own = min(bound, inner(asked[other])) if other in asked else bound
         problem = replace(first, limits={**asked, other: GOALS[other].shown(float(own))})
         try:

@@ -18,15 +18,7 @@ from kinlab.fivebar.bounds.worst import bound_over
 from kinlab.fivebar.design.goals import GOALS, GRAVITY, Candidates
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle
-
-LEAST_SINE = 1e-3
-"""Sine of the angle between two bars at which a pose of the workspace counts as in line."""
-
-SLACK = 1e-8
-"""Parts of a limit by which it may be exceeded: rounding of the polish that ends on it."""
-
-_GAP, _WIDE_GAP = 1e-6, 1e-4
-"""Gaps of the proof, of what is weighed or limited and of the rest."""
+from kinlab.tolerances import TOLERANCES
 
 _OUT = 1e3
 """Cost of a candidate that breaks a limit, before what it breaks by."""
@@ -137,7 +129,7 @@ class Problem:
 
     def excess(self, x: Array, pieces: dict[str, Array]) -> dict[str, Array]:
         """By how much each limit is exceeded at each point, in its own unit; (P, ...)."""
-        out = {"reach": pieces["reach"], "rods": pieces["rods"] + LEAST_SINE}
+        out = {"reach": pieces["reach"], "rods": pieces["rods"] + TOLERANCES.design_sine}
         for goal, limit in self.limits.items():
             allowed = GOALS[goal].inner(limit)
             scale = max(abs(allowed), 1e-12)
@@ -162,7 +154,7 @@ class Problem:
         mix = np.zeros(len(x))
         for goal, value in self.values(x, pieces).items():
             mix = mix + self.weights[goal] * value / self.unit(goal)
-        fine = (breaks <= SLACK) & np.isfinite(mix)
+        fine = (breaks <= TOLERANCES.design_slack) & np.isfinite(mix)
         return np.where(fine, mix, _OUT * (1.0 + breaks))
 
     def proved(self, x: Array) -> tuple[dict[str, tuple[float, float]], Array]:
@@ -185,7 +177,8 @@ class Problem:
 
         of_poses["rods"] = rods
         for name, of in of_poses.items():  # one by one: a gap that closes slowly delays no other
-            gap = _GAP if name in self.weights or name in self.limits else _WIDE_GAP
+            weighed = name in self.weights or name in self.limits
+            gap = TOLERANCES.weighed_gap if weighed else TOLERANCES.reported_gap
             value, place, bound = bound_over(linkage, box, self.mode, partial(of, linkage), gap)
             scale = self.force if name == "torque" else 1.0
             out[name] = (scale * float(value.max()), scale * float(bound.max()))

@@ -20,6 +20,7 @@ from kinlab.arrays import Array
 from kinlab.errors import FileError
 from kinlab.fivebar.design.problem import Problem, size_of
 from kinlab.host.files import read_text, write_text
+from kinlab.tolerances import TOLERANCES
 
 Progress = Callable[[int, int, float], None]
 """Told generation, generations and the best cost so far."""
@@ -28,7 +29,7 @@ _MEMBERS, _GENERATIONS = 36, 90
 _SIDE = 9
 """Points a side of the lattice of the search."""
 
-_ROUNDS, _ENOUGH = 6, 1e-5
+_ROUNDS = 6
 """How often the worst places join the points; the part of the cost below which they need not."""
 
 _ACTIVE = 60
@@ -37,7 +38,7 @@ _ACTIVE = 60
 _WEIGHT, _CROSSOVER = 0.6, 0.85
 
 
-def lattice() -> Array:
+def search_points() -> Array:
     """The points of the search over the unit square, (K, 2): its edges are drawn finer."""
     inner, edge = np.linspace(0.0, 1.0, _SIDE), np.linspace(0.0, 1.0, 4 * _SIDE - 3)
     square = np.stack(np.meshgrid(inner, inner), axis=-1).reshape(-1, 2)
@@ -66,7 +67,7 @@ def evolve(
     Raises:
         FileError: the file is of another problem or seed, or no such file at all.
     """
-    points, low, high = lattice(), problem.low, problem.high
+    points, low, high = search_points(), problem.low, problem.high
     first = np.random.default_rng([seed, 0])
     x = low + (high - low) * first.uniform(size=(_MEMBERS, len(low)))
     if starts is not None and len(starts):
@@ -160,7 +161,7 @@ def polish(problem: Problem, x: Array, points: Array) -> Array:
 
 def exchange(problem: Problem, x: Array) -> Array:
     """Polishes until the worst places of the whole rectangle are among the points."""
-    points = lattice()
+    points = search_points()
     for _ in range(_ROUNDS):
         x = polish(problem, x, points)
         _, places = problem.proved(x)
@@ -169,7 +170,7 @@ def exchange(problem: Problem, x: Array) -> Array:
         more = (places - np.array([box.x_min, box.y_min])) / size
         both = np.concatenate([points, more])
         on_points, with_places = (float(problem.cost(x[None], p)[0]) for p in (points, both))
-        if with_places <= on_points + _ENOUGH * abs(on_points):
+        if with_places <= on_points + TOLERANCES.worst_places * abs(on_points):
             break
         points = both
     return x

@@ -14,17 +14,13 @@ from kinlab.arrays import Array, number, seed_of, shown, word
 from kinlab.errors import OptionError, UnreachableError
 from kinlab.fivebar.arguments import HANGING, Mode, read_mode
 from kinlab.fivebar.design.goals import GOALS
-from kinlab.fivebar.design.problem import SLACK, Problem
-from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
+from kinlab.fivebar.design.problem import Problem
+from kinlab.fivebar.design.search import Progress, evolve, exchange, search_points
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
+from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told
-
-_PROVED = 1e-3
-"""Gap between bound and value, in parts of the value, up to which a goal counts as proved."""
-
-_AT_LIMIT = 1e-4
-"""Part of a range within which a length counts as lying at its end."""
+from kinlab.tolerances import TOLERANCES
 
 _SIZES = (0.02, 2.5)
 """Range of lengths where none is given, in parts of the farthest corner's distance."""
@@ -47,6 +43,13 @@ class Proved:
     value: float
     bound: float
     unit: str
+
+
+def _is_proved(goal: Proved) -> bool:
+    """Whether value and bound are one, but for a thousandth."""
+    return bool(
+        abs(goal.bound - goal.value) <= TOLERANCES.goal_proved * max(abs(goal.value), 1e-300)
+    )
 
 
 @dataclass(frozen=True, repr=False)
@@ -79,6 +82,19 @@ class FiveBarDesign(Told):
         return float(self.fivebar.l1[0]), float(self.fivebar.l2[0]), self.fivebar.e
 
     @property
+    def evidence(self) -> Evidence:
+        """The worst over the rectangle is proved; that no other lengths do better is found."""
+        unproved = [name for name, goal in self.goals.items() if not _is_proved(goal)]
+        proved = "no pose of the rectangle is worse than the bound of each goal"
+        if unproved:
+            proved += f" (far from what was found for {', '.join(unproved)})"
+        return Evidence(
+            f"lengths by differential evolution (seed {self.seed}) and SLSQP",
+            proved=proved,
+            found="that no other lengths do better",
+        )
+
+    @property
     def gap(self) -> float:
         """Largest of bound less value over the goals, in parts of the value."""
         return max(abs(g.bound - g.value) / max(abs(g.value), 1e-300) for g in self.goals.values())
@@ -91,8 +107,7 @@ class FiveBarDesign(Told):
             f"the bound is {goal.bound:.5g}: the design comes near a singularity; a limit such as "
             "condition=10 keeps it away"
             for name, goal in self.goals.items()
-            if not abs(goal.bound - goal.value) <= _PROVED * max(abs(goal.value), 1e-300)
-            and (name in self.weights or name in self.limits)
+            if not _is_proved(goal) and (name in self.weights or name in self.limits)
         )
 
     @property
@@ -112,14 +127,22 @@ class FiveBarDesign(Told):
             f"over x {box.x_min:.6g} to {box.x_max:.6g}, y {box.y_min:.6g} to {box.y_max:.6g} m, "
             f"working mode ({self.mode[0]:+d}, {self.mode[1]:+d})",
             *(
-                f"  {GOALS[name].words}: {goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}"
+                f"  {GOALS[name].words}: {_bounded(goal)}"
                 for name, goal in self.goals.items()
+                if name in self.weights or name in self.limits or goal.value or goal.bound
             ),
         ]
         lines += self.remarks
         if self.at_limit:
             lines.append(f"at the limit of {', '.join(self.at_limit)}: beyond it there is more")
         return "\n".join(lines)
+
+
+def _bounded(goal: Proved) -> str:
+    """A goal's value, and the bound that is proved of it."""
+    if not np.isfinite(goal.bound):
+        return f"{goal.value:.6g} {goal.unit}".rstrip() + ", found; no bound"
+    return f"{goal.value:.6g}, proved to {goal.bound:.6g} {goal.unit}".rstrip()
 
 
 def design_fivebar(
@@ -137,12 +160,12 @@ def design_fivebar(
     progress: Progress | None = None,
     resume: str | Path | None = None,
 ) -> FiveBarDesign:
-    """Finds l1, l2 and e of a symmetric five-bar that suit a rectangle best.
+    """Searches l1, l2 and e of a symmetric five-bar that suit a rectangle.
 
     The worst over the rectangle is what counts, and it is proved: a bound by branch and bound, no
-    maximum over grid points. The base pins lie on y = 0 at (±e, 0). Where the rectangle's height is
-    free, a larger machine is better conditioned without end: give the lengths a range, a limit of
-    size, or a mix of goals.
+    maximum over grid points. That no other lengths do better is found by search, not proved. The
+    base pins lie on y = 0 at (±e, 0). Where the rectangle's height is free, a larger machine is
+    better conditioned without end: give the lengths a range, a limit of size, or a mix of goals.
 
     Args:
         workspace: (x_min, x_max, y_min, y_max), m.
@@ -227,7 +250,7 @@ def finish(problem: Problem, x: Array, seed: int) -> FiveBarDesign:
 def _at_limit(problem: Problem, x: Array, proof: dict[str, tuple[float, float]]) -> tuple[str, ...]:
     out = []
     for name, value, low, high in zip(problem.names, x, problem.low, problem.high, strict=True):
-        near = _AT_LIMIT * (high - low)
+        near = TOLERANCES.at_end_of_range * (high - low)
         if high > low and value > high - near:
             out.append(f"{name} ≤ {high:.4g} m")
         if high > low and value < low + near and low > 0.0:
@@ -246,7 +269,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
     Raises:
         UnreachableError: names the nearest linkage and what it misses.
     """
-    points = lattice()
+    points = search_points()
     pieces = problem.pieces(x[None], points)
     breaks = {
         name: float(np.nan_to_num(values, nan=1.0).max())
@@ -267,7 +290,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
             f"no linkage meets all limits over {place}; the nearest, {near} m, has "
             f"{', '.join(missed)}"
         )
-    if breaks["reach"] > SLACK:
+    if breaks["reach"] > TOLERANCES.design_slack:
         far = np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max)))
         longest = float(problem.high[0] + problem.high[1])
         why = (
@@ -278,7 +301,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
             "from the pins, or widen the lengths"
         )
         raise UnreachableError(f"{place} is out of reach of every linkage within the limits: {why}")
-    if breaks["rods"] > SLACK:
+    if breaks["rods"] > TOLERANCES.design_slack:
         raise UnreachableError(
             f"{place} holds a singularity for every linkage within the limits (the rods get in "
             f"line); the nearest is {near} m; widen the lengths, or move the rectangle from the "

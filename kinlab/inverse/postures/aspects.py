@@ -1,10 +1,10 @@
 """Aspects: the regions of joint space, within the limits, that singularities do not cut.
 
-det J is a product of functions of a few joints each (:mod:`kinlab.analysis.minors`). Joint space
-within the limits is cut into boxes until a function is shown to keep its sign in a box, by bounds
-of the function over it; boxes of one sign that share a face are one region. What is left are thin
-boxes around the zeros. Functions of separate joints cut joint space separately: regions of the
-groups multiply.
+det J is a product of functions of a few joints each (:mod:`kinlab.analysis.singularities.minors`).
+Joint space within the limits is cut into boxes until a function is shown to keep its sign in a box,
+by bounds of the function over it; boxes of one sign that share a face are one region. What is left
+are thin boxes around the zeros. Functions of separate joints cut joint space separately: regions of
+the groups multiply.
 
 Borrel & Liegeois, "A study of multiple manipulator inverse kinematic solutions with applications
 to trajectory planning and workspace determination", IEEE ICRA 1986, where aspects are named.
@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import revolute
 from kinlab.arrays import Array, frozen
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.postures.cuspidality import square_task, yes_or_no
 from kinlab.model.library import ArmLike, as_robot

@@ -20,25 +20,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, revolute, search_box
-from kinlab.arrays import Array, seed_of, shown, whole
+from kinlab.arrays import Array, between, seed_of, shown, whole
 from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
+from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
-from kinlab.inverse.branches import ik_branches
+from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
 from kinlab.inverse.postures.regional import Regional, first_axis, is_regional, singular_points
 from kinlab.inverse.postures.roadmap import Roadmap
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 CUSPIDAL, NONE_FOUND = "cuspidal", "none found"
 
-_APART = 1e-3
-"""Radians or metres, whole turns left out, by which two solutions must differ to be two."""
 _TURNS = 6
 """Ways round, by whole turns of joints, that are tried for a pair, the shortest first."""
 _ROADMAPS = 4
@@ -204,7 +203,7 @@ def posture_path(
     ends = np.stack([first, second])
     low, high = _range(robot, limits)
     for name, q in zip(("one", "two"), ends, strict=True):
-        outside = (q < low - 1e-9) | (q > high + 1e-9)
+        outside = ~between(q, low, high, TOLERANCES.limit_digits)
         if outside.any():
             joint = robot.joint_names[int(np.argmax(outside))]
             raise StateError(f"robot {robot.name!r}: {name} is outside the limits of {joint}")
@@ -291,7 +290,7 @@ def _pairs(
     for row, number in enumerate(found.counts):
         q = found.q[row, :number]
         q = q[((q >= low) & (q <= high)).all(axis=1)]
-        least = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)[:, -1]
+        least = space.sigma(q)[:, -1]
         q = q[least > 1e-4]
         side = _sides(space, parts, q)
         for i, j in combinations(range(len(q)), 2):
@@ -307,7 +306,7 @@ def differ(robot: Robot, one: Array, two: Array) -> bool:
     """Whether two joint positions (n,) are two, whole turns left out."""
     gap = two - one
     turned = np.where(revolute(robot), gap - 2.0 * np.pi * np.round(gap / (2.0 * np.pi)), gap)
-    return bool(np.abs(turned).max() > _APART)
+    return bool(np.abs(turned).max() > TOLERANCES.two_solutions)
 
 
 def ways_round(robot: Robot, one: Array, two: Array, low: Array, high: Array) -> Array:
@@ -349,9 +348,7 @@ def _straight(
         return None
     share = np.linspace(0.0, 1.0, 33)[:, np.newaxis]
     states = one[:, np.newaxis] + share * (two - one)[:, np.newaxis]
-    values = np.linalg.svd(
-        space.jacobian(states.reshape(-1, one.shape[1]), space.scale), compute_uv=False
-    )[:, -1].reshape(len(one), -1)
+    values = space.sigma(states.reshape(-1, one.shape[1]))[:, -1].reshape(len(one), -1)
     order = np.argsort(-values.min(axis=1), kind="stable")
     for done, row in enumerate(order):
         tell("straight lines", done, len(order))

@@ -1,9 +1,9 @@
 """Paths that meet no singularity, shown between the samples too.
 
 sigma_min(J) changes by at most K |q' - q| from q to q', K a bound of J's slope from the lengths of
-the arm (Weyl's inequality; :func:`kinlab.analysis.nearest.slope_bound`). A piece of a straight
-line in joint space is free of singularities where sigma_min at its middle exceeds K times half its
-length; a piece where it does not is cut in two and tried again.
+the arm (Weyl's inequality; :func:`kinlab.analysis.singularities.nearest.slope_bound`). A piece of a
+straight line in joint space is free of singularities where sigma_min at its middle exceeds K times
+half its length; a piece where it does not is cut in two and tried again.
 """
 
 from __future__ import annotations
@@ -12,19 +12,16 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
-from kinlab.analysis.nearest import slope_bound
+from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.arrays import Array, frozen
+from kinlab.host.evidence import Evidence
+from kinlab.tolerances import TOLERANCES
 
 _SHARE = 0.5
 """Of sigma_min in the middle of a piece that is left for certain at its ends."""
-_LEAST = 1e-6
-"""sigma_min over the arm's length unit at which a path counts as meeting a singularity."""
 _MOST = 200_000
 """Pieces looked at before a line is given up."""
-_ROUNDING = 1e-12
-"""Of sigma_max: what rounding may do to a computed singular value."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +77,9 @@ def show_nonsingular(space: TaskSpace, corners: Array) -> NonsingularPath | None
         looked += len(centre)
         if looked > _MOST:
             return None
-        values = np.linalg.svd(space.jacobian(centre, space.scale), compute_uv=False)
-        least = values[:, -1] - _ROUNDING * values[:, 0]
-        if not np.all(least > _LEAST):
+        values = space.sigma(centre)
+        least = values[:, -1] - TOLERANCES.singular_value_rounding * values[:, 0]
+        if not np.all(least > TOLERANCES.path_singular):
             return None
         reach = slope * np.linalg.norm(half, axis=1)
         good = reach <= (1.0 - _SHARE) * least

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, number, seed_of
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import NameUnknownError
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Introduction, Rows, brief, counted, numbered
 from kinlab.inverse.postures.posture_change import PostureChange, posture_changes
 from kinlab.inverse.request import read_guess, read_targets
 from kinlab.inverse.result import BRANCH, IKResult, IKStatus
@@ -23,8 +25,8 @@ NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""
 
 
-@dataclass(frozen=True, eq=False)
-class IKPath:
+@dataclass(frozen=True, eq=False, repr=False)
+class IKPath(Rows):
     """Joint positions along a path.
 
     Attributes:
@@ -51,8 +53,60 @@ class IKPath:
     posture_changes: tuple[PostureChange, ...] = ()
     task: str = "pose"
 
+    def columns(self) -> dict[str, Any]:
+        """Pose by pose: joints, success and status, errors, conditioning."""
+        return {
+            **numbered("q", self.q),
+            "success": self.success,
+            "status": self.status,
+            "position_error": self.position_error,
+            "rotation_error": self.rotation_error,
+            "conditioning": self.conditioning,
+        }
+
+    def introduction(self) -> Introduction:
+        """How many poses were followed, and where the path jumps or is near a singularity."""
+        solved = int(np.sum(self.success))
+        smooth = "without a jump" if not len(self.jumps) else counted(len(self.jumps), "jump")
+        lines = [
+            f"worst error {self.position_error.max(initial=0.0):.2g} m, "
+            f"{self.rotation_error.max(initial=0.0):.2g} rad",
+            f"least sigma_min/sigma_max {self.conditioning.min(initial=np.inf):.3g}",
+        ]
+        for what, where in (("jumps", self.jumps), ("at or near a singularity", self.singular)):
+            if len(where):
+                lines.append(f"{what}: rows {brief(', '.join(str(int(row)) for row in where), 80)}")
+        failed = np.flatnonzero(~np.asarray(self.success, bool))
+        if len(failed):
+            lines.append(f"first that failed: row {failed[0]}, {self.status[failed[0]]}")
+        lines += [
+            f"rows {change.first} and {change.last}: one pose, two postures; the change is "
+            + ("shown to meet" if change.nonsingular else "not shown to meet")
+            + " no singularity"
+            for change in self.posture_changes
+        ]
+        lines += self.remarks
+        return Introduction(
+            f"path, task {self.task}: {solved} of {counted(len(self), 'pose')} solved, {smooth}",
+            tuple(lines),
+            mood="good" if solved == len(self) and not len(self.jumps) else "bad",
+        )
+
     def __len__(self) -> int:
         return len(self.q)
+
+    @property
+    def evidence(self) -> Evidence:
+        """What is measured at the poses, and what is not looked at between them."""
+        met = int(np.sum(self.success))
+        return Evidence(
+            f"{len(self)} poses, each from the answer before",
+            met,
+            len(self),
+            "every pose marked as met is met at its q, within tolerance and limits",
+            "that jumps and singularities stand where they are listed: nothing is looked at "
+            "between two poses",
+        )
 
 
 def ik_path(

@@ -12,9 +12,7 @@ from kinlab.errors import OptionError
 from kinlab.inverse.postures.cuspidality import differ, square_task
 from kinlab.inverse.postures.nonsingular import NonsingularPath, show_nonsingular
 from kinlab.model.robot import Robot
-
-_SAME_POSE = 1e-5
-"""Metres, and entries of the rotation, within which two poses are one."""
+from kinlab.tolerances import TOLERANCES
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,11 +58,13 @@ def posture_changes(robot: Robot, q: Array) -> tuple[PostureChange, ...]:
     order = np.argsort(held[:, 0], kind="stable")
     sorted_ = held[order, 0]
     for last in range(1, len(q)):
-        low, high = np.searchsorted(sorted_, held[last, 0] + _SAME_POSE * np.array([-1.0, 1.0]))
+        low, high = np.searchsorted(
+            sorted_, held[last, 0] + TOLERANCES.same_pose * np.array([-1.0, 1.0])
+        )
         near = np.sort(order[low:high])
         for first in near[near < last][::-1]:
             apart = np.abs(held[first] - held[last]).max()
-            if apart < _SAME_POSE and differ(robot, q[first], q[last]):
+            if apart < TOLERANCES.same_pose and differ(robot, q[first], q[last]):
                 shown = show_nonsingular(space, q[first : last + 1])
                 found.append(PostureChange(int(first), last, shown))
                 break

@@ -21,13 +21,14 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.minors import Factor, factors
+from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk
 from kinlab.errors import OptionError
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _DEPTH = 12
 """Halvings of the torus' 8 x 8 boxes before the boxes that are left are solved in."""
@@ -35,8 +36,6 @@ _MOST = 6_000
 """Boxes above which the zeros are taken to be curves, and nothing is said."""
 _NEAR = 2e-2
 """rad around a solved zero in which boxes belong to it."""
-_SAME = 1e-6
-"""rad within which two zeros are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,7 @@ class Regional:
 
     Attributes:
         robot: the arm. origin, axis: of its first joint, (3,), as in
-            :class:`kinlab.analysis.sections.WorkspaceSection`.
+            :class:`kinlab.analysis.workspace.sections.WorkspaceSection`.
         size: metres, that lengths are divided by.
         map: rho^2 and z over size; functions of joints 2 and 3.
         determinant: D. parts: its factors.
@@ -354,7 +353,7 @@ def _zeros(system: Factor, known: Array) -> tuple[Array, bool]:
     _, thin = np.unique(np.round(centre / 5e-3), axis=0, return_index=True)
     for x in _newton(system, centre[thin]):
         x = _wrapped(x)
-        if not _close(x, np.reshape(found, (-1, 2)), _SAME * 100):
+        if not _close(x, np.reshape(found, (-1, 2)), TOLERANCES.same_zero):
             found.append(x)
     zeros = np.reshape(found, (-1, 2))
     near = np.concatenate([zeros, known])
@@ -381,10 +380,6 @@ def _newton(system: Factor, x: Array) -> Array:
     return out
 
 
-_ANGLE = 1e-3
-"""Sine of the angle at which two images must cross to make a node."""
-
-
 def _crossing_segments(one: Array, two: Array) -> list[tuple[int, int]]:
     """Pairs of segments of the plane, ends (N, 2) each, that cross."""
     along = two - one
@@ -398,7 +393,7 @@ def _crossing_segments(one: Array, two: Array) -> list[tuple[int, int]]:
         size = np.linalg.norm(v, axis=1) * np.linalg.norm(u)
         # images that lie on one another meet at no angle: no node
         hit = (
-            (np.abs(cross) > _ANGLE * size)
+            (np.abs(cross) > TOLERANCES.crossing_sine * size)
             & (s >= -0.01)
             & (s <= 1.01)
             & (t >= -0.01)

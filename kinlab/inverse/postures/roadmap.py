@@ -129,7 +129,7 @@ class Roadmap:
 def _sigma(space: TaskSpace, q: Array) -> Array:
     if not len(q):
         return np.zeros(0)
-    values = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+    values = space.sigma(q)
     return np.asarray(values[:, -1], dtype=np.float64)
 
 

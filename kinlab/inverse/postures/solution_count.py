@@ -8,16 +8,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.arrays import real_array, whole
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction, Rows, counted
 from kinlab.host.progress import takes_long
-from kinlab.inverse.branches import IKBranches, ik_branches
-from kinlab.inverse.families import IKFamily
+from kinlab.inverse.branches.families import IKFamily
+from kinlab.inverse.branches.solutions import IKBranches, ik_branches
 from kinlab.model.library import ArmLike, as_robot
 
 
-@dataclass(frozen=True, eq=False)
-class SolutionCount:
+@dataclass(frozen=True, eq=False, repr=False)
+class SolutionCount(Answer):
     """How many solutions one pose has.
 
     Attributes:
@@ -25,7 +26,7 @@ class SolutionCount:
         within_limits: how many of them the joint limits allow.
         complete: whether these are all.
         families: infinite sets of solutions through some of them.
-        method: as in :class:`kinlab.inverse.branches.IKBranches`.
+        method: as in :class:`kinlab.inverse.branches.solutions.IKBranches`.
         evidence: what was solved, and what is known of it.
     """
 
@@ -36,18 +37,29 @@ class SolutionCount:
     method: str
     evidence: Evidence = field(repr=False)
 
+    def introduction(self) -> Introduction:
+        """How many solutions there are, and whether these are all."""
+        sure = "all there are" if self.complete else "there may be more"
+        lines = [f"by {self.method}", str(self.evidence)]
+        if self.families:
+            lines.insert(0, f"and {counted(len(self.families), 'infinite set')} of solutions")
+        return Introduction(
+            f"{counted(self.count, 'solution')}, {self.within_limits} within the limits, {sure}",
+            tuple(lines),
+        )
+
     def __int__(self) -> int:
         return self.count
 
 
-@dataclass(frozen=True, eq=False)
-class SolutionCounts:
+@dataclass(frozen=True, eq=False, repr=False)
+class SolutionCounts(Rows):
     """How many solutions each of N poses has; ``counts[i]`` is the answer for pose i alone.
 
     Attributes:
         count: (N,), integers. within_limits: (N,), integers.
         complete: (N,), bool.
-        method: as in :class:`kinlab.inverse.branches.IKBranches`.
+        method: as in :class:`kinlab.inverse.branches.solutions.IKBranches`.
         evidence: of the stack.
     """
 
@@ -57,6 +69,26 @@ class SolutionCounts:
     method: str
     evidence: Evidence = field(repr=False)
     _batch: Any = field(repr=False)
+
+    def columns(self) -> dict[str, Any]:
+        """Pose by pose: the counts, and whether they are of all there are."""
+        return {
+            "count": self.count,
+            "within_limits": self.within_limits,
+            "complete": self.complete,
+        }
+
+    def introduction(self) -> Introduction:
+        """How many poses have how many solutions."""
+        values, times = np.unique(self.count, return_counts=True)
+        rows = tuple((str(v), str(t)) for v, t in zip(values, times, strict=True))
+        whole_ones = int(np.sum(self.complete))
+        return Introduction(
+            f"{counted(len(self), 'pose')}: {whole_ones} with all their solutions counted",
+            (f"by {self.method}", str(self.evidence)),
+            ("solutions", "poses") if rows else (),
+            rows,
+        )
 
     def __len__(self) -> int:
         return len(self.count)

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.evidence import Evidence
 from kinlab.analysis.structure.axes import Axes
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array, number, whole
 from kinlab.engine.fast.stacks import fk
 from kinlab.errors import OptionError
+from kinlab.host.evidence import Evidence
+from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import takes_long
 from kinlab.inverse.postures.regional import (
     Regional,
@@ -33,8 +34,8 @@ _MARGIN = 0.03
 """Of the section's size around it."""
 
 
-@dataclass(frozen=True, eq=False)
-class SolutionMap:
+@dataclass(frozen=True, eq=False, repr=False)
+class SolutionMap(Answer):
     """Answer of :func:`solution_map`.
 
     Attributes:
@@ -67,6 +68,12 @@ class SolutionMap:
     generic: bool | None
     collapsed: Array
     evidence: Evidence = field(repr=False)
+
+    def introduction(self) -> Introduction:
+        """What the map shows, and what it rests on."""
+        return Introduction(
+            f"map of the number of solutions of {self.robot}: {self.text}", (str(self.evidence),)
+        )
 
     @property
     def text(self) -> str:
