@@ -123,7 +123,9 @@ def examine(
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
     if not visible:
-        causes = _outranked(causes, [*_singly(case, tried), *_by_derivation(case, signs)])
+        # a slip that stands in the text comes before any step of a derivation
+        derived = [] if written and causes else [*_by_derivation(case, signs)]
+        causes = _outranked(causes, [*_singly(case, tried), *derived])
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
