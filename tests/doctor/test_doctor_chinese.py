@@ -11,13 +11,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import sentences
+from kinlab.doctor.confusions.columns import column_steps
+from kinlab.doctor.confusions.links import matrix_steps
+from kinlab.doctor.confusions.recursion import steps
 
 import kinlab as kl
 from kinlab.check.diagnosis import shown_entry
-from kinlab.doctor.confusions.columns import column_steps
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.links import matrix_steps
-from kinlab.doctor.confusions.recursion import steps
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.handout import handout
 from kinlab.doctor.marking.sheet import read_sheet, sheet_of
