@@ -29,6 +29,7 @@ extensions = [
     "sphinx_copybutton",
     "sphinx_design",
     "docstrings",
+    "links",
     "mathml",
     "made_pages",
     "notebooks",

@@ -62,13 +62,18 @@ def marked_in_python(tree: ast.AST, place: str) -> list[tuple[str, str, int]]:
         for one in node.args[:count]:
             if isinstance(one, ast.Constant) and isinstance(one.value, str):
                 texts.append(one.value)
-            elif node.func.id != "_" or not isinstance(
-                one, ast.Name | ast.Attribute | ast.Subscript
-            ):
+            elif node.func.id != "_" or not _is_looked_up(one):
                 raise NotPlain(f"{place}:{node.lineno}: {ast.unparse(node)} marks no plain text")
         if texts:
             found.append((texts[0], texts[1] if count == 2 else "", node.lineno))
     return found
+
+
+def _is_looked_up(node: ast.expr) -> bool:
+    """Whether an expression is a text that is marked elsewhere, and not one that is put together."""
+    if isinstance(node, ast.Call):
+        return getattr(node.func, "attr", "format") not in ("format", "join")
+    return isinstance(node, ast.Name | ast.Attribute | ast.Subscript | ast.IfExp)
 
 
 _TEXT = r'"((?:[^"\\]|\\.)*)"'
@@ -87,6 +92,7 @@ def marked_in_text(text: str) -> list[tuple[str, str, int]]:
 def records() -> list[tuple[str, str, str]]:
     """What the catalogue of formulas says in words: (text, room, place)."""
     from kinlab.check.catalogue import catalogue
+    from kinlab.check.quantities.registry import quantities
     from kinlab.check.table_check import DYNAMIC, KINEMATIC
 
     found = []
@@ -95,6 +101,7 @@ def records() -> list[tuple[str, str, str]]:
         printed = record.printed.misprint if record.printed else ""
         said = (record.title, record.source, record.remark, printed)
         found += [(text, room, record.key) for text in said if text]
+    found += [(one.about, "check", one.name) for one in quantities().values()]
     return found
 
 
@@ -121,7 +128,7 @@ def sentences() -> dict[str, Sentence]:
             marked = marked_in_text(text)
         for one, more, line in marked:
             add(one, more, room_of(file), f"{place}:{line}")
-    for one, room, place in ():  # records() follow with their translations
+    for one, room, place in records():
         add(one, "", room, place)
     return found
 

@@ -9,11 +9,19 @@ from __future__ import annotations
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sphinx.application import Sphinx
+if TYPE_CHECKING:  # the generators do without Sphinx, and so do their tests
+    from sphinx.application import Sphinx
 
-GENERATORS = ("reference_pages", "note_pages", "bench_pages", "drawings", "robot_pages")
+GENERATORS = (
+    "reference_pages",
+    "command_pages",
+    "note_pages",
+    "bench_pages",
+    "drawings",
+    "robot_pages",
+)
 
 
 def write_all(app: Sphinx) -> None:

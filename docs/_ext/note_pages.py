@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from html import escape
 from itertools import groupby
 from pathlib import Path
@@ -21,13 +21,23 @@ from kinlab.check.catalogue import catalogue, plan, run
 from kinlab.check.report.summary import Group, grouped, size
 from kinlab.formulas.typeset import mathml
 
+try:
+    from kinlab.check.places import places, told_of
+except ImportError:
+
+    def places() -> tuple:
+        return ()
+
+    def told_of(record, lang=None) -> dict[str, str]:
+        misprint = record.printed.misprint if record.printed else ""
+        told = {"title": record.title, "source": record.source, "place": record.source}
+        return told | {"misprint": misprint, "remark": record.remark}
+
+
 LONG = 70
 """Characters of LaTeX above which a form gets the whole width of the page."""
 
 _HOME = Path(kinlab.__file__).parent
-
-Position = tuple[int, int]
-"""First and last line of a stretch of a note."""
 
 
 def write(docs: Path) -> None:
@@ -57,38 +67,6 @@ def fingerprint() -> str:
     return found.hexdigest()
 
 
-# -------- Where a formula stands
-
-
-def stretches(number: str) -> Iterator[tuple[Position, tuple[str, ...], str]]:
-    """The stretches of a note: lines, the ids of the formulas in them, and what they say."""
-    for line in (_HOME / "notes" / "lines.tsv").read_text(encoding="utf-8").splitlines():
-        if line.startswith(f"{number}\t"):
-            _, lines, ids, words = line.split("\t")
-            first, _, last = lines.partition("-")
-            yield (int(first), int(last or first)), tuple(ids.split()), words
-
-
-def positions(number: str) -> dict[str, list[Position]]:
-    """Where each id stands."""
-    found: dict[str, list[Position]] = {}
-    for lines, ids, _ in stretches(number):
-        for id in ids:
-            found.setdefault(id, []).append(lines)
-    return found
-
-
-def spelled(lines: Iterable[Position]) -> str:
-    """``62–65, 70``; stretches that follow one another are one."""
-    joined: list[Position] = []
-    for first, last in lines:
-        if joined and first <= joined[-1][1] + 1:
-            joined[-1] = (joined[-1][0], last)
-        else:
-            joined.append((first, last))
-    return ", ".join(f"{a}–{b}" if a != b else f"{a}" for a, b in joined)
-
-
 # -------- Pages
 
 
@@ -111,34 +89,36 @@ def summary(groups: Sequence[Group], say: Language) -> str:
 
 def page(number: str, groups: Sequence[Group], say: Language) -> str:
     """The page of a note."""
-    where = positions(number)
-    first = {id: lines[0] for id, lines in where.items()}
-    ordered = sorted(groups, key=lambda group: first.get(group.formula.id, (10**6, 0)))
+    first: dict[str, int] = {}
+    for place in places():
+        for id in place.ids if place.note == number else ():
+            first.setdefault(id, place.first)
+    ordered = sorted(groups, key=lambda group: first.get(group.formula.id, 10**6))
     lines = [f"# {say(TITLES[number])}", "", say(HEAD), ""]
     wrong = [group for group in ordered if group.printed_error is not None]
     if wrong:
         lines += [f"## {say('Misprints of this note')}", ""]
         for group in wrong:
             label = f"`{group.formula.key}`"
-            what = ended(say(group.formula.printed.misprint)) if group.formula.printed else ""
-            lines.append(f"- [{label}](#{anchor(group)}): {what}")
+            told = told_of(group.formula, say.name)
+            lines.append(f"- [{label}](#{anchor(group)}){say(': ')}{ended(told['misprint'])}")
         lines.append("")
     for source, several in groupby(ordered, lambda group: group.formula.source):
-        section = say(source.removeprefix(f"note {number}, "))
+        section = re.sub(r"^\w+ \d{3}[,，] *", "", say(source))  # the page's title names the note
         lines += [f"## {section[:1].upper()}{section[1:]}", ""]
         for group in several:
-            lines += card(group, where.get(group.formula.id, []), say)
+            lines += card(group, say)
     lines += line_by_line(number, {group.formula.id for group in groups}, say)
     return "\n".join(lines) + "\n"
 
 
-def card(group: Group, where: list[Position], say: Language) -> list[str]:
+def card(group: Group, say: Language) -> list[str]:
     """One formula: place, forms, verdict, how far each form is from the engine, robot by robot."""
     record = group.formula
-    lines = [f"({anchor(group)})=", f"### `{record.key}` {say(record.title)}", ""]
-    place = [say("lines {lines} of the note").format(lines=spelled(where))] if where else []
-    place += [say("engine: {quantity}").format(quantity=f"`{record.quantity}`")]
-    lines += ["{.place}", " · ".join(place), ""]
+    told = told_of(record, say.name)
+    lines = [f"({anchor(group)})=", f"### `{record.key}` {literal(told['title'])}", ""]
+    engine = say("engine: {quantity}").format(quantity=f"`{record.quantity}`")
+    lines += ["{.place}", " · ".join(filter(None, (literal(told["place"]), engine))), ""]
     forms = []
     if record.printed is not None and group.printed_error is not None:
         forms.append(form("printed", say("printed"), record.printed.latex))
@@ -148,7 +128,7 @@ def card(group: Group, where: list[Position], say: Language) -> list[str]:
     lines += ["```{raw} html", f'<div class="forms">{"".join(forms)}</div>', "```", ""]
     lines += [verdict(group, say), ""]
     if record.remark:
-        lines += [sentence(say(record.remark)), ""]
+        lines += [sentence(told["remark"]), ""]
     if len(group.rows) > 1:
         lines += robots(group, say)
     return lines
@@ -163,12 +143,13 @@ def verdict(group: Group, say: Language) -> str:
     if len(group.rows) > 1:
         figures += say(" on {count} robots").format(count=len(group.rows))
     if not group.ok:
-        return f"{{.fails}}\n**{sentence(group.verdict)}** {figures}."
+        return f"{{.fails}}\n**{sentence(group.verdict)}** {figures}{say('.')}"
     if group.printed_error is None or group.formula.printed is None:
-        return f"{{.agrees}}\n**{say('Agrees.')}** {figures}."
-    what = ended(say(group.formula.printed.misprint))
+        return f"{{.agrees}}\n**{say('Agrees.')}** {figures}{say('.')}"
+    what = ended(told_of(group.formula, say.name)["misprint"])
     off = say("the printed form is off by {error} or more").format(error=size(group.printed_error))
-    return f"{{.misprint}}\n**{say('Misprint')}: {what}** {figures}; {off}."
+    both = f"{figures}{say('; ')}{off}{say('.')}"
+    return f"{{.misprint}}\n**{say('Misprint')}{say(': ')}{what}** {both}"
 
 
 def robots(group: Group, say: Language) -> list[str]:
@@ -200,9 +181,11 @@ def line_by_line(number: str, known: set[str], say: Language) -> list[str]:
     lines = ["## Line by line", "", "What each stretch of the note says, and the formulas above "]
     lines[-1] += "that hold it."
     lines += ["", "| lines | what they say | formulas |", "|---|---|---|"]
-    for where, ids, words in stretches(number):
-        here = ", ".join(f"`{id}`" for id in ids if id in known)
-        lines.append(f"| {spelled([where])} | {literal(words)} | {here} |")
+    for row in (_HOME / "notes" / "lines.tsv").read_text(encoding="utf-8").splitlines():
+        if row.startswith(f"{number}\t"):
+            _, span, ids, words = row.split("\t")[:4]
+            here = ", ".join(f"`{id}`" for id in ids.split() if id in known)
+            lines.append(f"| {span.replace('-', '–')} | {literal(words)} | {here} |")
     return [*lines, ""]
 
 

@@ -129,7 +129,8 @@ TOPICS = (
         "axes. With ``pip install 'kinlab[plots]'``.",
         "plots.workspace plots.workspace_map plots.workspace_cloud plots.ellipses "
         "plots.singular_loci plots.singular_values plots.solutions plots.ik_history "
-        "plots.torque_speed plots.fivebar plots.fivebar_cycle plots.fivebar_gains plots.save",
+        "plots.torque_speed plots.fivebar plots.fivebar_cycle plots.fivebar_gains "
+        "plots.fivebar_design plots.fivebar_front plots.save",
     ),
     topic(
         "viewer",
@@ -172,6 +173,7 @@ def public_names() -> set[str]:
     for room in (*ROOMS, "symbolic"):
         module = importlib.import_module(f"kinlab.{room}")
         names |= {f"{room}.{n}" for n in getattr(module, "__all__", ())}
+    names |= {"tolerances.Tolerances", "tolerances.TOLERANCES"}
     return names - {"fivebar.FiveBar", "viewer.view"}  # they stand at the top as well
 
 
@@ -261,6 +263,16 @@ def errors() -> list[type]:
     return sorted(every, key=lambda c: (c.__module__ != "kinlab.errors", c.__module__))
 
 
+def rooms() -> str:
+    """The rooms of the package, each with the table of its files, from its own docstring."""
+    text = heading("The rooms, file by file", "=")
+    text += "What :doc:`/architecture` puts in order, from the rooms' own docstrings.\n\n"
+    for file in sorted(Path(kl.__path__[0]).rglob("__init__.py")):
+        name = ".".join(file.parent.relative_to(Path(kl.__path__[0]).parent).parts)
+        text += heading(name, "-") + f".. automodule:: {name}\n   :no-index-entry:\n\n"
+    return text
+
+
 def entry(full: str, thing: Any) -> str:
     """The directive that documents one name."""
     if inspect.isclass(thing):
@@ -306,6 +318,7 @@ def write(docs: Path) -> None:
             text += "\n" + heading("What they answer with", "-")
             text += "\n".join(entry(*pair) for pair in further)
         write_if_changed(folder / f"{one.page}.rst", text)
+    write_if_changed(folder / "rooms.rst", rooms())
     text = heading("For those who add to kinlab", "=")
     text += "What :doc:`/architecture` and CONTRIBUTING.md speak of.\n\n"
     for module, names in EXTENDING:

@@ -8,6 +8,8 @@ module           what it holds
 ``diagnosis``    A hand formula, judged: a verdict, ranked causes with their evidence, the
                  corrected formula
 ``guest``        A user's file of marked functions, in a process of its own with a limit of time
+``places``       What the catalogue says of a formula, and where it stands in its note: heading,
+                 number, lines
 ``table_check``  Checks of one arm: its DH table by hand beside Pinocchio and yourdfpy
 ``targets``      What the arguments of ``kinlab check`` mean: robots, files, notes, ids, a user's
                  formulas

@@ -14,6 +14,7 @@ from kinlab.check.compare import Comparison, compare_stacked
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.formulas.record import Formula, formulas_in, function_name
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 NOTES = (
@@ -67,14 +68,14 @@ class Row:
     def verdict(self) -> str:
         """One line: agrees, or what is wrong."""
         if self.failure:
-            return f"FAILED: {self.failure}"
+            return _("FAILED: {reason}").format(reason=self.failure)
         if not self.corrected.agrees:
-            return "DIFFERS from the engine"
-        if self.printed is None:
-            return "agrees"
+            return _("DIFFERS from the engine")
+        if self.printed is None or self.formula.printed is None:
+            return _("agrees")
         if not self.misprint_shown:
-            return "agrees; the misprint does NOT show here"
-        return f"misprint: {self.formula.printed.misprint}" if self.formula.printed else "agrees"
+            return _("agrees; the misprint does NOT show here")
+        return _("misprint: {what}").format(what=_(self.formula.printed.misprint))
 
 
 @cache

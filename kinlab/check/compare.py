@@ -22,6 +22,7 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.errors import OptionError
 from kinlab.formulas.record import AnswerShapeError, FormulaError, function_name, state_by_state
 from kinlab.host.introductions import Introduction, Rows, numbered
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 
@@ -73,18 +74,32 @@ class Comparison(Rows):
 
     def introduction(self) -> Introduction:
         """Whether they are the same formula, and where they are furthest apart."""
-        verdict = "agrees" if self.agrees else "DIFFERS"
-        text = (
-            f"{self.function} {verdict} with {self.quantity} of {self.robot}: largest relative "
-            f"error {self.max_error:.2g} over {self.samples} states"
+        if self.agrees:
+            told = _(
+                "{function} agrees with {quantity} of {robot}: largest relative error {error} over "
+                "{samples} states"
+            )
+        else:
+            told = _(
+                "{function} DIFFERS with {quantity} of {robot}: largest relative error {error} "
+                "over {samples} states"
+            )
+        text = told.format(
+            function=self.function,
+            quantity=self.quantity,
+            robot=self.robot,
+            error=f"{self.max_error:.2g}",
+            samples=self.samples,
         )
         if self.agrees:
             return Introduction(text, mood="good")
         k = self.worst
         with np.printoptions(precision=6, suppress=True, linewidth=100):
             state = ", ".join(f"{name} = {value[k]}" for name, value in self.arguments.items())
-            hand, engine = f"hand   {self.hand[k]}", f"engine {self.engine[k]}"
-        return Introduction(text, (f"worst at {state}", hand, engine), mood="bad")
+            worst = _("worst at {state}").format(state=state)
+            hand = _("hand   {values}").format(values=self.hand[k])
+            engine = _("engine {values}").format(values=self.engine[k])
+        return Introduction(text, (worst, hand, engine), mood="bad")
 
 
 def need_function(function: object) -> None:

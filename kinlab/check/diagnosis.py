@@ -14,7 +14,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.host.introductions import Answer, Introduction
-from kinlab.host.language import N_, _
+from kinlab.host.language import N_, _, speaking
 
 Typeset = tuple[str, str]
 """A name and a formula, both as LaTeX."""
@@ -219,8 +219,9 @@ class Diagnosis(Answer):
                 state=state, hand=self.hand, engine=self.engine
             )
 
+    @speaking("en")
     def as_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
+        """Plain values for JSON, in English, whatever language is spoken."""
         return {
             "quantity": self.quantity,
             "robot": self.robot,

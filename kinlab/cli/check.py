@@ -13,6 +13,7 @@ from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
 from kinlab.errors import KinlabError, OptionError
+from kinlab.host.language import N_, _
 from kinlab.host.progress import progress
 
 if TYPE_CHECKING:
@@ -38,6 +39,15 @@ REPORT = Annotated[
 ]
 JSON = Annotated[bool, typer.Option("--json", help="Print the rows as JSON.")]
 ROWS = Annotated[bool, typer.Option("--rows", help="One line for each robot of a formula.")]
+ONLY = Annotated[
+    str | None,
+    typer.Option(
+        "--only", help="Of the notes, only the formulas with a misprint: --only misprints."
+    ),
+]
+COMPACT = Annotated[
+    bool, typer.Option("--compact", help="In the report, one line for a formula that agrees.")
+]
 QUANTITIES = Annotated[
     bool, typer.Option("--quantities", help="List the engine's quantities and stop.")
 ]
@@ -52,6 +62,11 @@ AGAINST = Annotated[
         "cell of the tables is wrong.",
     ),
 ]
+
+
+_COLUMNS = (
+    N_("formula"), N_("what"), N_("robot"), N_("error"), N_("printed"), N_("verdict"),
+)  # fmt: skip
 
 
 def register(app: typer.Typer) -> None:
@@ -69,6 +84,8 @@ def check(
     seed: SEED = 0,
     against: AGAINST = None,
     tool: TOOL = None,
+    only: ONLY = None,
+    compact: COMPACT = False,
 ) -> None:
     """Put hand formulas beside the engine, or a DH table beside another description of the arm.
 
@@ -78,6 +95,7 @@ def check(
     every correct form agrees (and every misprint shows), 1 if not, 2 for bad input; what cannot
     be read is listed with its reason, and the rest is judged.
     """
+    _refuse(only, compact, report or (), against)
     if against is not None:
         from kinlab.cli.against import check_against
 
@@ -99,9 +117,13 @@ def check(
         rest = _formula_files(what or [], samples, seed, found)
         if tool is not None and found.judged:
             raise OptionError("--tool is of a robot that is named; a formula file names its own")
+        if only is not None and found.judged:
+            raise OptionError("check --only misprints: it is of the notes; leave your files out")
         if rest or not what:
             todo, unread = read_tasks(rest, tool)
             found.unread += unread
+            if only is not None:
+                todo = _misprints(todo)
             if helpers is None and sum(task.ships for task in todo) >= ENOUGH:
                 helpers = stack.enter_context(Helpers())
             _run(todo, samples, seed, helpers, found)
@@ -115,14 +137,43 @@ def check(
     for line in _remarks(todo if what else ()):
         echo(line, err=json)
     for file in report or ():
-        write_report(file, found.rows, found.judged, found.unread)
-        echo(f"wrote {file}", err=json)
+        write_report(file, found.rows, found.judged, found.unread, compact=compact)
+        echo(_("wrote {file}").format(file=file), err=json)
     for missed in found.unread:
-        complain(KinlabError(f"not judged: {missed.what}: {missed.reason}"))
+        told = _("not judged: {what}: {reason}").format(what=missed.what, reason=missed.reason)
+        complain(KinlabError(told))
     if found.unread:
         raise typer.Exit(2)
     if not all(row.ok for row in found.rows) or not all(one.agrees for one in found.judged):
         raise typer.Exit(1)
+
+
+def _refuse(only: str | None, compact: bool, report: Sequence[Path], against: str | None) -> None:
+    """Refuses what would not be obeyed, before any work is done.
+
+    Raises:
+        OptionError: another ``--only``, or an option without what it is of.
+    """
+    if only not in (None, "misprints"):
+        raise OptionError(f"check --only {only}: there is only 'misprints'")
+    if compact and not report:
+        raise OptionError("check --compact: it is of a report; name one with --report")
+    if against is not None and (only is not None or compact):
+        raise OptionError("check --against: it judges tables; leave --only and --compact out")
+
+
+def _misprints(todo: Sequence[Task]) -> list[Task]:
+    """Of the tasks, those of formulas with a misprint.
+
+    Raises:
+        OptionError: formulas of a user are among them, or no misprint is.
+    """
+    if any(task.file for task in todo):
+        raise OptionError("check --only misprints: it is of the notes; leave your files out")
+    left = [task for task in todo if task.record.printed is not None]
+    if todo and not left:
+        raise OptionError("check --only misprints: there is none among these formulas")
+    return left
 
 
 def _remarks(todo: Sequence[Task]) -> list[str]:
@@ -249,15 +300,15 @@ def _print_table(done: Sequence[Row], each: bool) -> None:
         console = screen(width=160)
     groups = [Group(row.formula, (row,)) for row in done] if each else grouped(done)
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for name in ("formula", "what", "robot", "error", "printed", "verdict"):
+    for name in _COLUMNS:
         justify: Literal["left", "right"] = "right" if name in ("error", "printed") else "left"
-        table.add_column(name, justify=justify, no_wrap=name not in ("what", "verdict"))
+        table.add_column(_(name), justify=justify, no_wrap=name not in ("what", "verdict"))
     for group in groups:
         style = "" if group.ok else "bold red"
         shown = group.ok and group.printed_error is not None
         table.add_row(
             group.formula.key,
-            group.formula.title,
+            _(group.formula.title),
             group.robots,
             size(group.worst.corrected.max_error),
             size(group.printed_error),
@@ -279,19 +330,21 @@ def _print_failures(console: Screen, done: Sequence[Row]) -> None:
 
 
 def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
+    from kinlab.check.diagnosis import shown_entry
     from kinlab.check.report.summary import size
 
     def line(text: str) -> None:
         console.print(text, style="bold" if found.known else "", highlight=False, soft_wrap=True)
 
-    line(f"diagnosis: {found.sentence}")
+    line(_("diagnosis: {sentence}").format(sentence=found.sentence))
     if found.known:
         before, after = size(found.error_before), size(found.error_after)
-        line(f"  relative error before {before}, after {after}")
+        told = _("relative error before {before}, after {after}")
+        line("  " + told.format(before=before, after=after))
         for name, text in found.causes[0].corrected.items():
-            line(f"  correct: {name} = {text}")
+            line("  " + _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}"))
     for text in found.others:
-        line(f"  or: {text}")
+        line("  " + _("or: {slip}").format(slip=text))
 
 
 def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
@@ -300,10 +353,15 @@ def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
     wrong = sum(not row.ok for row in done)
     misprints = len({id(row.formula) for row in done if row.printed is not None})
     agree = sum(row.corrected.agrees for row in done)
-    text = f"\n{several(formulas, 'formula')}, {several(len(done), 'row')}: {agree} agree to 1e-9"
+    told = _("{formulas}, {rows}: {agree} agree to 1e-9")
+    text = told.format(
+        formulas=several(formulas, "formula"), rows=several(len(done), "row"), agree=agree
+    )
     if misprints:
-        text += f", {several(misprints, 'misprint')} shown"
-    console.print(text + (f", {wrong} WRONG" if wrong else ""), highlight=False)
+        text += _(", {misprints} shown").format(misprints=several(misprints, "misprint"))
+    if wrong:
+        text += _(", {count} WRONG").format(count=wrong)
+    console.print("\n" + text, highlight=False)
 
 
 def _list_quantities() -> None:
@@ -312,8 +370,8 @@ def _list_quantities() -> None:
     from kinlab.check.quantities.registry import quantities
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for name in ("quantity", "arguments", "about"):
+    for name in (_("quantity"), _("arguments"), _("about")):
         table.add_column(name)
     for one in quantities().values():
-        table.add_row(one.name, ", ".join(one.arguments), one.about)
+        table.add_row(one.name, ", ".join(one.arguments), _(one.about))
     screen().print(table)

@@ -215,7 +215,7 @@ def _hidden(
             told = [s for s in _of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    said = _(" and ").join(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
+    said = verdicts.together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
     remarks = [_("but it holds only for {numbers}").format(numbers=said)] if only else []
     return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
 

@@ -25,7 +25,7 @@ from kinlab.doctor.edits import Names
 from kinlab.doctor.search import pairs_adding_up
 from kinlab.doctor.written import Written
 from kinlab.formulas import tree
-from kinlab.formulas.text import SHORTHAND, canonical, parse
+from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
@@ -153,13 +153,8 @@ class Line:
         for name, meaning in self.text.symbols.items():
             if re.fullmatch(r"[A-Za-z_]\w*", meaning) and name not in self.text.known:
                 found.setdefault(meaning, name)
-        for word in _words(self.source):
-            meant = canonical(word)
-            joint = _MOTION.fullmatch(str(meant.value)) if meant.op == "sym" else None
-            if joint and word != meant.value and word.endswith(joint.group(2)):
-                head = word[: -len(joint.group(2))]
-                for i in range(1, self.names.n + 1):
-                    found.setdefault(f"{joint.group(1)}{i}", f"{head}{i}")
+        for meaning, word in joint_spelling(_words(self.source), self.names.n).items():
+            found.setdefault(meaning, word)
         return found
 
     @cached_property
@@ -170,18 +165,7 @@ class Line:
 
     def spelled(self, node: Node) -> str:
         """A piece of a formula as the writer would write it."""
-        return tree.to_text(self._respelled(node))
-
-    def _respelled(self, node: Node) -> Node:
-        if self.short and node.op in ("sin", "cos"):
-            inside = node.args[0].args if node.args[0].op == "add" else node.args
-            if all(a.op == "sym" and re.fullmatch(r"q[1-9]", str(a.value)) for a in inside):
-                return tree.sym(node.op[0] + "".join(str(a.value)[1:] for a in inside))
-        if node.op == "sym":
-            return tree.sym(self.spelling.get(str(node.value), str(node.value)))
-        if not node.args:
-            return node
-        return Node(node.op, tuple(self._respelled(a) for a in node.args), node.value)
+        return tree.to_text(respelled(node, self.spelling, self.short))
 
     @cached_property
     def atoms(self) -> dict[str, Array]:
@@ -671,10 +655,10 @@ def brief(text: str) -> str:
     """A piece of a formula that is short enough for a sentence: its beginning and its end."""
     if len(text) <= _LONGEST:
         return text
-    ends = [m.start() for m in re.finditer(r" [+-] ", text)]
+    ends = [m.start() for m in re.finditer(r" [+-] |\*(?!\*)", text)]
     first = max((k for k in ends if k <= _LONGEST // 2), default=_LONGEST // 2)
     last = min((k for k in ends if k >= len(text) - _LONGEST // 3), default=len(text) - 12)
-    return f"{text[:first]} ...{text[last:]}"
+    return f"{text[:first]} ... {text[last:].strip()}"
 
 
 def _words(text: str) -> list[str]:

@@ -24,10 +24,20 @@ from kinlab.doctor.file import (
 )
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
+from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError
-from kinlab.formulas.text import FormulaFile, entries_of, formula_file, parse, with_entries
-from kinlab.formulas.tree import Path
+from kinlab.formulas.text import (
+    SHORTHAND,
+    FormulaFile,
+    entries_of,
+    formula_file,
+    joint_spelling,
+    parse,
+    respelled,
+    with_entries,
+)
+from kinlab.formulas.tree import Node, Path
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.model.robot import Robot
 
@@ -143,11 +153,20 @@ def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Diagnosis:
         if text is None:
             given.append(equation(entry, written))
             continue
-        formula = parse(text)
+        formula = parse(text) if pointed else _as_written(parse(text), file, robot)
         wrong, fixed = differences(written, formula, {}) if pointed else (_NONE, _NONE)
         given.append(equation(entry, written, Marks("wrong", wrong)))
         corrected.append(equation(entry, formula, Marks("fixed", fixed)))
     return replace(found, source=file.path, given=tuple(given), corrected=tuple(corrected))
+
+
+def _as_written(formula: Node, file: FormulaFile, robot: Robot) -> Node:
+    """A derived formula in the notation of the file: c12 where it has c12, th1 where th1."""
+    nodes = [one for written in file.formulas.values() for _, one in tree.nodes(written)]
+    words = [str(one.value) for one in nodes if one.op == "sym"]
+    waves = any(one.op in ("sin", "cos") for one in nodes)
+    short = not waves and any(SHORTHAND.fullmatch(word) for word in words)
+    return respelled(formula, joint_spelling(words, robot.n), short)
 
 
 def _corrected(found: Diagnosis) -> dict[str, str]:

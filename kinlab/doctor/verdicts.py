@@ -8,7 +8,7 @@ to 1e-9: nothing that the digits do not explain is excused.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import product
@@ -194,6 +194,15 @@ def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Arra
     form = _("{written} stands for {meant}")
     said = (form.format(written=one.text, meant=_meant(value, at)) for one, value in changed)
     return list(dict.fromkeys(said))
+
+
+def together(pieces: Iterable[str]) -> str:
+    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
+    told, *rest = [*pieces] or [""]
+    pair = _("{first} and {last}")
+    for piece in rest:
+        told = pair.format(first=told, last=piece)
+    return told
 
 
 # -------- Numbers in place of names

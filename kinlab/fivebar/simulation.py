@@ -26,7 +26,7 @@ Torque = Callable[[float, Array, Array], ArrayLike]
 
 
 @dataclass(frozen=True)
-class Motion:
+class LoopMotion:
     """A simulated motion of K steps.
 
     Attributes:
@@ -150,7 +150,7 @@ def simulate(
     duration: float,
     step: float = 1e-3,
     torque: Torque | None = None,
-) -> Motion:
+) -> LoopMotion:
     """Integrates the loop with adaptive steps, putting position and velocity back onto it.
 
     Args:
@@ -182,7 +182,7 @@ def follow(
     qd: Array,
     times: Array,
     torque: Callable[[float, Array, Array], Array],
-) -> Motion:
+) -> LoopMotion:
     """As :func:`simulate`, at times of one's own, (K+1,), with torques that are always given."""
     solver = ConstraintSolver(chain)
 
@@ -200,7 +200,7 @@ def follow(
     rows = integrate(slope, start, times, settle=settle).rows
     places, rates = rows[:, :4], rows[:, 4:8]
     tau = np.array([torque(t, *x) for t, *x in zip(times, places, rates, strict=True)])
-    return Motion(
+    return LoopMotion(
         t=times,
         q=places,
         qd=rates,

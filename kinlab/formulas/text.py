@@ -21,7 +21,7 @@ from __future__ import annotations
 import ast
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -52,6 +52,7 @@ _JOINT = tuple(
 _ABSOLUTE = re.compile(r"(?:theta|th)(d{0,2})_?((?=[1-9]{2})1?2?3?4?5?6?7?8?9?)")
 """theta12 is q1 + q2, as c12 is its cosine: joints in ascending order."""
 _UNDERSCORED = re.compile(r"[A-Za-z]+(?:_[A-Za-z]+)?_?[0-9]+")
+_MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 _FIRST_RATE = re.compile(r"omega_?1")
 
 
@@ -204,6 +205,38 @@ def canonical(name: str) -> Node:
         angle = tree.add(*(tree.sym(f"q{digit}") for digit in found.group(2)))
         return tree.call("cos" if found.group(1) == "c" else "sin", angle)
     return tree.sym(name.replace("_", "") if _UNDERSCORED.fullmatch(name) else name)
+
+
+def joint_spelling(words: Iterable[str], joints: int) -> dict[str, str]:
+    """How a writer spells the joints' numbers: where he has th1, q1 is th1 and q2 is th2."""
+    found: dict[str, str] = {}
+    for word in words:
+        meant = canonical(word)
+        joint = _MOTION.fullmatch(str(meant.value)) if meant.op == "sym" else None
+        if joint and word != meant.value and word.endswith(joint.group(2)):
+            head = word[: -len(joint.group(2))]
+            for i in range(1, joints + 1):
+                found.setdefault(f"{joint.group(1)}{i}", f"{head}{i}")
+    return found
+
+
+def respelled(node: Node, spelling: Mapping[str, str], short: bool) -> Node:
+    """A formula as a writer has it.
+
+    Args:
+        node: its tree.
+        spelling: his names, by the usual ones.
+        short: whether he has c12 for cos(q1 + q2).
+    """
+    if short and node.op in ("sin", "cos"):
+        inside = node.args[0].args if node.args[0].op == "add" else node.args
+        if all(a.op == "sym" and re.fullmatch(r"q[1-9]", str(a.value)) for a in inside):
+            return tree.sym(node.op[0] + "".join(str(a.value)[1:] for a in inside))
+    if node.op == "sym":
+        return tree.sym(spelling.get(str(node.value), str(node.value)))
+    if not node.args:
+        return node
+    return Node(node.op, tuple(respelled(a, spelling, short) for a in node.args), node.value)
 
 
 class _Reader:

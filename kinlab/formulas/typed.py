@@ -61,11 +61,11 @@ _ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
 _SIGNS = str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
 )
-_GREEK = {
-    "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "θ": "theta", "ϑ": "theta",
-    "λ": "lambda", "π": "pi", "μ": "mu", "φ": "phi", "ϕ": "phi", "ψ": "psi", "ω": "omega",
-    "ρ": "rho", "τ": "tau", "ℓ": "l",
-}  # fmt: skip
+_LETTERS = (
+    "α alpha β beta γ gamma δ delta θ theta ϑ theta λ lambda π pi μ mu φ phi ϕ phi ψ psi ω omega "
+    "ρ rho τ tau ℓ l"
+)
+_GREEK = dict(zip(_LETTERS.split()[::2], _LETTERS.split()[1::2], strict=True))
 _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
@@ -149,13 +149,11 @@ def is_latex(text: str) -> bool:
     return bool(_LATEX.search(text))
 
 
+_DISPLAYS = "equation equation* align align* aligned gather gather* displaymath math"
 _OUTSIDE = (
-    ("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)"),
-    *((rf"\begin{{{name}}}", rf"\end{{{name}}}") for name in (
-        "equation", "equation*", "align", "align*", "aligned", "gather", "gather*", "displaymath",
-        "math",
-    )),
-)  # fmt: skip
+    *(("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)")),
+    *((rf"\begin{{{name}}}", rf"\end{{{name}}}") for name in _DISPLAYS.split()),
+)
 
 
 def bare(text: str) -> str:
@@ -230,10 +228,10 @@ def _joined(name: str, number: int, shown: str, place: str) -> str:
     return f"{name.rstrip('_')}{number}"
 
 
-_FUNCTIONS = {
-    "sin", "cos", "tan", "sqrt", "atan2", "asin", "acos", "atan", "abs", "exp", "log", "sign",
-    "arcsin", "arccos", "arctan", "arctan2", "Abs", "ln",
-}  # fmt: skip
+_CALLED = (
+    "sin cos tan sqrt atan2 asin acos atan abs exp log sign arcsin arccos arctan arctan2 Abs ln"
+)
+_FUNCTIONS = set(_CALLED.split())
 """As in :mod:`kinlab.formulas.tree`, with the other names."""
 
 
@@ -451,14 +449,10 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
     return plain
 
 
-_LONG = {
-    "mass_matrix", "coriolis_matrix", "jacobian", "jacobian_tool", "jacobian_spatial", "fk",
-    "planar_jacobian", "gravity_torques", "inverse_dynamics", "coriolis_torques",
-}  # fmt: skip
-_TWO = {
-    "M", "H", "B", "J", "T", "R", "C",
-    *(n for n in _LONG if n not in ("gravity_torques", "inverse_dynamics", "coriolis_torques")),
-}  # fmt: skip
+_VECTORS = {"gravity_torques", "inverse_dynamics", "coriolis_torques"}
+_MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
+_LONG = {*_MATRICES.split(), *_VECTORS}
+_TWO = {*"MHBJTRC", *_MATRICES.split()}
 """Quantities of two indices, whose one column is no vector."""
 
 

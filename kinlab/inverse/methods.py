@@ -111,7 +111,7 @@ def choose(method: Any, alpha: Any) -> Step:
     return partial(gradient, alpha=float(value))
 
 
-class Limits(NamedTuple):
+class StopRule(NamedTuple):
     """When a search stops.
 
     Attributes:
@@ -130,7 +130,7 @@ class Limits(NamedTuple):
     patience: int
 
 
-class Outcome(NamedTuple):
+class SearchOutcome(NamedTuple):
     """As the kernel's: q, how it ended (its codes), iterations, searches; and the record."""
 
     q: Array
@@ -141,8 +141,8 @@ class Outcome(NamedTuple):
 
 
 def search(
-    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: Limits
-) -> Outcome:
+    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: StopRule
+) -> SearchOutcome:
     """Searches from q0, the starts nearest to the target, and others, until one succeeds.
 
     Args:
@@ -182,7 +182,7 @@ def search(
             energy = _energy(_weighted(arm, pose_error(fk(robot, q), target)))
             if energy < best:
                 best, best_q, best_end = energy, q, end
-    return Outcome(best_q, best_end, len(record), tried, _history(record, robot.n))
+    return SearchOutcome(best_q, best_end, len(record), tried, _history(record, robot.n))
 
 
 def _one_search(
@@ -192,7 +192,7 @@ def _one_search(
     q: Array,
     q0: Array | None,
     step: Step,
-    limits: Limits,
+    limits: StopRule,
     number: int,
     record: list[tuple[Array, float, float, int]],
 ) -> tuple[int, Array]:

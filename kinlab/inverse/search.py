@@ -112,7 +112,8 @@ def ik(
         NameUnknownError: no such method or task; no such branch (those of the pose are listed).
         StructureError: not a robot of one-degree-of-freedom joints.
     """
-    robot = as_robot(robot)
+    if type(robot) is not Robot:
+        robot = as_robot(robot)
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
@@ -264,7 +265,7 @@ def _readable(
 ) -> tuple[Array, Any, Array, IKHistory]:
     """As :func:`_search` for one target, over Pinocchio calls, with every iteration."""
     step = methods.choose(method, alpha)
-    limits = methods.Limits(
+    limits = methods.StopRule(
         *asked.tolerances,
         TOLERANCES.search_step if tol_step is None else number(tol_step, "tol_step", above=0.0),
         ITERATIONS[method] if asked.iterations is None else asked.iterations,

@@ -19,7 +19,7 @@ def entries():
     for line in LEDGER.read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):
             continue
-        note, span, ids, words = line.split("\t")
+        note, span, ids, words, *_ = line.split("\t")
         first, _, last = span.partition("-")
         out.append((note, int(first), int(last or first), ids.split() if ids != "-" else [], words))
     return out

@@ -190,7 +190,7 @@ def _from_many_starts(
 ) -> tuple[Array | None, float, str]:
     """The nearest of many local solutions, and Weyl's bound."""
     robot = space.robot
-    system = sets.whole(space)
+    system = sets.whole_system(space)
     rng = np.random.default_rng(seed)
     starts = np.concatenate([here[np.newaxis], sets.seeds(system, rng, points)])
     x, good = sets.project(system, starts)

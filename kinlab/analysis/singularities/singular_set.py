@@ -87,7 +87,7 @@ class SingularSystem:
         return residual, jac
 
 
-def whole(space: TaskSpace) -> SingularSystem:
+def whole_system(space: TaskSpace) -> SingularSystem:
     """The system with every joint unknown."""
     n = space.robot.n
     return SingularSystem(space, tuple(range(n)), np.zeros(n))
@@ -232,7 +232,7 @@ def pinned(space: TaskSpace, q: Array, held: tuple[int, ...]) -> bool:
     """
     if len(held) == 1:
         return True
-    system = whole(space)
+    system = whole_system(space)
     ranks = []
     for state in elsewhere(space, q, held, 3):
         x, norm = solve(system, system.start(state[np.newaxis]), iterations=5)

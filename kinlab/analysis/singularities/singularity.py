@@ -267,7 +267,7 @@ def find_singularities(
     robot = as_robot(robot)
     points, keep, seed = whole(points, "points"), whole(keep, "keep"), seed_of(seed)
     space = read_reachable_task(robot, task)
-    system = sets.whole(space)
+    system = sets.whole_system(space)
     starts = sets.seeds(system, np.random.default_rng(seed), points)
     x, good = sets.project(system, starts)
     known: list[_Sheet] = []

@@ -12,12 +12,13 @@ import ast
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import Array, frozen, real_array
 from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import OptionError
 from kinlab.model.robot import Robot
@@ -113,11 +114,17 @@ class TaskSpace:
         return rows * factor
 
 
+_SAMPLED: WeakKeyDictionary[Robot, Array] = WeakKeyDictionary()
+_SUGGESTED: WeakKeyDictionary[Robot, tuple[int, ...]] = WeakKeyDictionary()
+
+
 def sample_jacobians(robot: Robot) -> Array:
-    """Base-frame Jacobians at a few seeded states in general position, (8, 6, n)."""
-    lower, upper = search_box(robot)
-    states = np.random.default_rng(0).uniform(lower, upper, (_SAMPLE, robot.n))
-    return jacobian(robot, states)
+    """Base-frame Jacobians at a few seeded states in general position, (8, 6, n), kept."""
+    if robot not in _SAMPLED:
+        lower, upper = search_box(robot)
+        states = np.random.default_rng(0).uniform(lower, upper, (_SAMPLE, robot.n))
+        _SAMPLED[robot] = frozen(jacobian(robot, states))
+    return _SAMPLED[robot]
 
 
 def read_task(robot: Robot, task: Any) -> TaskSpace:
@@ -151,7 +158,12 @@ def read_reachable_task(robot: Robot, task: Any) -> TaskSpace:
 
 def suggest_rows(robot: Robot) -> tuple[int, ...]:
     """As many task coordinates as the arm can move independently, a named task where one fits."""
-    sample = sample_jacobians(robot)
+    if robot not in _SUGGESTED:
+        _SUGGESTED[robot] = _suggest(sample_jacobians(robot))
+    return _SUGGESTED[robot]
+
+
+def _suggest(sample: Array) -> tuple[int, ...]:
     rank = generic_rank(sample, range(6))
     for rows in TASKS.values():
         if len(rows) == rank and generic_rank(sample, rows) == rank:

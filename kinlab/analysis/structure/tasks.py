@@ -28,9 +28,6 @@ TASKS: dict[str, tuple[int, ...]] = {
 COORDINATES = ("x", "y", "z", "rotation about x", "rotation about y", "rotation about z")
 """What each row is called in messages."""
 
-Task = str | Sequence[bool]
-"""A name of :data:`TASKS`, or six booleans: x, y, z, and the rotations about x, y, z."""
-
 
 def task_rows(task: Any) -> tuple[int, ...]:
     """Row indices of a task.

@@ -30,7 +30,7 @@ _MOST_JOINTS = 5
 
 
 @dataclass(frozen=True)
-class Arc:
+class BoundaryArc:
     """A circular arc of the boundary.
 
     Attributes:
@@ -63,7 +63,7 @@ class PlanarBoundary(Answer):
     """
 
     robot: str
-    arcs: tuple[Arc, ...]
+    arcs: tuple[BoundaryArc, ...]
     candidates: int
     evidence: Evidence = field(repr=False)
 
@@ -168,13 +168,13 @@ def _planar_chain(robot: Robot) -> _Chain:
     )
 
 
-def _candidates(chain: _Chain) -> list[Arc]:
+def _candidates(chain: _Chain) -> list[BoundaryArc]:
     n = len(chain.links)
     choices = [
         (None,) if chain.full_turn(j) else (None, float(chain.lower[j]), float(chain.upper[j]))
         for j in range(n)
     ]
-    arcs: list[Arc] = []
+    arcs: list[BoundaryArc] = []
     for locked in product(*choices):
         free = [j for j in range(n) if locked[j] is None]
         if free:
@@ -182,7 +182,7 @@ def _candidates(chain: _Chain) -> list[Arc]:
     return arcs
 
 
-def _sweeps(chain: _Chain, locked: tuple[float | None, ...], free: list[int]) -> list[Arc]:
+def _sweeps(chain: _Chain, locked: tuple[float | None, ...], free: list[int]) -> list[BoundaryArc]:
     """Arcs with these joints locked and the free ones on one line with the tool."""
     n = len(chain.links)
     turn = np.array([0.0 if v is None else v for v in locked]) * chain.signs
@@ -214,7 +214,7 @@ def _sweeps(chain: _Chain, locked: tuple[float | None, ...], free: list[int]) ->
                 chain.signs[free[0]] * b for b in (chain.lower[free[0]], chain.upper[free[0]])
             )
             where = frozen(np.array([centre.real, centre.imag]))
-            arcs.append(Arc(where, abs(total), base + swing[0], base + swing[1]))
+            arcs.append(BoundaryArc(where, abs(total), base + swing[0], base + swing[1]))
     return arcs
 
 
@@ -224,15 +224,15 @@ def _within(q: float, lower: float, upper: float) -> bool:
     return bool(between(shifted, lower, upper, TOLERANCES.limit_digits).any())
 
 
-def _distinct(arcs: list[Arc]) -> list[Arc]:
-    seen: dict[tuple[float, ...], Arc] = {}
+def _distinct(arcs: list[BoundaryArc]) -> list[BoundaryArc]:
+    seen: dict[tuple[float, ...], BoundaryArc] = {}
     for a in arcs:
         start = float(np.mod(a.start + 1e-12, 2.0 * np.pi))
         seen.setdefault(tuple(np.round([*a.centre, a.radius, start, a.stop - a.start], 10)), a)
     return list(seen.values())
 
 
-def _cut(arcs: list[Arc], shortest: float) -> list[Arc]:
+def _cut(arcs: list[BoundaryArc], shortest: float) -> list[BoundaryArc]:
     """Cuts every arc where another one crosses it or ends on it; drops crumbs."""
     pieces = []
     for arc in arcs:
@@ -245,11 +245,11 @@ def _cut(arcs: list[Arc], shortest: float) -> list[Arc]:
         cuts.sort()
         for one, two in pairwise(cuts):
             if (two - one) * arc.radius > 1e-9 * shortest:
-                pieces.append(Arc(arc.centre, arc.radius, arc.start + one, arc.start + two))
+                pieces.append(BoundaryArc(arc.centre, arc.radius, arc.start + one, arc.start + two))
     return pieces
 
 
-def _meetings(arc: Arc, other: Arc) -> list[float]:
+def _meetings(arc: BoundaryArc, other: BoundaryArc) -> list[float]:
     """Angles on ``arc`` where the other circle crosses it, or its end lies on it."""
     gap = other.centre - arc.centre
     distance = float(np.hypot(*gap))
@@ -265,10 +265,10 @@ def _meetings(arc: Arc, other: Arc) -> list[float]:
     return [bearing - half, bearing + half]
 
 
-def _joined(pieces: list[Arc]) -> list[Arc]:
+def _joined(pieces: list[BoundaryArc]) -> list[BoundaryArc]:
     """Neighbouring pieces of one circle as one arc."""
     left = sorted(pieces, key=lambda a: (*np.round(a.centre, 9), round(a.radius, 9), a.start))
-    out: list[Arc] = []
+    out: list[BoundaryArc] = []
     for arc in left:
         last = out[-1] if out else None
         same = (
@@ -277,7 +277,7 @@ def _joined(pieces: list[Arc]) -> list[Arc]:
             and abs(last.radius - arc.radius) < 1e-9
         )
         if last is not None and same and arc.start <= last.stop + 1e-9:
-            out[-1] = Arc(last.centre, last.radius, last.start, max(last.stop, arc.stop))
+            out[-1] = BoundaryArc(last.centre, last.radius, last.start, max(last.stop, arc.stop))
         else:
             out.append(arc)
     return out

@@ -108,10 +108,10 @@ FIVEBAR = Domain("fivebar", as_five_bar, _label, numbers, members, sample, DRAWS
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
 
-Answer = Callable[..., Any]
+EngineCall = Callable[..., Any]
 
 
-def _engine(answer: Answer) -> Answer:
+def _engine(answer: EngineCall) -> EngineCall:
     """Runs ``answer(chain, *one state)`` over the states."""
 
     def engine(fivebar: FiveBar, *stacks: Any) -> Array:
@@ -121,7 +121,7 @@ def _engine(answer: Answer) -> Answer:
     return engine
 
 
-def _posed(answer: Answer, *, rods: bool) -> Answer:
+def _posed(answer: EngineCall, *, rods: bool) -> EngineCall:
     """Runs ``answer(chain, q, ...)`` with the tool at xy; without the rods' mass if asked."""
 
     def engine(fivebar: FiveBar, xy: Any, *stacks: Any) -> Array:
@@ -221,7 +221,7 @@ def _load(chain: ClosedChain, q: Array) -> Any:
 
 
 def _quantity(
-    name: str, arguments: str, answer: Answer, about: str, *, rods: bool = True
+    name: str, arguments: str, answer: EngineCall, about: str, *, rods: bool = True
 ) -> Quantity:
     names = tuple(arguments.split())
     engine = _posed(answer, rods=rods) if "mode" in names else _engine(answer)

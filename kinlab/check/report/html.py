@@ -16,31 +16,40 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.places import place_in_note
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import (
     HOW,
-    NOTES,
     TAKEN_APART,
+    TITLE,
     errors,
     lead,
     origin,
+    section,
     sentence,
     several,
     svg,
 )
 from kinlab.check.unread import Unread
 from kinlab.formulas.typeset import mathml
-from kinlab.host.language import _, language_tag, ngettext
+from kinlab.host.language import _, language_tag
 from kinlab.host.web import page_text, policy
 
 LONG = 110
 """Characters of LaTeX above which a form gets the whole width."""
 
+NARROW = 120
+"""Characters of LaTeX below which two cards stand beside each other on paper."""
+
 _FOLDER = Path(__file__).parent
 
 
 def page(
-    groups: Sequence[Group], judged: Sequence[Diagnosis] = (), unread: Sequence[Unread] = ()
+    groups: Sequence[Group],
+    judged: Sequence[Diagnosis] = (),
+    unread: Sequence[Unread] = (),
+    *,
+    compact: bool = False,
 ) -> str:
     """The whole page.
 
@@ -48,19 +57,20 @@ def page(
         groups: from :func:`kinlab.check.report.summary.grouped`.
         judged: formulas that were taken apart.
         unread: what could not be judged.
+        compact: one line for a formula that agrees.
     """
     sections: dict[str, list[Group]] = {}
     for group in groups:
-        name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
-        sections.setdefault(name, []).append(group)
+        sections.setdefault(section(group), []).append(group)
     apart = judged or any(row.diagnosis for group in groups for row in group.rows)
     return render(
         "check.html.j2",
-        title="Hand formulas beside the engine",
+        title=_(TITLE),
         lead=lead(groups, judged, unread),
         unread=unread,
-        how=HOW,
-        taken_apart=TAKEN_APART if apart else "",
+        how=_(HOW),
+        taken_apart=_(TAKEN_APART) if apart else "",
+        compact=compact,
         sections=sections,
         files={source: list(found) for source, found in groupby(judged, lambda one: one.source)},
         footer=origin(groups),
@@ -98,15 +108,26 @@ def _environment() -> Environment:
         "sentence": sentence,
         "several": several,
         "size": size,
+        "place": place_in_note,
         "mathml": lambda latex: Markup(mathml(latex)),
         "spread": lambda group: Markup(svg(group.errors, group.printed_errors)),
     }
-    made.globals |= {"wide": LONG, "_": _, "ngettext": ngettext, "language_tag": language_tag}
+    made.globals |= {
+        "wide": LONG,
+        "narrow": NARROW,
+        "_": _,
+        "language_tag": language_tag,
+        "safe": Markup,  # a sentence of ours; what is put into its fields is escaped
+        "key": Markup('<span class="key {}">{}</span>').format,
+        "code": Markup("<code>{}</code>").format,
+    }
     return made
 
 
 def _told(found: Diagnosis) -> str:
     if found.agrees:
-        return f"Agrees with {found.quantity} of {found.robot}."
+        told = _("Agrees with {quantity} of {robot}.")
+        return told.format(quantity=found.quantity, robot=found.robot)
     # no capital: the sentence may begin with a name
-    return f"{sentence(found.verdict)[:-1]}: {found.sentence}."
+    verdict = sentence(_(found.verdict))[:-1]
+    return _("{verdict}: {sentence}.").format(verdict=verdict, sentence=found.sentence)

@@ -5,14 +5,29 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.places import place_in_note
 from kinlab.check.report.markdown_text import code, formula, words
 from kinlab.check.report.summary import Group, size
-from kinlab.check.report.words import HOW, NOTES, TAKEN_APART, errors, lead, origin, sentence
+from kinlab.check.report.words import (
+    HOW,
+    TAKEN_APART,
+    TITLE,
+    errors,
+    lead,
+    origin,
+    section,
+    sentence,
+)
 from kinlab.check.unread import Unread
+from kinlab.host.language import _
 
 
 def text(
-    groups: Sequence[Group], judged: Sequence[Diagnosis] = (), unread: Sequence[Unread] = ()
+    groups: Sequence[Group],
+    judged: Sequence[Diagnosis] = (),
+    unread: Sequence[Unread] = (),
+    *,
+    compact: bool = False,
 ) -> str:
     """The whole report.
 
@@ -20,41 +35,56 @@ def text(
         groups: from :func:`kinlab.check.report.summary.grouped`.
         judged: formulas that were taken apart.
         unread: what could not be judged.
+        compact: one line for a formula that agrees.
     """
-    how = f"{HOW} {TAKEN_APART}" if judged else HOW
-    lines = ["# Hand formulas beside the engine", "", lead(groups, judged, unread), "", how, ""]
+    how = f"{_(HOW)} {_(TAKEN_APART)}" if judged else _(HOW)
+    lines = [f"# {_(TITLE)}", "", lead(groups, judged, unread), "", how, ""]
     if unread:
-        lines += ["## Not judged", ""]
+        lines += [f"## {_('Not judged')}", ""]
         lines += [f"- {code(one.what)}: {words(one.reason)}" for one in unread] + [""]
-    section = None
+    now = None
     for group in groups:
-        name = NOTES.get(group.formula.note or group.formula.id, "Your formulas")
-        if name != section:
-            lines += [f"## {words(name)}", ""]
-            section = name
-        lines += _formula(group)
+        if section(group) != now:
+            now = section(group)
+            lines += [f"## {words(now)}", ""]
+        lines += [_line(group), ""] if compact and group.quiet else _formula(group)
     for found in judged:
-        if found.source != section:
-            lines += [f"## {words(found.source)}: your formulas", ""]
-            section = found.source
+        if found.source != now:
+            now = found.source
+            lines += [f"## {_('{file}: your formulas').format(file=words(now))}", ""]
         lines += _entry(found)
     return "\n".join([*lines, origin(groups)]) + "\n"
 
 
+def _line(group: Group) -> str:
+    """A formula that agrees, in one line."""
+    record = group.formula
+    told = _("agrees: {error} at most on {robots}")
+    parts = [
+        f"{code(record.key)} {words(_(record.title))}",
+        *map(words, filter(None, (_(record.source), place_in_note(record)))),
+        words(told.format(error=size(group.worst.corrected.max_error), robots=group.robots)),
+    ]
+    return "; ".join(parts)
+
+
 def _formula(group: Group) -> list[str]:
     record = group.formula
-    mark = "" if group.ok else " **FAILS**"
-    source = f"{words(record.source)}; " if record.source else ""
-    lines = [f"### {code(record.key)} {words(record.title)}{mark}", ""]
+    mark = "" if group.ok else f" **{_('FAILS')}**"
+    source = "".join(f"{words(one)}; " for one in (_(record.source), place_in_note(record)) if one)
+    lines = [f"### {code(record.key)} {words(_(record.title))}{mark}", ""]
     lines += [f"{source}{code(record.quantity)}", ""]
     if group.printed_error is not None and record.printed is not None:
-        lines += ["Printed:", "", formula(record.printed.latex), "", "Corrected:", ""]
+        printed, corrected = _("Printed:"), _("Corrected:")
+        lines += [printed, "", formula(record.printed.latex), "", corrected, ""]
     if record.latex:
         lines += [formula(record.latex), ""]
     lines += [f"**{words(sentence(group.verdict))}**", ""]
     if record.remark:
-        lines += [f"Remark: {words(sentence(record.remark))}", ""]
-    lines += ["| robot | states | error | printed form |", "|---|---:|---:|---:|"]
+        remark = words(sentence(_(record.remark)))
+        lines += [_("Remark: {remark}").format(remark=remark), ""]
+    heads = (_("robot"), _("states"), _("error"), _("printed form"))
+    lines += [f"| {' | '.join(heads)} |", "|---|---:|---:|---:|"]
     for row in group.rows:
         printed = size(row.printed.max_error) if row.printed is not None else ""
         error = size(row.corrected.max_error)
@@ -62,26 +92,34 @@ def _formula(group: Group) -> list[str]:
     lines.append("")
     for row in group.rows:
         if row.diagnosis is not None:
-            lines += [f"On {words(row.robot)}:", "", *_diagnosis(row.diagnosis)]
+            on = _("On {robot}:").format(robot=words(row.robot))
+            lines += [on, "", *_diagnosis(row.diagnosis)]
     return lines
 
 
 def _entry(found: Diagnosis) -> list[str]:
-    mark = "" if found.agrees else " **DIFFERS**"
+    mark = "" if found.agrees else f" **{_('DIFFERS')}**"
     lines = [f"### {code(found.function)}{mark}", ""]
-    lines += [f"{code(found.quantity)} of {words(found.robot)}", ""]
+    of = _("{quantity} of {robot}")
+    lines += [of.format(quantity=code(found.quantity), robot=words(found.robot)), ""]
     for left, right in found.given:
         lines += [formula(f"{left} = {right}"), ""]
     return lines + _diagnosis(found)
 
 
 def _diagnosis(found: Diagnosis) -> list[str]:
-    lines = [f"**{found.verdict.capitalize()}**: {words(found.sentence)}. {errors(found)}.", ""]
+    told = _("**{verdict}**: {sentence}. {errors}.").format(
+        verdict=_(found.verdict).capitalize(),
+        sentence=words(found.sentence),
+        errors=errors(found),
+    )
+    lines = [told, ""]
     for text in found.evidence:
-        lines += [f"{words(text)}.", ""]
-    lines += [f"- or: {words(text)}" for text in found.others] + ([""] if found.others else [])
+        lines += [sentence(words(text)), ""]
+    lines += ["- " + _("or: {slip}").format(slip=words(text)) for text in found.others]
+    lines += [""] if found.others else []
     if found.corrected:
-        lines += ["Should be:", ""]
+        lines += [_("Should be:"), ""]
     for left, right in found.corrected:
         lines += [formula(f"{left} = {right}"), ""]
     return lines

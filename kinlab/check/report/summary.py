@@ -14,6 +14,7 @@ from kinlab.check.catalogue import Row
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.unread import Unread
 from kinlab.formulas.record import Formula
+from kinlab.host.language import _, speaking
 
 
 @dataclass(frozen=True)
@@ -34,12 +35,19 @@ class Group:
         return all(row.ok for row in self.rows)
 
     @property
+    def quiet(self) -> bool:
+        """Whether there is nothing to show but that it agrees."""
+        return self.ok and self.printed_error is None
+
+    @property
     def robots(self) -> str:
         """The robots in a few words."""
         names = [row.robot for row in self.rows]
         if names == ["identity"]:
             return "-"
-        return ", ".join(names) if len(names) <= 2 else f"{len(names)} robots"
+        if len(names) <= 2:
+            return _(", ").join(names)
+        return _("{count} robots").format(count=len(names))
 
     @property
     def worst(self) -> Row:
@@ -53,11 +61,17 @@ class Group:
         return min(errors) if errors else None
 
     @property
+    def printed_finite(self) -> bool:
+        """Whether the printed form gives a value at every state of some robot."""
+        return self.printed_error is not None and math.isfinite(self.printed_error)
+
+    @property
     def verdict(self) -> str:
         """One line for all robots: the first that is not as it should be, or the misprint."""
         for row in self.rows:
             if not row.ok:
-                return f"{row.robot}: {row.verdict}" if len(self.rows) > 1 else row.verdict
+                told = _("{robot}: {verdict}").format(robot=row.robot, verdict=row.verdict)
+                return told if len(self.rows) > 1 else row.verdict
         shown = [row for row in self.rows if row.printed is not None]
         return (shown or list(self.rows))[0].verdict
 
@@ -81,12 +95,14 @@ def grouped(rows: Iterable[Row]) -> list[Group]:
     return [Group(several[0].formula, tuple(several)) for several in found.values()]
 
 
+@speaking("en")
 def as_data(
     rows: Iterable[Row], judged: Iterable[Diagnosis] = (), unread: Iterable[Unread] = ()
 ) -> dict[str, Any]:
     """The rows and diagnoses as plain data; an infinite error is null.
 
     Returns:
+        In English, whatever language is spoken:
         ``{"ok": bool, "rows": [...], "formulas": [...]}``; and ``"unread": [{"what", "reason"}]``
         where something could not be judged, which is not ok.
     """
@@ -137,4 +153,4 @@ def size(value: float | None) -> str:
     """An error in two digits; "no value" where the formula gave none, empty for None."""
     if value is None:
         return ""
-    return f"{value:.1e}" if math.isfinite(value) else "no value"
+    return f"{value:.1e}" if math.isfinite(value) else _("no value")

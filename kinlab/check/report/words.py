@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -11,58 +11,83 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.check.report.summary import Group, size
 from kinlab.check.unread import Unread
+from kinlab.host.language import N_, _, ngettext
 from kinlab.tolerances import TOLERANCES
 
 # -------- Words that the page and the Markdown report share
 
 NOTES = {
-    "000": "Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics",
-    "001": "Note 001: Lagrange, the planar 2R arm with point masses",
-    "002": "Note 002: Lagrange in general, standard DH",
-    "003": "Note 003: the two-degree-of-freedom parallel robot",
-    "table": "Arms: the DH table by hand beside the engines",
+    "000": N_("Note 000: kinematics, Jacobian, inverse kinematics, statics, dynamics"),
+    "001": N_("Note 001: Lagrange, the planar 2R arm with point masses"),
+    "002": N_("Note 002: Lagrange in general, standard DH"),
+    "003": N_("Note 003: the two-degree-of-freedom parallel robot"),
+    "table": N_("Arms: the DH table by hand beside the engines"),
 }
 """Section titles by note number; ``table`` for the checks of single arms."""
 
-HOW = (
+YOURS = N_("Your formulas")
+"""The section of a user's own functions."""
+
+TITLE = N_("Hand formulas beside the engine")
+
+HOW = N_(
     "Each formula is evaluated by hand and by the engine (Pinocchio) at random states. The error "
     "of a state is the largest difference of an entry over the largest entry of the engine's "
     "answer. A corrected form must stay below 1e-9; a misprint must show above 1e-3."
 )
 
 
-TAKEN_APART = (
+TAKEN_APART = N_(
     "Where a formula of yours differs, the doctor looks for what is wrong in it. It names a cause "
     "only if repairing it leaves less than 1e-9 at every state."
 )
+
+
+def section(group: Group) -> str:
+    """The section that a formula stands in."""
+    return _(NOTES.get(group.formula.note or group.formula.id, YOURS))
 
 
 def lead(
     groups: Sequence[Group], judged: Sequence[Diagnosis], unread: Sequence[Unread] = ()
 ) -> str:
     """What was found, in a sentence or two; what could not be judged comes first."""
-    parts = [f"NOT JUDGED: {', '.join(one.what for one in unread)}."] if unread else []
+    parts = []
+    if unread:
+        names = _(", ").join(one.what for one in unread)
+        parts.append(_("NOT JUDGED: {names}.").format(names=names))
     if groups or not (judged or unread):
         parts.append(counts(groups))
     if judged:
         right = sum(one.agrees for one in judged)
         named = sum(one.known and not one.agrees for one in judged)
-        told = f"Formulas in files: {right} of {len(judged)} right"
-        told += f", what is wrong is known of {named}" if named else ""
         unknown = len(judged) - right - named
-        parts.append(told + (f", unknown of {unknown}." if unknown else "."))
+        if named and unknown:
+            told = _(
+                "Formulas in files: {right} of {all} right, what is wrong is known of {named}, "
+                "unknown of {unknown}."
+            )
+        elif named:
+            told = _(
+                "Formulas in files: {right} of {all} right, what is wrong is known of {named}."
+            )
+        elif unknown:
+            told = _("Formulas in files: {right} of {all} right, unknown of {unknown}.")
+        else:
+            told = _("Formulas in files: {right} of {all} right.")
+        parts.append(told.format(right=right, all=len(judged), named=named, unknown=unknown))
     return " ".join(parts)
 
 
 def errors(found: Diagnosis) -> str:
     """How far off a formula is, and how far once it is repaired."""
     if not math.isfinite(found.error_before):
-        text = "The answer has another shape, or is no number"
+        text = _("The answer has another shape, or is no number")
     else:
-        text = f"Largest relative error {size(found.error_before)}"
+        text = _("Largest relative error {error}").format(error=size(found.error_before))
     if found.error_after is None:
         return text
-    return f"{text}; {size(found.error_after)} once repaired"
+    return _("{before}; {error} once repaired").format(before=text, error=size(found.error_after))
 
 
 def counts(groups: Sequence[Group]) -> str:
@@ -71,31 +96,51 @@ def counts(groups: Sequence[Group]) -> str:
     states = sum(row.corrected.samples for row in rows)
     misprints = sum(group.printed_error is not None for group in groups)
     wrong = sum(not group.ok for group in groups)
-    text = (
-        f"{several(len(groups), 'formula')} on "
-        f"{several(len({row.robot for row in rows}), 'mechanism')}, {several(len(rows), 'row')}, "
-        f"{several(states, 'random state')}; {several(misprints, 'misprint')} shown; "
+    if wrong:
+        told = _("{formulas} on {mechanisms}, {rows}, {states}; {misprints} shown; {wrong} WRONG.")
+    else:
+        told = _(
+            "{formulas} on {mechanisms}, {rows}, {states}; {misprints} shown; every correct form "
+            "agrees."
+        )
+    return told.format(
+        formulas=several(len(groups), "formula"),
+        mechanisms=several(len({row.robot for row in rows}), "mechanism"),
+        rows=several(len(rows), "row"),
+        states=several(states, "random state"),
+        misprints=several(misprints, "misprint"),
+        wrong=several(wrong, "formula"),
     )
-    return text + (f"{several(wrong, 'formula')} WRONG." if wrong else "every correct form agrees.")
+
+
+_SEVERAL: dict[str, Callable[[int], str]] = {
+    "formula": lambda n: ngettext("{count} formula", "{count} formulas", n),
+    "mechanism": lambda n: ngettext("{count} mechanism", "{count} mechanisms", n),
+    "row": lambda n: ngettext("{count} row", "{count} rows", n),
+    "random state": lambda n: ngettext("{count} random state", "{count} random states", n),
+    "misprint": lambda n: ngettext("{count} misprint", "{count} misprints", n),
+}
 
 
 def several(count: int, word: str) -> str:
     """A number with its noun."""
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+    return _SEVERAL[word](count).format(count=count)
 
 
 def origin(groups: Sequence[Group]) -> str:
     """What it takes to get the same report again."""
     from kinlab.host.version import __version__
 
-    first = groups[0].rows[0].corrected if groups else None
-    seed = f", seed {first.seed}" if first is not None else ""
-    return f"Made by kinlab {__version__}{seed}: the same seed gives the same states."
+    if not groups:
+        told = _("Made by kinlab {version}: the same seed gives the same states.")
+        return told.format(version=__version__)
+    told = _("Made by kinlab {version}, seed {seed}: the same seed gives the same states.")
+    return told.format(version=__version__, seed=groups[0].rows[0].corrected.seed)
 
 
 def sentence(text: str) -> str:
     """A line as a sentence: capital at the front, full stop at the end."""
-    return text[:1].upper() + text[1:] + ("" if text.endswith(".") else ".")
+    return text[:1].upper() + text[1:] + ("" if text.endswith((".", "。")) else _("."))
 
 
 # -------- A small picture of how errors are spread over the states, as SVG text
@@ -150,5 +195,8 @@ def svg(corrected: Array, printed: Array | None) -> str:
 
 
 def _label(corrected: Array, printed: Array | None) -> str:
-    text = f"relative errors: corrected form at most {np.max(corrected):.1e}"
-    return text if printed is None else f"{text}, printed form up to {np.max(printed):.1e}"
+    if printed is None:
+        told = _("relative errors: corrected form at most {error}")
+        return told.format(error=f"{np.max(corrected):.1e}")
+    told = _("relative errors: corrected form at most {error}, printed form up to {printed}")
+    return told.format(error=f"{np.max(corrected):.1e}", printed=f"{np.max(printed):.1e}")

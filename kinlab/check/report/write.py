@@ -11,6 +11,7 @@ from kinlab.check.report.summary import grouped
 from kinlab.check.unread import Unread
 from kinlab.errors import FileError
 from kinlab.host.files import write_text
+from kinlab.host.language import speaking
 
 _ENDINGS = (".html", ".md")
 
@@ -33,6 +34,9 @@ def write_report(
     rows: Sequence[Row],
     judged: Sequence[Diagnosis] = (),
     unread: Sequence[Unread] = (),
+    *,
+    compact: bool = False,
+    lang: str | None = None,
 ) -> None:
     """Writes a report.
 
@@ -41,8 +45,11 @@ def write_report(
         rows: what :func:`kinlab.check.catalogue.run` gave.
         judged: formulas that were taken apart, from :mod:`kinlab.doctor.report`.
         unread: what could not be judged.
+        compact: one line for a formula that agrees.
+        lang: the language, such as ``"zh"``; None for the one that is spoken.
 
     Raises:
+        OptionError: a language that kinlab does not speak.
         FileError: another kind of file, or it cannot be written; an old one stays whole.
     """
     check_report_path(path)
@@ -51,4 +58,6 @@ def write_report(
         from kinlab.check.report.html import page as made
     else:
         from kinlab.check.report.markdown import text as made
-    write_text(path, made(grouped(rows), judged, unread))
+    with speaking(lang):
+        text = made(grouped(rows), judged, unread, compact=compact)
+    write_text(path, text)

@@ -7,7 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache, reduce
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.verdicts import together
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
@@ -211,7 +212,8 @@ def _of_diagnoses(
 ) -> Outcome:
     asked = [one for one in found if split_name(one.quantity)[0] == question.plain]
     if not asked:
-        raise ExpressionError(f"{question.id}: none of the formulas is {question.entry}")
+        said = _("{question}: none of the formulas is {entry}")
+        raise ExpressionError(said.format(question=question.id, entry=question.entry))
     if "[" not in question.quantity and any("[" in one.quantity for one in asked):
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
@@ -311,9 +313,7 @@ def _places(
             paths, _marks = differences(written, tree.renamed(formula, meaning), meaning)
             pieces = [_piece(tree.at_path(written, path)) for path in sorted(paths)]
             shown = _named(entry)
-            look = _("{entry}: look at {pieces}").format(
-                entry=shown, pieces=reduce(_paired, pieces) if pieces else ""
-            )
+            look = _("{entry}: look at {pieces}").format(entry=shown, pieces=together(pieces))
             places.append(look if pieces else shown)
         formulas.append(equation(_named(entry), written, Marks("wrong", paths)))
     if best and not places:
@@ -321,10 +321,6 @@ def _places(
     if not best and found.worst_entry and len(file.formulas) > 1:
         places = [_named(found.worst_entry)]
     return places or [_("the formula as a whole")], tuple(formulas)
-
-
-def _paired(one: str, two: str) -> str:
-    return _("{first} and {last}").format(first=one, last=two)
 
 
 def _piece(node: Node) -> str:
@@ -368,7 +364,8 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
     words = vocabulary(robot.table).values if robot.table is not None else {}
     for name in model.formulas:
         if name not in file.formulas:
-            raise ExpressionError(f"{question.id}: {name} is not given")
+            said = _("{question}: {entry} is not given")
+            raise ExpressionError(said.format(question=question.id, entry=name))
     formulas = [equation(name, file.formulas[name]) for name in model.formulas]
     for name, right in model.formulas.items():
         error, kinds = _gap(file, model, name, right, words)
@@ -418,9 +415,8 @@ def _gap(
     mine, theirs = _opened(file.formulas[name], file, name), _opened(right, model, name)
     strange = tree.names(mine) - tree.names(theirs) - set(words) - _joints()
     if strange:
-        raise ExpressionError(
-            f"{name}: {sorted(strange)[0][:40]!r} is unknown; give it a meaning in [symbols]"
-        )
+        said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
+        raise ExpressionError(said.format(entry=name, name=sorted(strange)[0][:40]))
     rng = np.random.default_rng(7)
     at = {}
     for one in sorted(tree.names(mine) | tree.names(theirs)):
@@ -448,7 +444,8 @@ def _joints() -> set[str]:
 
 def _opened(node: Node, file: FormulaFile, entry: str, depth: int = 0) -> Node:
     if depth > 20:
-        raise ExpressionError(f"{entry}: its symbols explain each other")
+        said = _("{entry}: its symbols explain each other")
+        raise ExpressionError(said.format(entry=entry))
     mapping = {}
     for name in tree.names(node):
         given = file.symbols.get(name)

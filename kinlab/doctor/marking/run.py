@@ -99,7 +99,8 @@ def _of_mapping(sheet: Sheet, student: Any, given: Mapping[str, Any], level: str
     who = str(student)
     try:
         if not isinstance(given, Mapping):
-            raise FileError(f"{who}: {type(given).__name__}; give answers by question's id")
+            said = _("{student}: {type}; give answers by question's id")
+            raise FileError(said.format(student=who, type=type(given).__name__))
         submission = of_document({**given, "student": who}, sheet, who, who)
     except KinlabError as problem:
         return _unread(sheet, who, who, str(problem), slug_of(who))
@@ -190,7 +191,8 @@ class _Work:
                 outcomes, limits = judge_program(self.sheet, submission, self.level)
                 note = _("; ").join(part for part in (note, limits) if part)
             else:
-                raise FileError(f"{shown}: a Python file; it is run only with --run-python")
+                said = _("{file}: a Python file; it is run only with --run-python")
+                raise FileError(said.format(file=shown))
             return _finished(shown, submission, tuple(outcomes), note, slug)
         except KinlabError as problem:
             return _unread(self.sheet, shown, path.stem, str(problem), slug)

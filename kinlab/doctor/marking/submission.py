@@ -342,12 +342,11 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
         if said in ("", question.id, question.entry, default, _head(question)):
             named[default] = right
             continue
-        found, _ = _asked(said, sheet, hand([]))
+        found, _name = _asked(said, sheet, hand([]))
         if said not in question.answer and (found is None or found.id != question.id):
             if question.quantity != quantity_of(said, sheet.robot.table):
-                raise ExpressionError(
-                    f"the line begins with {said} =, and the question asks for {question.entry}"
-                )
+                other = _("the line begins with {name} =, and the question asks for {entry}")
+                raise ExpressionError(other.format(name=said, entry=question.entry))
             said = default
         named[said] = right
     return named

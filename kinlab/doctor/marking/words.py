@@ -90,6 +90,57 @@ KINDS: dict[str, str] = {
 }
 """Kinds of slips, as a sheet may name them, with what is said of them."""
 
+OTHERS = (
+    N_("omega_dot cross term"),
+    N_("tangential term"),
+    N_("centripetal term"),
+    N_("Coriolis of a slide"),
+    N_("tangential term of the centre"),
+    N_("centripetal term of the centre"),
+    N_("Euler moment"),
+    N_("force of the next link"),
+    N_("moment of the next link"),
+    N_("moment of F"),
+    N_("moment of f"),
+    N_("centre not rotated"),
+    N_("centre transposed"),
+    N_("tensor not rotated"),
+    N_("tensor transposed"),
+    N_("force of the wrong link"),
+    N_("lever arm"),
+    N_("acceleration of the centre"),
+    N_("index of w"),
+    N_("mass of another link"),
+    N_("tensor of another link"),
+    N_("joint axis"),
+    N_("torque axis"),
+    N_("force not rotated"),
+    N_("force transposed"),
+    N_("moment not rotated"),
+    N_("moment transposed"),
+    N_("acceleration of a slide"),
+    N_("acceleration of a hinge"),
+    N_("moment of the link"),
+    N_("tensor rotated"),
+    N_("w not rotated"),
+    N_("w transposed"),
+    N_("acceleration not rotated"),
+    N_("acceleration transposed"),
+    N_("point"),
+    N_("cross product order"),
+    N_("slide turns"),
+    N_("angular rows"),
+    N_("linear rows"),
+    N_("mass part"),
+    N_("own joint"),
+    N_("theta sign"),
+    N_("products of inertia"),
+    N_("Christoffel"),
+    N_("unread"),
+    N_("missing entries"),
+)
+"""Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
+
 
 def _phrase(kind: str) -> str:
     named = kind if _WORDS.fullmatch(kind) else KINDS["other"]

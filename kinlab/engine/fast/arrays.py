@@ -13,7 +13,7 @@ from kinlab.errors import StructureError
 from kinlab.model.robot import Robot
 
 
-class Chain(NamedTuple):
+class ChainArrays(NamedTuple):
     """A serial chain in which every joint moves about or along its own z axis.
 
     Attributes:
@@ -25,10 +25,10 @@ class Chain(NamedTuple):
     prismatic: Any
 
 
-_CHAINS: WeakKeyDictionary[Robot, Chain] = WeakKeyDictionary()
+_CHAINS: WeakKeyDictionary[Robot, ChainArrays] = WeakKeyDictionary()
 
 
-def chain(robot: Robot) -> Chain:
+def chain(robot: Robot) -> ChainArrays:
     """Reads the chain from base to tool out of a robot's ``pin.Model``; kept for the next call.
 
     A joint about an axis a becomes one about z by putting a rotation A with A z = a in front and
@@ -49,7 +49,7 @@ def chain(robot: Robot) -> Chain:
     return found
 
 
-def _read(robot: Robot) -> Chain:
+def _read(robot: Robot) -> ChainArrays:
     model = robot.model
     tool = model.frames[robot.tool]
     k = int(tool.parentJoint)
@@ -74,7 +74,7 @@ def _read(robot: Robot) -> Chain:
         fixed[i - 1] = here[:3].ravel()
         behind = onto_z.T  # no translation, so the transpose is the inverse
     fixed[k] = (behind @ np.asarray(tool.placement.homogeneous))[:3].ravel()
-    return Chain(fixed, prismatic)
+    return ChainArrays(fixed, prismatic)
 
 
 def _z_onto(axis: Array) -> Array:

@@ -60,7 +60,7 @@ class Worst:
         return float(np.max((self.bound - self.value) / size))
 
 
-Quantity = Callable[[Pose], Any]
+PoseQuantity = Callable[[Pose], Any]
 """Quantities (N, k) at N poses; it must run on poses over cells too."""
 
 
@@ -68,7 +68,7 @@ def bound_over(
     linkage: FiveBar,
     box: Rectangle,
     mode: Mode,
-    quantity: Quantity,
+    quantity: PoseQuantity,
     gap: float = TOLERANCES.worst_case_gap,
 ) -> tuple[Array, Array, Array]:
     """The largest of each of k quantities over a rectangle, edges included.

@@ -38,7 +38,7 @@ _ACTIVE = 60
 _WEIGHT, _CROSSOVER = 0.6, 0.85
 
 
-def lattice() -> Array:
+def search_points() -> Array:
     """The points of the search over the unit square, (K, 2): its edges are drawn finer."""
     inner, edge = np.linspace(0.0, 1.0, _SIDE), np.linspace(0.0, 1.0, 4 * _SIDE - 3)
     square = np.stack(np.meshgrid(inner, inner), axis=-1).reshape(-1, 2)
@@ -67,7 +67,7 @@ def evolve(
     Raises:
         FileError: the file is of another problem or seed, or no such file at all.
     """
-    points, low, high = lattice(), problem.low, problem.high
+    points, low, high = search_points(), problem.low, problem.high
     first = np.random.default_rng([seed, 0])
     x = low + (high - low) * first.uniform(size=(_MEMBERS, len(low)))
     if starts is not None and len(starts):
@@ -161,7 +161,7 @@ def polish(problem: Problem, x: Array, points: Array) -> Array:
 
 def exchange(problem: Problem, x: Array) -> Array:
     """Polishes until the worst places of the whole rectangle are among the points."""
-    points = lattice()
+    points = search_points()
     for _ in range(_ROUNDS):
         x = polish(problem, x, points)
         _, places = problem.proved(x)

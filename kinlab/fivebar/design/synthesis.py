@@ -15,7 +15,7 @@ from kinlab.errors import OptionError, UnreachableError
 from kinlab.fivebar.arguments import HANGING, Mode, read_mode
 from kinlab.fivebar.design.goals import GOALS
 from kinlab.fivebar.design.problem import Problem
-from kinlab.fivebar.design.search import Progress, evolve, exchange, lattice
+from kinlab.fivebar.design.search import Progress, evolve, exchange, search_points
 from kinlab.fivebar.linkage import FiveBar
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
 from kinlab.host.evidence import Evidence
@@ -269,7 +269,7 @@ def require_feasible(problem: Problem, x: Array) -> None:
     Raises:
         UnreachableError: names the nearest linkage and what it misses.
     """
-    points = lattice()
+    points = search_points()
     pieces = problem.pieces(x[None], points)
     breaks = {
         name: float(np.nan_to_num(values, nan=1.0).max())

@@ -9,7 +9,7 @@ import numpy as np
 
 from kinlab.analysis.structure.axes import Axes, meeting_point
 from kinlab.arrays import Array
-from kinlab.engine.fast.arrays import Chain, chain
+from kinlab.engine.fast.arrays import ChainArrays, chain
 from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.errors import StructureError
 from kinlab.inverse.branches.closed_forms import PARALLEL, reversed_chain
@@ -122,7 +122,7 @@ def _rows(steps: Any) -> Array:
     return np.array([np.asarray(step)[:3].ravel() for step in steps])
 
 
-def with_held(arm: Chain, given: tuple[tuple[int, float], ...]) -> Chain:
+def with_held(arm: ChainArrays, given: tuple[tuple[int, float], ...]) -> ChainArrays:
     """The chain of the joints that are left when some are held."""
     values = dict(given)
     steps = steps_of(arm.fixed)
@@ -141,7 +141,7 @@ def with_held(arm: Chain, given: tuple[tuple[int, float], ...]) -> Chain:
             rest.append(behind)
             kinds.append(bool(slides))
             behind = np.eye(4)
-    return Chain(_rows([*rest, behind @ steps[-1]]), np.array(kinds, dtype=np.bool_))
+    return ChainArrays(_rows([*rest, behind @ steps[-1]]), np.array(kinds, dtype=np.bool_))
 
 
 def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
@@ -203,7 +203,7 @@ def _work_out(robot: Robot, given: tuple[tuple[int, float], ...]) -> Known:
     return Known(form, _METHODS[family], evidence, count, not doubt)
 
 
-def _doubt(arm: Chain, family: int, count: int) -> str:
+def _doubt(arm: ChainArrays, family: int, count: int) -> str:
     """Why branches of this arm may be missing at any pose, or nothing.
 
     Real solutions are even in number and complex ones come in pairs, so an odd count lacks one.
@@ -245,7 +245,7 @@ def _doubt(arm: Chain, family: int, count: int) -> str:
     return ""
 
 
-def _family(arm: Chain) -> tuple[int, int, Chain]:
+def _family(arm: ChainArrays) -> tuple[int, int, ChainArrays]:
     """Family, task and the chain to solve, of an arm of at most six joints."""
     n = len(arm.prismatic)
     if n == 6:
@@ -261,13 +261,13 @@ def _family(arm: Chain) -> tuple[int, int, Chain]:
         return GENERAL, POSITION, _with_wrist(arm)
     if n == 5:
         extra = np.eye(4)[:3].reshape(1, 12)
-        pointing = Chain(np.vstack([arm.fixed, extra]), np.append(arm.prismatic, False))
+        pointing = ChainArrays(np.vstack([arm.fixed, extra]), np.append(arm.prismatic, False))
         if _holds(pointing, (0, 1, 2, 3, 4, 5)):
             return GENERAL, POINTING, pointing
     return GENERAL, POSE, _with_strangers(arm)
 
 
-def _moves(arm: Chain, task: int) -> bool:
+def _moves(arm: ChainArrays, task: int) -> bool:
     """Whether no joint can do what others do: J has independent columns in general position."""
     n = len(arm.prismatic)
     return (
@@ -276,12 +276,12 @@ def _moves(arm: Chain, task: int) -> bool:
     )
 
 
-def _holds(arm: Chain, rows: tuple[int, ...]) -> bool:
+def _holds(arm: ChainArrays, rows: tuple[int, ...]) -> bool:
     """Whether J has full rank in these rows at a state in general position."""
     return _rank_share(arm, rows, len(rows)) > TOLERANCES.task_holds
 
 
-def _rank_share(arm: Chain, rows: tuple[int, ...], rank: int) -> float:
+def _rank_share(arm: ChainArrays, rows: tuple[int, ...], rank: int) -> float:
     """Largest ratio of the rank-th singular value of these rows of J to the first, of some q."""
     n = len(arm.prismatic)
     best = 0.0
@@ -295,7 +295,7 @@ def _rank_share(arm: Chain, rows: tuple[int, ...], rank: int) -> float:
     return best
 
 
-def _with_wrist(arm: Chain) -> Chain:
+def _with_wrist(arm: ChainArrays) -> ChainArrays:
     """Adds three virtual axes that meet in the tool, so that its orientation is free."""
     tilt = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
     step, other, last = np.eye(4), np.eye(4), np.eye(4)
@@ -304,10 +304,10 @@ def _with_wrist(arm: Chain) -> Chain:
     turn, _ = np.linalg.qr(np.random.default_rng(11).normal(size=(3, 3)))
     last[:3, :3] = turn * np.linalg.det(turn)
     extra = _rows([step, other, last])
-    return Chain(np.vstack([arm.fixed, extra]), np.append(arm.prismatic, [False] * 3))
+    return ChainArrays(np.vstack([arm.fixed, extra]), np.append(arm.prismatic, [False] * 3))
 
 
-def _with_strangers(arm: Chain) -> Chain:
+def _with_strangers(arm: ChainArrays) -> ChainArrays:
     """Completes an arm to six joints by virtual ones in general position.
 
     Where all virtual joints are zero the tool is the arm's own: these are the solutions sought.
@@ -325,18 +325,18 @@ def _with_strangers(arm: Chain) -> Chain:
         behind = behind @ step
         steps.append(np.eye(4))
     steps[-1] = steps[-1] @ np.linalg.inv(behind)
-    return Chain(_rows(steps), np.append(arm.prismatic, [False] * (6 - len(arm.prismatic))))
+    return ChainArrays(_rows(steps), np.append(arm.prismatic, [False] * (6 - len(arm.prismatic))))
 
 
-def _six(arm: Chain) -> tuple[int, bool, Array, Array, Array] | None:
+def _six(arm: ChainArrays) -> tuple[int, bool, Array, Array, Array] | None:
     """Family of a six-joint chain, or ``None``: family, turned, centre, centre_tool, marker."""
     back, kinds = np.empty_like(arm.fixed), np.empty_like(arm.prismatic)
     reversed_chain(arm.fixed, arm.prismatic, back, kinds)
-    for turned, each in ((False, arm), (True, Chain(back, kinds))):
+    for turned, each in ((False, arm), (True, ChainArrays(back, kinds))):
         centre = wrist_in_frames(each)
         if centre is not None and not _constant_height(each):
             return WRIST, turned, *centre, centre[1]
-    for turned, each in ((False, arm), (True, Chain(back, kinds))):
+    for turned, each in ((False, arm), (True, ChainArrays(back, kinds))):
         if each.prismatic.any():
             continue
         third, fourth, fifth = each.fixed[2:5]
@@ -351,7 +351,7 @@ def _six(arm: Chain) -> tuple[int, bool, Array, Array, Array] | None:
     return None
 
 
-def _constant_height(arm: Chain) -> bool:
+def _constant_height(arm: ChainArrays) -> bool:
     """Whether axes 1, 2 and 3 are parallel: the wrist's centre is then not moved in space."""
     second, third = arm.fixed[1], arm.fixed[2]
     return not arm.prismatic[2] and bool(
@@ -359,7 +359,7 @@ def _constant_height(arm: Chain) -> bool:
     )
 
 
-def wrist_in_frames(arm: Chain) -> tuple[Array, Array] | None:
+def wrist_in_frames(arm: ChainArrays) -> tuple[Array, Array] | None:
     """Where the last three axes intersect, neighbours not parallel; or ``None``.
 
     Args:

@@ -179,7 +179,7 @@ def _common_normal(
     end = np.array([a, 0.0, 0.0])
     shapes.rod(scene[f"{path}/a"], np.zeros(3), end, 0.005 * size, red)
     if abs(a) > 5e-7:
-        text = f'<b class="x">a<sub>{number}</sub> = {shapes.brief(a, 6)}</b>'
+        text = f'<b class="x">a<sub>{number}</sub> = {shapes.short_number(a, 6)}</b>'
         picture.labels.append(Label(path, 0.5 * end, text, group))
     if abs(alpha) > 1e-6:
         radius = 0.08 * size
@@ -187,7 +187,8 @@ def _common_normal(
         scene[f"{path}/alpha"].set_object(shapes.Torus(radius, radius / 36, abs(alpha)), red)
         scene[f"{path}/alpha"].set_transform(turn)
         middle = (turn @ [radius * np.cos(alpha / 2), radius * np.sin(abs(alpha) / 2), 0, 1])[:3]
-        text = f'<b class="x">α<sub>{number}</sub> = {shapes.brief(np.degrees(alpha), 3)}°</b>'
+        degrees = shapes.short_number(np.degrees(alpha), 3)
+        text = f'<b class="x">α<sub>{number}</sub> = {degrees}°</b>'
         picture.labels.append(Label(path, middle, text, group))
 
 

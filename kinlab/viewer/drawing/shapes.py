@@ -40,7 +40,7 @@ class Label:
         }
 
 
-def brief(value: float, places: int) -> str:
+def short_number(value: float, places: int) -> str:
     """A number for a label: four digits, no more places than given, no sign before zero."""
     return f"{round(float(f'{value:.4g}'), places) + 0.0:g}"
 
