@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 
 import pytest
@@ -133,3 +134,18 @@ def test_a_formula_is_told_of_in_either_language():
     assert chinese["misprint"] == "2 d1 d2 误写成 2 d1 + d2"
     assert "第 4.1–4.3 式，第 71–94 行" in chinese["place"]
     assert set(english) == set(chinese) and bool(english["remark"]) == bool(chinese["remark"])
+
+
+def test_the_chinese_report_says_nothing_in_english(rows, tmp_path):
+    write_report(tmp_path / "a.html", rows, lang="zh")
+    write_report(tmp_path / "b.html", rows)
+    page = (tmp_path / "a.html").read_text(encoding="utf-8")
+    assert '<html lang="zh-CN">' in page and "119 个公式" in page and "misprint:" not in page
+    body = re.sub(r"<(math|code|svg)\b.*?</\1>", " ", page.split("<body>")[1], flags=re.DOTALL)
+    text = html.unescape(re.sub("<[^>]*>", "\n", body))
+    text = re.sub("“[^”]*”", "", text)  # the note's own heading
+    # a name or two of formulas may stand beside each other, as in "d/dt dL"
+    assert re.findall(r"[A-Za-z]{2,}(?: [A-Za-z]{2,}){2,}", text) == []
+    english = (tmp_path / "b.html").read_text(encoding="utf-8")
+    assert '<html lang="en">' in english and "every correct form agrees." in english
+    assert not re.search("[一-鿿]", re.sub("“[^”]*”", "", english.split("<body>")[1]))
