@@ -10,6 +10,8 @@ wrong. Indices run from 1; ``T[0]`` is the base.
 
 from __future__ import annotations
 
+from kinlab.host.language import N_
+
 VELOCITIES = """
 w[0] = zero
 v[0] = zero
@@ -395,3 +397,71 @@ for i in outward:
     # the left side A cos(theta) + B sin(theta)
     C[i] = 2*(s[i]*e - x)*l1[i]*cos(theta[i]) - 2*y*l1[i]*sin(theta[i])
 """
+
+LINES = (
+    N_("the angular velocity w of the link"),
+    N_("the velocity v of the link's origin"),
+    N_("the start of the recursion"),
+    N_("the angular acceleration omega_dot of the link"),
+    N_("the acceleration of the link's origin"),
+    N_("the acceleration of the centre of mass"),
+    N_("the link's own force F"),
+    N_("the link's own moment N"),
+    N_("the force f of the link"),
+    N_("the moment n of the link"),
+    N_("the joint torque"),
+    N_("the Jacobian's column"),
+    N_("the Jacobian"),
+    N_("the joint torques of a wrench"),
+    N_("the centre of mass"),
+    N_("the linear part of the link's Jacobian"),
+    N_("the angular part of the link's Jacobian"),
+    N_("the mass matrix"),
+    N_("the gravity torques"),
+    N_("the potential energy"),
+    N_("the rotors' inertia"),
+    N_("Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k"),
+    N_("the velocity torques: Mdot v and the gradient of ½ v^T M v"),
+    N_("the kinetic energy"),
+    N_("the momentum"),
+    N_("the Lagrangian L = T - V"),
+    N_("the velocity torques"),
+    N_("the equation of motion"),
+    N_("Mdot"),
+    N_("Mdot v"),
+    N_("Mdot - 2C"),
+    N_("the gradient of ½ v^T M v"),
+    N_("the gradient of the Lagrangian"),
+    N_("the momentum's rate"),
+    N_("Christoffel's ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i)"),
+    N_("the link's matrix"),
+    N_("the angle theta, with q at a hinge (revolute joint)"),
+    N_("the offset d, with q at a slide (prismatic joint)"),
+    N_("the cosine and sine of theta"),
+    N_("the cosine and sine of alpha"),
+    N_("the product of the link transforms"),
+    N_("the tool's pose"),
+    N_("the product of the elementary transforms"),
+    N_("the centre of mass in base axes"),
+    N_("the inertia tensor in base axes"),
+    N_("the products of the Jacobian's rows"),
+    N_("the coefficient A"),
+    N_("the coefficient B"),
+    N_("the right side C"),
+    N_("the crank's angle theta, by the half tangent"),
+    N_("the crank's direction u"),
+    N_("the rod's direction w"),
+    N_("the sine u^T H w"),
+    N_("the row of J"),
+    N_("the bias f(v) of the crank's acceleration"),
+    N_("the crank's acceleration"),
+    N_("the crank's own torque"),
+    N_("the torque by virtual work"),
+    N_("G, the torque per acceleration"),
+    N_("the worst torque per acceleration"),
+    N_("the worst crank rate per speed"),
+    N_("the power"),
+    N_("the left side A cos(theta) + B sin(theta)"),
+    N_("the step"),
+)
+"""What the lines of the derivations are, to be translated."""

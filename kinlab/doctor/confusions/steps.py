@@ -14,6 +14,7 @@ from typing import Any
 
 from kinlab.doctor.confusions.books import MODIFIED, STANDARD
 from kinlab.doctor.confusions.walk import Line, Program, Step, again
+from kinlab.host.language import N_, _
 
 _ALIKE = (
     "w dw", "dv dvc", "F f", "N nn", "P c", "F N", "f nn", "Jv Jw", "z o", "crank rod", "l1 l2",
@@ -26,18 +27,21 @@ _GIVEN = ("zero", "one", "end", "g", "number", "zeros", "nothing")
 """Names that nobody writes for another."""
 
 MEANT = {
-    "w": "the angular velocity w", "dw": "the angular acceleration omega_dot",
-    "dv": "the acceleration of the link's origin",
-    "dvc": "the acceleration of the centre of mass", "F": "the link's own force F",
-    "N": "the link's own moment N", "f": "the force f", "nn": "the moment n",
-    "P": "the lever arm P", "c": "the centre of mass P_C", "z": "the axis z",
-    "o": "the origin o", "p": "the tool's point p", "pc": "the centre of mass",
-    "R": "the rotation R", "I": "the inertia tensor", "m": "the mass m", "Ia": "the rotor inertia",
-    "T": "the transform T", "A": "the matrix A", "g": "gravity", "q": "q", "qd": "the velocity qd",
-    "qdd": "the acceleration qdd", "R_": "the rotation R",
-    "crank": "the crank's direction u", "rod": "the rod's direction w",
-    "l1": "the crank's length l1", "l2": "the rod's length l2",
-    "Ib": "the inertia tensor", "cb": "the centre of mass P_C", "o_": "the frame's origin",
+    "w": N_("the angular velocity w"), "dw": N_("the angular acceleration omega_dot"),
+    "dv": N_("the acceleration of the link's origin"),
+    "dvc": N_("the acceleration of the centre of mass"), "F": N_("the link's own force F"),
+    "N": N_("the link's own moment N"), "f": N_("the force f"), "nn": N_("the moment n"),
+    "P": N_("the lever arm P"), "c": N_("the centre of mass P_C"), "z": N_("the axis z"),
+    "o": N_("the origin o"), "p": N_("the tool's point p"), "pc": N_("the centre of mass"),
+    "R": N_("the rotation R"), "I": N_("the inertia tensor"), "m": N_("the mass m"),
+    "Ia": N_("the rotor inertia"),
+    "T": N_("the transform T"), "A": N_("the matrix A"), "g": N_("gravity"), "q": "q",
+    "qd": N_("the velocity qd"),
+    "qdd": N_("the acceleration qdd"), "R_": N_("the rotation R"),
+    "crank": N_("the crank's direction u"), "rod": N_("the rod's direction w"),
+    "l1": N_("the crank's length l1"), "l2": N_("the rod's length l2"),
+    "Ib": N_("the inertia tensor"), "cb": N_("the centre of mass P_C"),
+    "o_": N_("the frame's origin"),
 }  # fmt: skip
 """What names stand for."""
 
@@ -47,35 +51,35 @@ _SPELT = {"ct": "cos(theta)", "st": "sin(theta)", "ca": "cos(alpha)", "sa": "sin
           "th": "theta", "Ib": "I", "cb": "P_C"}  # fmt: skip
 
 _KNOWN = {
-    "w x (I w)": "the gyroscopic term",
-    "w x (w x P)": "the centripetal term of the link's origin",
-    "w x (w x P_C)": "the centripetal term of the centre of mass",
-    "omega_dot x P": "the tangential term of the link's origin",
-    "omega_dot x P_C": "the tangential term of the centre of mass",
-    "2*w x (qd*z)": "the Coriolis acceleration of a slide, prismatic joint",
-    "2*w x (qd*(R^T z))": "the Coriolis acceleration of a slide, prismatic joint",
-    "(R^T w) x (qd*z)": "w x z qd",
-    "w x (qd*z)": "w x z qd",
-    "qdd*z": "the acceleration d_ddot of a slide, theta_ddot of a hinge",
-    "I omega_dot": "the inertia tensor's moment",
-    "N": "the link's own moment",
-    "F": "the link's own force",
-    "P_C x F": "the moment of F",
-    "(P + P_C) x F": "the moment of F at the centre of mass",
-    "P x (R f)": "the lever arm of the next link's force",
-    "R f": "the force of the next link",
-    "R n": "the moment of the next link",
-    "Ia*qdd": "the rotor inertia",
-    "diagonal(Ia)": "the rotor inertia",
-    "-g": "gravity",
-    "g": "gravity",
-    "G": "the gravity torques",
-    "C v": "the velocity terms",
-    "M a": "the inertia terms",
-    "o": "the joint's origin",
-    "R P_C": "the centre of mass in the link",
-    "m*Jv^T Jv": "the mass's part",
-    "Jw^T (R I R^T) Jw": "the inertia tensor's part",
+    "w x (I w)": N_("the gyroscopic term"),
+    "w x (w x P)": N_("the centripetal term of the link's origin"),
+    "w x (w x P_C)": N_("the centripetal term of the centre of mass"),
+    "omega_dot x P": N_("the tangential term of the link's origin"),
+    "omega_dot x P_C": N_("the tangential term of the centre of mass"),
+    "2*w x (qd*z)": N_("the Coriolis acceleration of a slide, prismatic joint"),
+    "2*w x (qd*(R^T z))": N_("the Coriolis acceleration of a slide, prismatic joint"),
+    "(R^T w) x (qd*z)": N_("w x z qd"),
+    "w x (qd*z)": N_("w x z qd"),
+    "qdd*z": N_("the acceleration d_ddot of a slide, theta_ddot of a hinge"),
+    "I omega_dot": N_("the inertia tensor's moment"),
+    "N": N_("the link's own moment"),
+    "F": N_("the link's own force"),
+    "P_C x F": N_("the moment of F"),
+    "(P + P_C) x F": N_("the moment of F at the centre of mass"),
+    "P x (R f)": N_("the lever arm of the next link's force"),
+    "R f": N_("the force of the next link"),
+    "R n": N_("the moment of the next link"),
+    "Ia*qdd": N_("the rotor inertia"),
+    "diagonal(Ia)": N_("the rotor inertia"),
+    "-g": N_("gravity"),
+    "g": N_("gravity"),
+    "G": N_("the gravity torques"),
+    "C v": N_("the velocity terms"),
+    "M a": N_("the inertia terms"),
+    "o": N_("the joint's origin"),
+    "R P_C": N_("the centre of mass in the link"),
+    "m*Jv^T Jv": N_("the mass's part"),
+    "Jw^T (R I R^T) Jw": N_("the inertia tensor's part"),
     "D": "dM_ij/dq_k",
     "D_ikj": "dM_ik/dq_j",
     "D_jki": "dM_jk/dq_i",
@@ -104,9 +108,10 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
     found += _slides(of)
     if not singly:
         return found
+    at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return [
-        Step(s.kind, f"{s.sentence}, at joint {i + 1}", s.edits, s.cost + 0.2, i + 1)
+        Step(s.kind, at_joint.format(does=s.sentence, joint=i + 1), s.edits, s.cost + 0.2, i + 1)
         for s in found
         if s.cost < 1.3 and id(s.edits[0][0]) in looped
         for i in range(n)
@@ -127,11 +132,15 @@ def _of_line(
 
     def step(kind: str, does: str, cost: float, *edits: tuple[ast.expr, ast.expr]) -> Step:
         if kind == "only one term":
-            return Step(kind, f"{does} for {_that_of(line.about, does)}", edits, cost)
-        told = around.get(id(edits[0][0]), "") if len(edits) == 1 else ""
-        return Step(kind, f"{does}{told} in {line.about}", edits, cost)
+            return Step(kind, does, edits, cost)
+        told = around.get(id(edits[0][0])) if len(edits) == 1 else None
+        if told is None:
+            said = _("{does} in {line}").format(does=does, line=_(line.about))
+        else:
+            said = _("{does} in {term}, in {line}").format(does=does, term=told, line=_(line.about))
+        return Step(kind, said, edits, cost)
 
-    yield from _terms(whole, step)
+    yield from _terms(whole, axes, line.about, step)
     for node in ast.walk(whole):
         if not isinstance(node, ast.expr) or id(node) not in axes:
             continue
@@ -140,7 +149,9 @@ def _of_line(
         elif isinstance(node, ast.Call):
             yield from _calls(node, step)
         elif isinstance(node, ast.Attribute):
-            does = f"has {spelt(node.value)} for {spelt(node)} (not transposed)"
+            does = _("has {new} for {old} (not transposed)").format(
+                new=spelt(node.value), old=spelt(node)
+            )
             yield step("transposed", does, 1.05, (node, node.value))
         elif isinstance(node, ast.IfExp):
             yield from _choices(node, step)
@@ -161,22 +172,24 @@ def _surroundings(whole: ast.expr) -> dict[int, str]:
         if isinstance(node, ast.List):
             for r, row in enumerate(node.elts):
                 for c, entry in enumerate(row.elts if isinstance(row, ast.List) else ()):
-                    where = f" in entry ({r + 1}, {c + 1}),"
+                    where = _("entry ({row}, {column})").format(row=r + 1, column=c + 1)
                     out |= {id(inner): where for inner in ast.walk(entry)}
         elif isinstance(node, ast.BinOp) and _is_sum(node):
             for part in _summands(node):
                 inside = (x for x in ast.walk(part) if x is not part)
                 if not _is_sum(part):
-                    out |= {id(inner): f" in {_told(part)}," for inner in inside}
+                    out |= {id(inner): _told(part) for inner in inside}
     return out
 
 
-def _terms(whole: ast.expr, step: Make) -> Iterator[Step]:
+def _terms(
+    whole: ast.expr, axes: Mapping[int, tuple[int, ...]], about: str, step: Make
+) -> Iterator[Step]:
     """The terms of every sum: left out, with the other sign, twice, half; one alone."""
     halves = {id(x) for node in ast.walk(whole) if _is_sum(node) for x in _halves(node)}
     tops = [id(x) for x in _branches(whole)]
     for node in ast.walk(whole):
-        if not isinstance(node, ast.expr) or id(node) in halves:
+        if not isinstance(node, ast.expr) or id(node) not in axes or id(node) in halves:
             continue
         if not _is_sum(node) and (id(node) not in tops or isinstance(node, ast.List)):
             continue
@@ -186,19 +199,32 @@ def _terms(whole: ast.expr, step: Make) -> Iterator[Step]:
             if len(parts) > 1 or isinstance(part, ast.UnaryOp):
                 called = _KNOWN.get(spelt(part), "").partition(" of ")[0].removeprefix("the ")
                 kind = called if called.endswith(" term") else "missing term"
-                yield step(kind, f"leaves {told} out", 1.0, (part, _times(0, part)))
-            yield step("sign", f"has {told} with the opposite sign", 1.02, (part, _minus(part)))
-            yield step("factor", f"counts {told} twice", 1.2, (part, _times(2, part)))
-            yield step("factor", f"counts {told} half", 1.15, (part, _times(0.5, part)))
+                yield step(
+                    kind, _("leaves {term} out").format(term=told), 1.0, (part, _times(0, part))
+                )
+            yield step(
+                "sign",
+                _("has {term} with the opposite sign").format(term=told),
+                1.02,
+                (part, _minus(part)),
+            )
+            yield step(
+                "factor", _("counts {term} twice").format(term=told), 1.2, (part, _times(2, part))
+            )
+            yield step(
+                "factor", _("counts {term} half").format(term=told), 1.15, (part, _times(0.5, part))
+            )
             if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript):
-                does = f"takes {_meant(part)}"
+                does = _that_of(about, part)
                 yield step("only one term", does, 1.0, (node, again(part)))
 
 
-def _that_of(what: str, does: str) -> str:
-    """``that of the centre of mass`` after the acceleration of something else."""
-    thing, of, rest = what.partition(" of ")
-    return f"that of {rest}" if of and f"{thing} of " in does else what
+def _that_of(what: str, part: ast.expr) -> str:
+    """Takes the acceleration of something for that of the centre of mass."""
+    of_centre = what == "the acceleration of the centre of mass"
+    if of_centre and _name(part) == "dv":
+        return _("takes the acceleration of the link's origin for that of the centre of mass")
+    return _("takes {new} for {old}").format(new=_meant(part), old=_(what))
 
 
 def _branches(node: ast.expr) -> Iterator[ast.expr]:
@@ -234,22 +260,32 @@ def _binary(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) ->
     if isinstance(node.op, ast.MatMult):
         if one == 2 and isinstance(left, ast.Attribute | ast.Name | ast.Subscript):
             if two == 1 and _turns(left):
-                does = f"does not rotate {_told(right)} ({spelt(left)} is left out)"
+                does = _("does not rotate {term} ({factor} is left out)").format(
+                    term=_told(right), factor=spelt(left)
+                )
                 yield step("rotation left out", does, 1.1, (node, right))
             elif two == 1:
-                does = f"leaves the factor {spelt(left)} out of {spelt(node)}"
+                does = _("leaves the factor {factor} out of {term}").format(
+                    factor=spelt(left), term=spelt(node)
+                )
                 yield step("missing factor", does, 1.25, (node, right))
             if not isinstance(left, ast.Attribute):
-                does = f"has {spelt(left)}^T for {spelt(left)} (transposed)"
+                does = _("has {new} for {old} (transposed)").format(
+                    new=spelt(_across(left)), old=spelt(left)
+                )
                 yield step("transposed", does, 1.17, (left, _across(left)))
         if one == two == 2:
             same = isinstance(right, ast.Attribute) and spelt(right.value) == spelt(left)
             if not _turns(left) and (same or not isinstance(right, ast.Attribute)):
-                does = f"has {spelt(right)} {spelt(left)} for {spelt(node)} (the product's order)"
                 turned = ast.BinOp(right, ast.MatMult(), left)
+                does = _("has {new} for {old} (the product's order)").format(
+                    new=spelt(turned), old=spelt(node)
+                )
                 yield step("order", does, 1.1, (node, turned))
             if not isinstance(right, ast.Attribute) and not isinstance(right, ast.BinOp):
-                does = f"has {spelt(right)}^T for {spelt(right)} (transposed)"
+                does = _("has {new} for {old} (transposed)").format(
+                    new=spelt(_across(right)), old=spelt(right)
+                )
                 yield step("transposed", does, 1.17, (right, _across(right)))
             yield from _sandwich(node, step)
     elif isinstance(node.op, ast.Mult | ast.Div):
@@ -257,18 +293,20 @@ def _binary(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) ->
             if isinstance(factor, ast.Name | ast.Subscript) and (
                 isinstance(node.op, ast.Mult) or factor is right
             ):
-                does = f"leaves the factor {spelt(factor)} out of {spelt(node)}"
+                does = _("leaves the factor {factor} out of {term}").format(
+                    factor=spelt(factor), term=spelt(node)
+                )
                 yield step("missing factor", does, 1.15, (node, rest))
         if isinstance(left, ast.Constant):
-            yield step("factor", f"has {spelt(right)} for {spelt(node)} (the factor)", 1.1,
-                       (node, right))  # fmt: skip
+            does = _("has {new} for {old} (the factor)").format(new=spelt(right), old=spelt(node))
+            yield step("factor", does, 1.1, (node, right))
     elif isinstance(node.op, ast.Pow):
         assert isinstance(node.right, ast.Constant)
         power: Any = node.right.value
         for other in (power - 1, power + 1):
             if other:
                 new = ast.BinOp(left, ast.Pow(), ast.Constant(other))
-                does = f"has {spelt(new)} for {spelt(node)} (power)"
+                does = _("has {new} for {old} (power)").format(new=spelt(new), old=spelt(node))
                 yield step("power", does, 1.1, (node, new))
 
 
@@ -288,10 +326,13 @@ def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
         return
     plain, turned = spelt(inner.right), f"{spelt(last)} {spelt(inner.right)} {spelt(inner.left)}"
     right = f"{spelt(inner.left)} {plain} {spelt(last)}"
-    does = "takes the inertia tensors in link axes as if in base axes (not rotated: "
-    does += f"{plain} for {right})"
+    does = _(
+        "takes the inertia tensors in link axes as if in base axes (not rotated: {new} for {old})"
+    ).format(new=plain, old=right)
     yield step("tensor not rotated", does, 1.0, (node, inner.right))
-    does = f"has {turned} for {right} (the inertia tensor is rotated the wrong way)"
+    does = _("has {new} for {old} (the inertia tensor is rotated the wrong way)").format(
+        new=turned, old=right
+    )
     new = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner.right), ast.MatMult(), inner.left)
     yield step("tensor transposed", does, 1.02, (node, new))
 
@@ -301,37 +342,63 @@ def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
     name, x = node.func.id, node.args
     if name == "cross":
         new = ast.Call(node.func, [x[1], x[0]], [])
-        does = f"has the cross product's order exchanged: {spelt(new)} for {spelt(node)}"
-        yield step("sign", f"{does}, the opposite sign,", 1.0, (node, new))
+        does = _(
+            "has the cross product's order exchanged: {new} for {old}, the opposite sign,"
+        ).format(new=spelt(new), old=spelt(node))
+        yield step("sign", does, 1.0, (node, new))
         if isinstance(x[0], ast.BinOp) and isinstance(x[0].op, ast.MatMult) and _turns(x[0].left):
             inner = ast.Call(node.func, [x[0].right, x[1]], [])
             late = ast.BinOp(x[0].left, ast.MatMult(), inner)
-            does = f"has {spelt(late)} for {spelt(node)} (rotated after the cross product)"
+            does = _("has {new} for {old} (rotated after the cross product)").format(
+                new=spelt(late), old=spelt(node)
+            )
             yield step("order", does, 1.1, (node, late))
         if isinstance(x[1], ast.Call):
             less = ast.Call(node.func, [x[0], x[1].args[1]], [])
-            yield step("power", f"has {spelt(less)} for {spelt(node)}", 1.15, (node, less))
+            yield step(
+                "power",
+                _("has {new} for {old}").format(new=spelt(less), old=spelt(node)),
+                1.15,
+                (node, less),
+            )
     elif name in ("sin", "cos"):
         new = ast.Call(ast.Name("cos" if name == "sin" else "sin"), x, [])
-        yield step("sin/cos", f"has {spelt(new)} for {spelt(node)} (sin/cos)", 1.0, (node, new))
-        yield step("sign", f"has {spelt(x[0])} with the opposite sign in {spelt(node)}", 1.1,
-                   (x[0], _minus(x[0])))  # fmt: skip
+        yield step(
+            "sin/cos",
+            _("has {new} for {old} (sin/cos)").format(new=spelt(new), old=spelt(node)),
+            1.0,
+            (node, new),
+        )
+        does = _("has {angle} with the opposite sign in {term}").format(
+            angle=spelt(x[0]), term=spelt(node)
+        )
+        yield step("sign", does, 1.1, (x[0], _minus(x[0])))
     elif name == "solve":
         matrix, other = spelt(x[0]), x[1]
         plain, turned = ast.BinOp(x[0], ast.MatMult(), other), _across(x[0])
-        does = f"has {matrix} for its inverse {matrix}^-1"
+        does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=matrix)
         yield step("inverse", does, 1.05, (node, plain))
-        does = f"has {matrix}^T for {matrix} (transposed)"
+        does = _("has {new} for {old} (transposed)").format(new=spelt(turned), old=matrix)
         yield step("transposed", does, 1.1, (node, ast.Call(node.func, [turned, other], [])))
-        does = f"has the transpose {matrix}^T for the inverse {matrix}^-1"
+        does = _("has the transpose {matrix}^T for the inverse {matrix}^-1").format(matrix=matrix)
         yield step("inverse", does, 1.05, (node, ast.BinOp(turned, ast.MatMult(), other)))
     elif name == "inv":
-        does = f"has {spelt(x[0])} for its inverse {spelt(x[0])}^-1"
+        does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=spelt(x[0]))
         yield step("inverse", does, 1.05, (node, x[0]))
     elif name in ("ikj", "jki"):
-        yield step("Christoffel", f"has dM_ij/dq_k for {_told(node)}", 1.1, (node, x[0]))
+        yield step(
+            "Christoffel",
+            _("has {new} for {old}").format(new="dM_ij/dq_k", old=_told(node)),
+            1.1,
+            (node, x[0]),
+        )
         other = ast.Call(ast.Name("jki" if name == "ikj" else "ikj"), x, [])
-        yield step("Christoffel", f"has {_told(other)} for {_told(node)}", 1.1, (node, other))
+        yield step(
+            "Christoffel",
+            _("has {new} for {old}").format(new=_told(other), old=_told(node)),
+            1.1,
+            (node, other),
+        )
 
 
 def _turned(node: ast.Subscript, step: Make) -> Iterator[Step]:
@@ -341,7 +408,9 @@ def _turned(node: ast.Subscript, step: Make) -> Iterator[Step]:
         new: ast.expr = ast.BinOp(one, ast.MatMult(), again(node))
         if _name(node) == "I":
             new = ast.BinOp(new, ast.MatMult(), two)
-        does = f"rotates {_meant(node)} ({spelt(new)} for {spelt(node)})"
+        does = _("rotates {what} ({new} for {old})").format(
+            what=_meant(node), new=spelt(new), old=spelt(node)
+        )
         yield step("rotated twice", does, 1.15, (node, new))
 
 
@@ -349,12 +418,12 @@ def _choices(node: ast.IfExp, step: Make) -> Iterator[Step]:
     if isinstance(node.test, ast.Compare):
         test = ast.Compare(node.test.left, [ast.Lt()], node.test.comparators)
         less = ast.IfExp(test, node.body, node.orelse)
-        does = "leaves the link's own joint out (j < i for j <= i)"
+        does = _("leaves the link's own joint out (j < i for j <= i)")
         yield step("own joint", does, 1.1, (node, less))
         return
-    does = "treats a slide (prismatic joint) as a hinge (revolute)"
+    does = _("treats a slide (prismatic joint) as a hinge (revolute)")
     yield step("slide as hinge", does, 1.1, (node, node.body))
-    does = "treats a hinge (revolute) as a slide (prismatic joint)"
+    does = _("treats a hinge (revolute) as a slide (prismatic joint)")
     yield step("hinge as slide", does, 1.2, (node, node.orelse))
 
 
@@ -368,9 +437,9 @@ def _slides(of: Program) -> Iterator[Step]:
         if isinstance(node, ast.IfExp) and isinstance(node.test, ast.Subscript)
     ]
     if len(nodes) > 1:
-        yield Step("slide as hinge", "treats a slide (prismatic joint) as a hinge (revolute)",
+        yield Step("slide as hinge", _("treats a slide (prismatic joint) as a hinge (revolute)"),
                    tuple((node, node.body) for node in nodes), 1.0)  # fmt: skip
-        yield Step("hinge as slide", "treats a hinge (revolute) as a slide (prismatic joint)",
+        yield Step("hinge as slide", _("treats a hinge (revolute) as a slide (prismatic joint)"),
                    tuple((node, node.orelse) for node in nodes), 1.15)  # fmt: skip
 
 
@@ -384,25 +453,32 @@ def _entries(node: ast.List, step: Make) -> Iterator[Step]:
             theirs = _other_convention(node, r, c)
             if theirs is not None:
                 kind, does = _against(entry, theirs[1])
-                as_there = f"as in the {theirs[0]} convention, {spelt(theirs[1])} for {text}"
-                yield step(kind, f"{does} ({as_there})", 1.1, (entry, theirs[1]))
+                does = _("{does} (as in the {convention} convention, {new} for {old})").format(
+                    does=does, convention=theirs[0], new=spelt(theirs[1]), old=text
+                )
+                yield step(kind, does, 1.1, (entry, theirs[1]))
             if not empty:
-                does = f"has the opposite sign in entry ({r + 1}, {c + 1}) of the matrix: "
-                does += f"{spelt(_minus(entry))} for {text}"
+                does = _(
+                    "has the opposite sign in entry ({row}, {column}): {new} for {old}"
+                ).format(row=r + 1, column=c + 1, new=spelt(_minus(entry)), old=text)
                 yield step("sign", does, 1.02, (entry, _minus(entry)))
-                yield step("missing term", f"leaves {text} out (0 for it)", 1.08,
-                           (entry, ast.Constant(0)))  # fmt: skip
+                does = _("leaves {term} out (0 for it)").format(term=text)
+                yield step("missing term", does, 1.08, (entry, ast.Constant(0)))
                 for name in ("ct", "st", "ca", "sa"):
                     new = ast.BinOp(again(entry), ast.Mult(), ast.Name(name))
-                    does = f"has the extra factor {spelt(new.right)} in {spelt(new)} for {text}"
+                    does = _("has the extra factor {factor} in {new} for {old}").format(
+                        factor=spelt(new.right), new=spelt(new), old=text
+                    )
                     yield step("extra factor", does, 1.2, (entry, new))
             if c + 1 < len(row) and not (empty and isinstance(row[c + 1], ast.Constant)):
-                does = f"has {text} and {spelt(row[c + 1])} exchanged in row {r + 1} of the matrix"
+                does = _("has {one} and {other} exchanged in row {row} of the matrix").format(
+                    one=text, other=spelt(row[c + 1]), row=r + 1
+                )
                 swapped = ((entry, again(row[c + 1])), (row[c + 1], again(entry)))
                 yield step("exchanged", does, 1.15, *swapped)
         negative = [(x, _minus(x)) for x in row if _minus(x) is not x and spelt(x)[0] == "-"]
         if len(negative) > 1:
-            does = f"leaves the minus sign out in row {r + 1} of the matrix"
+            does = _("leaves the minus sign out in row {row} of the matrix").format(row=r + 1)
             yield step("sign", does, 1.1, *negative)
 
 
@@ -420,10 +496,14 @@ def _against(mine: ast.expr, theirs: ast.expr) -> tuple[str, str]:
     """A kind and words for another entry: a factor more, a factor less, or something else."""
     one, two = (set(spelt(x).lstrip("-").split("*")) for x in (mine, theirs))
     if two < one:
-        return "missing factor", f"leaves the factor {'*'.join(sorted(one - two))} out"
+        return "missing factor", _("leaves the factor {factor} out").format(
+            factor="*".join(sorted(one - two))
+        )
     if one < two:
-        return "extra factor", f"has the extra factor {'*'.join(sorted(two - one))}"
-    return "convention", f"has {spelt(theirs)} for {spelt(mine)}"
+        return "extra factor", _("has the extra factor {factor}").format(
+            factor="*".join(sorted(two - one))
+        )
+    return "convention", _("has {new} for {old}").format(new=spelt(theirs), old=spelt(mine))
 
 
 def _others(
@@ -450,11 +530,18 @@ def _others(
             extra = 0.0 if chosen is found else 0.05
             for new, kind, cost in _instead(chosen[0], shapes, axes[id(chosen[0])], wide):
                 if kind == "index":
-                    does = f"takes {_meant(new)}{_which(chosen[0], new)} ({spelt(new, True)} for "
-                    does += f"{spelt(chosen[0], True)})"
+                    does = _("takes {what} ({new} for {old})").format(
+                        what=_which(chosen[0], new),
+                        new=spelt(new, True),
+                        old=spelt(chosen[0], True),
+                    )
                 else:
-                    does = f"has {spelt(new)} for {spelt(chosen[0])} ({_meant(new)} for "
-                    does += f"{_meant(chosen[0])})"
+                    does = _("has {new} for {old} ({what} for {other})").format(
+                        new=spelt(new),
+                        old=spelt(chosen[0]),
+                        what=_meant(new),
+                        other=_meant(chosen[0]),
+                    )
                 yield step(kind, does, cost + extra, *((x, again(new)) for x in chosen))
 
 
@@ -505,7 +592,15 @@ def _which(old: ast.expr, new: ast.expr) -> str:
     thing = "joint" if name == "z" else "frame" if name in ("o", "o_", "T", "R_") else "link"
     one, two = ast.unparse(old.slice), ast.unparse(new.slice)
     back = "- 1" in two or ("+ 1" in one and "+ 1" not in two)
-    return f" of the {thing} before" if back else f" of the next {thing}"
+    words = {
+        ("joint", True): _("{what} of the joint before"),
+        ("joint", False): _("{what} of the next joint"),
+        ("frame", True): _("{what} of the frame before"),
+        ("frame", False): _("{what} of the next frame"),
+        ("link", True): _("{what} of the link before"),
+        ("link", False): _("{what} of the next link"),
+    }
+    return words[thing, bool(back)].format(what=_meant(new))
 
 
 # -------- expressions
@@ -532,14 +627,15 @@ def _name(node: ast.expr) -> str:
 
 
 def _meant(node: ast.expr) -> str:
-    return MEANT.get(_name(node), spelt(node))
+    found = MEANT.get(_name(node))
+    return spelt(node) if found is None else _(found)
 
 
 def _told(node: ast.expr) -> str:
     """A term, with what it is called."""
     text = spelt(node)
-    called = _KNOWN.get(text, MEANT.get(_name(node), text))
-    return f"{text} ({called})" if called != text else text
+    called = _KNOWN.get(text, MEANT.get(_name(node), ""))
+    return f"{text} ({_(called)})" if called and called != text else text
 
 
 def spelt(node: ast.expr, indexed: bool = False) -> str:
