@@ -18,21 +18,9 @@ from words import Language, languages
 
 import kinlab
 from kinlab.check.catalogue import catalogue, plan, run
+from kinlab.check.places import places, told_of
 from kinlab.check.report.summary import Group, grouped, size
 from kinlab.formulas.typeset import mathml
-
-try:
-    from kinlab.check.places import places, told_of
-except ImportError:
-
-    def places() -> tuple:
-        return ()
-
-    def told_of(record, lang=None) -> dict[str, str]:
-        misprint = record.printed.misprint if record.printed else ""
-        told = {"title": record.title, "source": record.source, "place": record.source}
-        return told | {"misprint": misprint, "remark": record.remark}
-
 
 LONG = 70
 """Characters of LaTeX above which a form gets the whole width of the page."""
