@@ -21,9 +21,8 @@ from kinlab.doctor import terms, verdicts
 from kinlab.doctor.changes import Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
-    christoffel_terms,
+    several_taken_otherwise,
     taken_otherwise,
-    two_taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.derived import derivation
@@ -39,6 +38,8 @@ _SCREEN = 3
 """States on which a reading is tried first."""
 _NAMED = 8
 """Causes that are kept."""
+_FAR = 0.15
+"""Cost beyond the likeliest cause's from which another of the same evidence is not told."""
 _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
@@ -109,6 +110,7 @@ def examine(
     if excuse is not None:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
+    silent = _without_value(case, engine) if same else None
     tried = readings(case)
     signs = _bare_signs(values)
     if signs:
@@ -116,17 +118,19 @@ def examine(
         tried = [reading for reading in tried if reading.stage == "answer"]
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
-    causes: list[Cause] = []
-    if written and off:
+    causes: list[Cause] = [silent] if silent is not None else []
+    if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
     if not visible:
-        causes = _outranked(causes, [*_singly(case, tried), *_by_derivation(case, signs)])
+        # a slip that stands in the text comes before any step of a derivation
+        derived = [] if written and causes else [*_by_derivation(case, signs)]
+        causes = _outranked(causes, [*_singly(case, tried), *derived])
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
     if not causes and not signs:
-        causes = [_as_steps(found) for found in two_taken_otherwise(case)]
+        causes = [_as_steps(found) for found in several_taken_otherwise(case)]
     if not causes:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
@@ -135,7 +139,7 @@ def examine(
         causes += _reading_and_slips(case, likely, engine)
     if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
         partial = (meant,)
-    ranked = sorted(causes, key=lambda c: c.cost)[:_NAMED]
+    ranked = _ranked(causes)
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
@@ -153,15 +157,39 @@ def examine(
     )
 
 
+def _without_value(case: Case, engine: Array) -> Cause | None:
+    """A formula that is no number at some states, and right at all the others."""
+    count = len(case.hand)
+    whole_: Any = np.asarray(np.isfinite(case.hand).reshape(count, -1).all(axis=1))
+    missing = int(np.sum(~whole_))
+    if not missing:
+        return None
+    if missing == count:
+        told = _("the formula gives no number at any state")
+        return Cause(told, ("no value",), ("",), 0.0, 1.0)
+    error = float(np.max(relative_errors(case.hand[whole_], engine[whole_])))
+    if error > TOLERANCES.formula_agrees:
+        return None
+    told = _(
+        "the formula gives no number at {missing} of {count} states; where it gives one, it is "
+        "right"
+    ).format(missing=missing, count=count)
+    return Cause(told, ("no value",), ("",), error, 1.0)
+
+
+def _ranked(causes: list[Cause]) -> list[Cause]:
+    """The likeliest first, of each kind one; what is clearly more far-fetched is not told."""
+    kinds: dict[tuple[str, ...], Cause] = {}
+    for cause in sorted(causes, key=lambda c: c.cost):
+        kinds.setdefault(cause.kinds, cause)
+    kept = list(kinds.values())
+    return [cause for cause in kept if cause.cost <= kept[0].cost + _FAR][:_NAMED]
+
+
 def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
     """Causes that are one step of a textbook's derivation, taken otherwise."""
     if signs:
         return
-    terms_ = christoffel_terms(case)
-    if terms_ is not None:
-        said, error, count = terms_
-        told = _("the formula, {does}").format(does=said)
-        yield Cause(told, ("Christoffel",) * count, ("",) * count, error, 1.05)
     for found in taken_otherwise(case):
         yield _as_steps(found)
 
@@ -174,7 +202,7 @@ def _as_steps(found: Found) -> Cause:
     return Cause(
         _the_formula(step.sentence for step in found.steps),
         tuple(step.kind for step in found.steps),
-        tuple("" if step.joint is None else f"joint {step.joint + 1}" for step in found.steps),
+        tuple("" if step.joint is None else f"joint {step.joint}" for step in found.steps),
         found.error,
         found.cost,
     )

@@ -12,7 +12,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
 from kinlab.check.diagnosis import Diagnosis
@@ -33,8 +33,8 @@ from kinlab.check.report.words import (
 )
 from kinlab.check.unread import Unread
 from kinlab.formulas.typeset import mathml
-from kinlab.host.language import _, language_tag
-from kinlab.host.web import page_text, policy
+from kinlab.host.language import _
+from kinlab.host.web import page_text, policy, templates
 
 LONG = 110
 """Characters of LaTeX above which a form gets the whole width."""
@@ -95,14 +95,7 @@ def render(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    made = Environment(
-        loader=FileSystemLoader(_FOLDER),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    made = templates(_FOLDER)
     made.filters |= {
         "told": _told,
         "errors": errors,
@@ -118,8 +111,6 @@ def _environment() -> Environment:
     made.globals |= {
         "wide": LONG,
         "narrow": NARROW,
-        "_": _,
-        "language_tag": language_tag,
         "safe": Markup,  # a sentence of ours; what is put into its fields is escaped
         "key": Markup('<span class="key {}">{}</span>').format,
         "code": Markup("<code>{}</code>").format,

@@ -3,16 +3,18 @@
 ===============  =================================================================================
 module           what it holds
 ===============  =================================================================================
-``columns``      The Jacobian column by column and the mass matrix link by link, with what people
-                 do otherwise
-``derivations``  The textbooks' derivations walked with one step, then two, taken otherwise
+``books``        The textbooks' derivations as text, each written once, for any serial arm, and for
+                 the five-bar
+``derivations``  The textbooks' derivations walked with one step, then two or three, taken otherwise
 ``known``        The table of known confusions: every reading that makes sense for a quantity
-``links``        The product of link transforms, with what people write otherwise in the link's
-                 matrix
 ``otherwise``    What the engine says if asked otherwise: another frame, another split of C, terms
                  left out
-``recursion``    Newton-Euler as the textbooks have it, with what people do otherwise at each step
+``roads``        The numbers of an arm or a five-bar as the derivations ask for them, and which
+                 derivation gives what
 ``robots``       Readings of the robot itself: convention, offsets, base and tool, gravity,
                  inertias
+``steps``        Everything that one can do otherwise in one place of a derivation
+``walk``         Walks a textbook's derivation, written as text, with one step or several taken
+                 otherwise
 ===============  =================================================================================
 """

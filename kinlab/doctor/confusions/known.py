@@ -13,7 +13,6 @@ from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
 from kinlab.host.language import N_, _
-from kinlab.model.link import Convention
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
@@ -146,8 +145,6 @@ def _engines(case: Case) -> Iterator[Confusion]:
         yield _other(
             "transposed", _("uses J for J^T (not transposed)"), otherwise.jacobian_itself, 1.1
         )
-    if name in ("newton_step", "gradient_step"):
-        yield _other("sign", _("has the step with the opposite sign"), otherwise.step_back)
     if name == "mass_matrix" and case.robot.n > 1:
         said = _("is M for absolute angles (each counted from the base), not for the joint angles")
         for q_too in (False, True):
@@ -175,11 +172,6 @@ def _engines(case: Case) -> Iterator[Confusion]:
             otherwise.added(otherwise.symmetric_extra),
         )
         yield _other(
-            "gyroscopic term",
-            _("leaves the gyroscopic terms w x I w out"),
-            otherwise.added(otherwise.gyroscopic),
-        )
-        yield _other(
             "Coriolis terms",
             _("leaves the products qd_i qd_j out"),
             otherwise.added(otherwise.joint_products(-1.0)),
@@ -198,32 +190,8 @@ def _engines(case: Case) -> Iterator[Confusion]:
             1.1,
         )
         yield _other(
-            "velocity terms sign",
-            _("has the velocity terms with the opposite sign"),
-            otherwise.added(otherwise.coriolis_share(-2.0)),
-            1.1,
-        )
-        yield _other(
-            "velocity terms factor",
-            _("counts the velocity terms twice"),
-            otherwise.added(otherwise.coriolis_share(1.0)),
-            1.2,
-        )
-        yield _other(
-            "velocity terms factor",
-            _("counts the velocity terms half"),
-            otherwise.added(otherwise.coriolis_share(-0.5)),
-            1.2,
-        )
-        yield _other(
             "Mdot for C", _("uses Mdot v for C v"), otherwise.added(otherwise.mass_rate_extra), 1.2
         )
-    if name in ("mass_matrix", "kinetic_energy"):
-        said = _("takes the inertia tensors in link axes as if in base axes")
-        yield _other("inertia frame", said, otherwise.in_link_axes(name, otherwise.joint_axes))
-        table = case.robot.table
-        if table is not None and table.convention is Convention.STANDARD:
-            yield _other("inertia frame", said, otherwise.in_link_axes(name, otherwise.table_axes))
 
 
 def _answers(case: Case) -> Iterator[Confusion]:
@@ -236,7 +204,7 @@ def _answers(case: Case) -> Iterator[Confusion]:
         yield _answer("rotation transposed", _("has the rotation transposed"), _rotation_transposed)
     if len(shape) == 2 and (shape[0] > 1 or shape[1] > 1):
         yield _answer("transposed", _("is transposed"), lambda x: np.swapaxes(x, 1, 2))
-    yield _answer("sign", _("has the opposite sign as a whole"), np.negative, 1.1)
+    yield _answer("sign", _("has the opposite sign as a whole"), np.negative)
     yield _answer("factor", _("is twice as large as a whole"), _scaled(2.0), 1.2)
     yield _answer("factor", _("is half as large as a whole"), _scaled(0.5), 1.2)
     yield _answer("degrees", _("answers in degrees"), np.rad2deg, 1.4)

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Arguments, Engine
 from kinlab.engine.dynamics import coriolis_matrix
 from kinlab.engine.kinematics import fk, jacobian, statics
 from kinlab.engine.lagrange import christoffel
-from kinlab.model.robot import Robot, scratch
+from kinlab.model.robot import Robot
 
 
 def in_frame(frame: str) -> Callable[[Engine], Engine]:
@@ -122,61 +121,6 @@ def joint_products(factor: float) -> Extra:
     return extra
 
 
-def gyroscopic(robot: Robot, q: Array, v: Array) -> Array:
-    """-sum Jw^T (w x I w), each link in its own axes."""
-    out = np.zeros_like(q)
-    data = scratch(robot)
-    for row, (position, speed) in enumerate(zip(q, v, strict=True)):
-        pin.computeJointJacobians(robot.model, data, position)
-        for i in range(1, robot.model.njoints):
-            jac = pin.getJointJacobian(robot.model, data, i, pin.ReferenceFrame.LOCAL)
-            turning = jac.reshape(6, -1)[3:]  # one column comes flat
-            spin = turning @ speed
-            out[row] -= turning.T @ np.cross(spin, robot.model.inertias[i].inertia @ spin)
-    return out
-
-
-Tensors = Callable[[Robot, Array, int], tuple[Array, Array]]
-"""Robot, one q and a link from 0: the tensor, and the rotation of its axes in the base."""
-
-
-def joint_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
-    data = scratch(robot)
-    return robot.model.inertias[i + 1].inertia, data.oMi[i + 1].rotation
-
-
-def table_axes(robot: Robot, q: Array, i: int) -> tuple[Array, Array]:
-    """A standard table's frame i is turned against the joint's by alpha."""
-    assert robot.table is not None
-    frame = robot.table.frames(q[None])[0, i, :3, :3]
-    return np.asarray(robot.table.links[i].inertia), frame
-
-
-def in_link_axes(name: str, axes: Tensors) -> Callable[[Engine], Engine]:
-    def extra(robot: Robot, q: Array) -> Array:
-        """sum Jw^T (I - R I R^T) Jw with Jw in base axes."""
-        out = np.zeros((len(q), robot.n, robot.n))
-        data = scratch(robot)
-        for row, position in enumerate(q):
-            pin.computeJointJacobians(robot.model, data, position)
-            for i in range(robot.n):
-                turning = pin.getJointJacobian(
-                    robot.model, data, i + 1, pin.ReferenceFrame.LOCAL_WORLD_ALIGNED
-                ).reshape(6, -1)[3:]
-                tensor, turn = axes(robot, position, i)
-                out[row] += turning.T @ (tensor - turn @ tensor @ turn.T) @ turning
-        return out
-
-    def apply(engine: Engine) -> Engine:
-        if name == "mass_matrix":
-            return lambda robot, x: engine(robot, x) + extra(robot, x["q"])
-        return lambda robot, x: (
-            engine(robot, x) + 0.5 * np.einsum("ni,nij,nj->n", x["v"], extra(robot, x["q"]), x["v"])
-        )
-
-    return apply
-
-
 def in_absolute_angles(q_too: bool) -> Callable[[Engine], Engine]:
     """M for angles that are counted from the base: S^T M S, with S their differences."""
 
@@ -204,8 +148,3 @@ def jacobian_itself(engine: Engine) -> Engine:
         return out
 
     return changed
-
-
-def step_back(engine: Engine) -> Engine:
-    """q - step for q + step."""
-    return lambda robot, x: 2 * x["q"] - engine(robot, x)

@@ -82,8 +82,8 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
 
 def _column_readings(table: DHTable) -> Iterator[Confusion]:
     for column, words in (
-        ("theta", _("forgets all theta offsets")),
-        ("d", _("forgets all d offsets")),
+        ("theta", _("leaves all theta offsets out")),
+        ("d", _("leaves all d offsets out")),
     ):
         changed = [i for i, link in enumerate(table.links) if getattr(link, column)]
         if len(changed) > 1:
@@ -109,8 +109,8 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
     if not value:
         return
     kind = "offset" if column in ("theta", "d") else "table entry"
-    forgets = _("forgets {column} of link {number}").format(column=column, number=i + 1)
-    yield _table(kind, forgets, _linked(i, **{column: 0.0}), cost=1.2, place=place)
+    left_out = _("leaves {column} of link {number} out").format(column=column, number=i + 1)
+    yield _table(kind, left_out, _linked(i, **{column: 0.0}), cost=1.2, place=place)
     yield _table(
         f"{column} sign",
         _("has {column} of link {number} with the opposite sign").format(
@@ -216,7 +216,7 @@ def _double_centre(old: Any) -> tuple[float, Array, Array]:
 _BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
     (
         "inertia point",
-        N_("takes the inertia of {link} about the joint and adds m c² again"),
+        N_("counts m c² of {link} twice: takes its inertia about the joint and adds m c² again"),
         _about_joint,
         1.0,
     ),

@@ -1,0 +1,467 @@
+"""The textbooks' derivations as text, each written once, for any serial arm, and for the five-bar.
+
+Newton-Euler as Craig has it (6.45 to 6.53), as Siciliano has it (7.107 to 7.114), and in base
+axes; the Jacobian's columns (Siciliano 3.30, Spong 4.57, Craig 5.9); the mass matrix by the links'
+Jacobians (Spong 7.50; note 002, 002.M), Christoffel's C and Lagrange's equation; the product of
+link transforms; the five-bar's closed chain (note 003); Newton's step and gradient descent (note
+000). The comment above a line says what it is; a line without one is plumbing, which nobody gets
+wrong. Indices run from 1; ``T[0]`` is the base.
+"""
+
+from __future__ import annotations
+
+from kinlab.host.language import N_
+
+VELOCITIES = """
+w[0] = zero
+v[0] = zero
+for i in outward:
+    # the angular velocity w of the link
+    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    # the velocity v of the link's origin
+    v[i] = R[i].T @ (v[i-1] + cross(w[i-1], P[i]))
+    # the velocity v of the link's origin
+    v[i] = v[i] if hinge[i] else v[i] + qd[i]*z[i]
+    asked[i] = twist(v[i], w[i])
+"""
+
+_OUTWARD = """
+w[0] = zero
+dw[0] = zero
+# the start of the recursion
+dv[0] = -g
+for i in outward:
+    # the angular velocity w of the link
+    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    # the angular acceleration omega_dot of the link
+    dw[i] = (R[i].T @ dw[i-1] + cross(R[i].T @ w[i-1], qd[i]*z[i]) + qdd[i]*z[i]
+             if hinge[i] else R[i].T @ dw[i-1])
+    # the acceleration of the link's origin
+    dv[i] = R[i].T @ (dv[i-1] + cross(dw[i-1], P[i]) + cross(w[i-1], cross(w[i-1], P[i])))
+    # the acceleration of the link's origin
+    dv[i] = dv[i] if hinge[i] else dv[i] + 2*cross(w[i], qd[i]*z[i]) + qdd[i]*z[i]
+"""
+ACCELERATIONS = (
+    _OUTWARD
+    + """
+    asked[i] = twist(dv[i], dw[i])
+"""
+)
+CRAIG = (
+    _OUTWARD
+    + """
+    # the acceleration of the centre of mass
+    dvc[i] = dv[i] + cross(dw[i], c[i]) + cross(w[i], cross(w[i], c[i]))
+    # the link's own force F
+    F[i] = m[i]*dvc[i]
+    # the link's own moment N
+    N[i] = I[i] @ dw[i] + cross(w[i], I[i] @ w[i])
+f[n+1] = zero
+nn[n+1] = zero
+P[n+1] = end
+R[n+1] = one
+for i in inward:
+    # the force f of the link
+    f[i] = R[i+1] @ f[i+1] + F[i]
+    # the moment n of the link
+    nn[i] = N[i] + R[i+1] @ nn[i+1] + cross(c[i], F[i]) + cross(P[i+1], R[i+1] @ f[i+1])
+    # the joint torque
+    tau[i] = (nn[i] @ z[i] if hinge[i] else f[i] @ z[i]) + Ia[i]*qdd[i]
+"""
+)
+
+SICILIANO = """
+w[0] = zero
+dw[0] = zero
+# the start of the recursion
+dv[0] = -g
+for i in outward:
+    # the angular acceleration omega_dot of the link
+    dw[i] = (R[i].T @ (dw[i-1] + qdd[i]*z[i] + cross(w[i-1], qd[i]*z[i]))
+             if hinge[i] else R[i].T @ dw[i-1])
+    # the angular velocity w of the link
+    w[i] = R[i].T @ (w[i-1] + qd[i]*z[i]) if hinge[i] else R[i].T @ w[i-1]
+    # the acceleration of the link's origin
+    dv[i] = (R[i].T @ dv[i-1] if hinge[i] else R[i].T @ (dv[i-1] + qdd[i]*z[i])
+             + 2*cross(w[i], qd[i]*(R[i].T @ z[i])))
+    # the acceleration of the link's origin
+    dv[i] = dv[i] + cross(dw[i], P[i]) + cross(w[i], cross(w[i], P[i]))
+    # the acceleration of the centre of mass
+    dvc[i] = dv[i] + cross(dw[i], c[i]) + cross(w[i], cross(w[i], c[i]))
+    # the link's own force F
+    F[i] = m[i]*dvc[i]
+    # the link's own moment N
+    N[i] = I[i] @ dw[i] + cross(w[i], I[i] @ w[i])
+f[n+1] = zero
+nn[n+1] = zero
+R[n+1] = one
+for i in inward:
+    # the force f of the link
+    f[i] = R[i+1] @ f[i+1] + F[i]
+    # the moment n of the link
+    nn[i] = (N[i] + R[i+1] @ nn[i+1] + cross(P[i], R[i+1] @ f[i+1])
+             + cross(P[i] + c[i], F[i]))
+    # the joint torque
+    tau[i] = ((nn[i] @ (R[i].T @ z[i]) if hinge[i] else f[i] @ (R[i].T @ z[i]))
+              + Ia[i]*qdd[i])
+"""
+
+COLUMNS = """
+for i in outward:
+    # the Jacobian's column
+    J[i] = twist(cross(z[i], p - o[i]), z[i]) if hinge[i] else twist(z[i], zero)
+# the Jacobian
+Jb = columns(J)
+"""
+
+STATICS = """
+# the joint torques of a wrench
+tau = Jb.T @ wrench
+"""
+
+TWISTED = {
+    "base": "",
+    "tool": "Jb = both.T @ Jb\n",
+    "spatial": "Jb = carried @ Jb\n",
+}
+"""What follows the Jacobian in base axes at the tool."""
+
+MASSES = """
+M = nothing
+G = zeros
+V = number
+for k in outward:
+    # the centre of mass
+    pc = o_[k] + R_[k] @ c[k]
+    for j in outward:
+        # the linear part of the link's Jacobian
+        Lv[j] = (cross(z[j], pc - o[j]) if hinge[j] else z[j]) if j <= k else zero
+        # the angular part of the link's Jacobian
+        Lw[j] = (z[j] if hinge[j] else zero) if j <= k else zero
+    Jv = columns(Lv)
+    Jw = columns(Lw)
+    # the mass matrix
+    M = M + m[k]*Jv.T @ Jv + Jw.T @ (R_[k] @ I[k] @ R_[k].T) @ Jw
+    # the gravity torques
+    G = G - m[k]*Jv.T @ g
+    # the potential energy
+    V = V - m[k]*g @ pc
+    com[k] = pc
+# the rotors' inertia
+M = M + diagonal(Ia)
+"""
+
+CHRISTOFFEL = """
+D = slope(M)
+# Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k
+C = 0.5*(D + ikj(D) - jki(D)) @ v
+"""
+
+VELOCITY = """
+D = slope(M)
+# the velocity torques: Mdot v and the gradient of ½ v^T M v
+c = (D @ v) @ v - 0.5*(jki(D) @ v) @ v
+"""
+
+LAGRANGE = {
+    "mass_matrix": ("M", ""),
+    "gravity_torques": ("G", ""),
+    "potential_energy": ("V", ""),
+    "com_positions": ("com", ""),
+    "kinetic_energy": ("E", """
+# the kinetic energy
+E = 0.5*v @ M @ v
+"""),
+    "momentum": ("E", """
+# the momentum
+E = M @ v
+"""),
+    "lagrangian": ("E", """
+# the Lagrangian L = T - V
+E = 0.5*v @ M @ v - V
+"""),
+    "coriolis_matrix": ("C", CHRISTOFFEL),
+    "coriolis_torques": ("c", CHRISTOFFEL + """
+# the velocity torques
+c = C @ v
+"""),
+    "inverse_dynamics": ("tau", CHRISTOFFEL + """
+# the equation of motion
+tau = M @ a + C @ v + G
+"""),
+    "inverse_without_gravity": ("tau", CHRISTOFFEL + """
+# the equation of motion
+tau = M @ a + C @ v
+"""),
+    "inverse_dynamics_loaded": ("tau", CHRISTOFFEL + """
+q = q
+# the equation of motion
+tau = M @ a + C @ v + G + Jt.T @ wrench
+"""),
+    "forward_dynamics": ("a", CHRISTOFFEL + """
+# the equation of motion
+a = solve(M, tau - C @ v - G)
+"""),
+    "mass_matrix_dot": ("E", """
+D = slope(M)
+# Mdot
+E = D @ v
+"""),
+    "mass_rate_velocity": ("E", """
+D = slope(M)
+# Mdot v
+E = (D @ v) @ v
+"""),
+    "skew_matrix": ("E", CHRISTOFFEL + """
+# Mdot - 2C
+E = D @ v - 2*C
+"""),
+    "kinetic_gradient": ("E", """
+D = slope(M)
+# the gradient of ½ v^T M v
+E = 0.5*(jki(D) @ v) @ v
+"""),
+    "lagrangian_gradient": ("E", """
+D = slope(M)
+# the gradient of the Lagrangian
+E = 0.5*(jki(D) @ v) @ v - G
+"""),
+    "momentum_rate": ("E", """
+D = slope(M)
+# the momentum's rate
+E = M @ a + (D @ v) @ v
+"""),
+    "christoffel": ("E", """
+D = slope(M)
+# Christoffel's ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i)
+E = 0.5*(D + ikj(D) - jki(D))
+"""),
+}  # fmt: skip
+"""By quantity: what is asked for, and what follows the mass matrix."""
+
+STANDARD = """
+    # the link's matrix
+    A[i] = [[ct, -st*ca, st*sa, a[i]*ct],
+            [st, ct*ca, -ct*sa, a[i]*st],
+            [0, sa, ca, dd],
+            [0, 0, 0, 1]]
+"""
+MODIFIED = """
+    # the link's matrix
+    A[i] = [[ct, -st, 0, a[i]],
+            [st*ca, ct*ca, -sa, -sa*dd],
+            [st*sa, ct*sa, ca, ca*dd],
+            [0, 0, 0, 1]]
+"""
+MATRIX = """
+T[0] = base
+for i in outward:
+    # the angle theta, with q at a hinge (revolute joint)
+    th = theta[i] + q[i] if hinge[i] else theta[i]
+    # the offset d, with q at a slide (prismatic joint)
+    dd = d[i] if hinge[i] else d[i] + q[i]
+    # the cosine and sine of theta
+    ct = cos(th)
+    # the cosine and sine of theta
+    st = sin(th)
+    # the cosine and sine of alpha
+    ca = cos(alpha[i])
+    # the cosine and sine of alpha
+    sa = sin(alpha[i])
+{matrix}
+    # the product of the link transforms
+    T[i] = T[i-1] @ A[i]
+# the tool's pose
+pose = T[n] @ tool
+"""
+ELEMENTARY = """
+T[0] = base
+for i in outward:
+    # the product of the elementary transforms
+    T[i] = T[i-1] @ {order}
+# the tool's pose
+pose = T[n] @ tool
+"""
+
+
+def product_of_links(standard: bool) -> str:
+    """The product of link matrices, written out in the convention."""
+    return MATRIX.format(matrix=STANDARD if standard else MODIFIED)
+
+
+def product_of_elements(standard: bool) -> str:
+    """The product of elementary transforms, in the convention's order."""
+    order = "Rz[i] @ Tz[i] @ Tx[i] @ Rx[i]" if standard else "Rx[i] @ Tx[i] @ Rz[i] @ Tz[i]"
+    return ELEMENTARY.format(order=f"({order})")
+
+
+def newton_euler(standard: bool, in_base: bool) -> str:
+    """The recursion in the links' axes, or with all vectors in base axes."""
+    text = SICILIANO if standard else CRAIG
+    if not in_base:
+        return text
+    text = text.replace("R[i].T @ ", "").replace("R[i+1] @ ", "")
+    text = text.replace("c[i]", "cb[i]").replace("dvcb[i]", "dvc[i]").replace("I[i]", "Ib[i]")
+    return text.replace("for i in outward:\n", _IN_BASE, 1)
+
+
+_IN_BASE = """for i in outward:
+    # the centre of mass in base axes
+    cb[i] = R_[i] @ c[i]
+    # the inertia tensor in base axes
+    Ib[i] = R_[i] @ I[i] @ R_[i].T
+"""
+
+ISOTROPY = """
+# the products of the Jacobian's rows
+E = defect(J @ J.T)
+"""
+
+ITERATIVE = {
+    "newton_step": "q + solve(J, target - x)",
+    "loss": "0.5*(target - x) @ (target - x)",
+    "loss_gradient": "-J.T @ (target - x)",
+    "gradient_step": "q + 0.1*(J.T @ (target - x))",
+    "least_rates": "J.T @ inv(J @ J.T) @ twist",
+}
+"""Steps of iterative inverse kinematics, by quantity."""
+
+FIVE_BAR = """
+for i in outward:
+    # the coefficient A
+    A[i] = 2*(s[i]*e - x)*l1[i]
+    # the coefficient B
+    B[i] = -2*y*l1[i]
+    # the right side C
+    C[i] = l2[i]**2 - l1[i]**2 - e**2 - x**2 - y**2 + 2*s[i]*e*x
+"""
+_CRANKS = """
+    # the crank's angle theta, by the half tangent
+    theta[i] = 2*arctan((B[i] + mode[i]*sqrt(A[i]**2 + B[i]**2 - C[i]**2))/(A[i] + C[i]))
+"""
+_BARS = """
+    # the crank's direction u
+    crank[i] = vector(cos(theta[i]), sin(theta[i]))
+    # the rod's direction w
+    rod[i] = (r - s[i]*e*E1 - l1[i]*crank[i])/l2[i]
+    # the sine u^T H w
+    k[i] = crank[i] @ H @ rod[i]
+    # the row of J
+    J[i] = rod[i]/(l1[i]*k[i])
+"""
+_MOVING = """
+    # the bias f(v) of the crank's acceleration
+    f[i] = ((v @ rod[i])**2*(crank[i] @ rod[i])/l1[i] + (v @ crank[i])**2/l2[i])/(l1[i]*k[i]**3)
+    # the crank's acceleration
+    acc[i] = J[i] @ a + f[i]
+    # the crank's own torque
+    own[i] = IA[i]*acc[i] + mc[i]*g*(crank[i] @ E1)
+"""
+_TORQUE = """
+Jm = columns(J).T
+own = columns(own)
+# the torque by virtual work
+tau = own + inv(Jm).T @ (m*(a + g*E2))
+"""
+_GAIN = """
+Jm = columns(J).T
+# G, the torque per acceleration
+E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
+"""
+_LOOP = FIVE_BAR + _CRANKS + _BARS
+CLOSED = {
+    "fivebar_projection": ("C", FIVE_BAR),
+    "fivebar_cranks": ("crank", _LOOP),
+    "fivebar_rods": ("rod", _LOOP),
+    "fivebar_jacobian": ("J", _LOOP),
+    "fivebar_turn": ("acc", _LOOP + _MOVING),
+    "fivebar_torque_massless": ("tau", _LOOP + _MOVING + _TORQUE),
+    "fivebar_torque_per_acceleration": ("E", _LOOP + _GAIN),
+    "fivebar_torque_per_acceleration_worst": ("E", _LOOP + _GAIN + """
+# the worst torque per acceleration
+E = norm(E)
+"""),
+    "fivebar_rate_per_speed": ("E", _LOOP + """
+Jm = columns(J).T
+# the worst crank rate per speed
+E = norm(Jm)
+"""),
+    "fivebar_power_massless": ("E", _LOOP + _MOVING + _TORQUE + """
+# the power
+E = tau*(Jm @ v)
+"""),
+}  # fmt: skip
+"""By quantity: what is asked for, and the derivation."""
+OTHER_SIDE = """
+for i in outward:
+    # the left side A cos(theta) + B sin(theta)
+    C[i] = 2*(s[i]*e - x)*l1[i]*cos(theta[i]) - 2*y*l1[i]*sin(theta[i])
+"""
+
+ABOUT = (
+    N_("Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k"),
+    N_("Christoffel's ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i)"),
+    N_("G, the torque per acceleration"),
+    N_("Mdot"),
+    N_("Mdot - 2C"),
+    N_("Mdot v"),
+    N_("the Jacobian"),
+    N_("the Jacobian's column"),
+    N_("the Lagrangian L = T - V"),
+    N_("the acceleration of the centre of mass"),
+    N_("the acceleration of the link's origin"),
+    N_("the angle theta, with q at a hinge (revolute joint)"),
+    N_("the angular acceleration omega_dot of the link"),
+    N_("the angular part of the link's Jacobian"),
+    N_("the angular velocity w of the link"),
+    N_("the bias f(v) of the crank's acceleration"),
+    N_("the centre of mass"),
+    N_("the centre of mass in base axes"),
+    N_("the coefficient A"),
+    N_("the coefficient B"),
+    N_("the cosine and sine of alpha"),
+    N_("the cosine and sine of theta"),
+    N_("the crank's acceleration"),
+    N_("the crank's angle theta, by the half tangent"),
+    N_("the crank's direction u"),
+    N_("the crank's own torque"),
+    N_("the equation of motion"),
+    N_("the force f of the link"),
+    N_("the gradient of the Lagrangian"),
+    N_("the gradient of ½ v^T M v"),
+    N_("the gravity torques"),
+    N_("the inertia tensor in base axes"),
+    N_("the joint torque"),
+    N_("the joint torques of a wrench"),
+    N_("the kinetic energy"),
+    N_("the left side A cos(theta) + B sin(theta)"),
+    N_("the linear part of the link's Jacobian"),
+    N_("the link's matrix"),
+    N_("the link's own force F"),
+    N_("the link's own moment N"),
+    N_("the mass matrix"),
+    N_("the moment n of the link"),
+    N_("the momentum"),
+    N_("the momentum's rate"),
+    N_("the offset d, with q at a slide (prismatic joint)"),
+    N_("the potential energy"),
+    N_("the power"),
+    N_("the product of the elementary transforms"),
+    N_("the product of the link transforms"),
+    N_("the products of the Jacobian's rows"),
+    N_("the right side C"),
+    N_("the rod's direction w"),
+    N_("the rotors' inertia"),
+    N_("the row of J"),
+    N_("the sine u^T H w"),
+    N_("the start of the recursion"),
+    N_("the step"),
+    N_("the tool's pose"),
+    N_("the torque by virtual work"),
+    N_("the velocity torques"),
+    N_("the velocity torques: Mdot v and the gradient of ½ v^T M v"),
+    N_("the velocity v of the link's origin"),
+    N_("the worst crank rate per speed"),
+    N_("the worst torque per acceleration"),
+)
+"""What the lines are called in the comments above them."""
