@@ -43,7 +43,7 @@ _PAIRS = {"(": ")", "[": "]", "{": "}"}
 
 
 def expression(text: str, place: str = "expression") -> str:
-    """Plain text of a LaTeX formula: ``m_1 l_1^2 \\ddot{q}_1`` gives ``m1*l1**(2)*qdd1``.
+    """Plain text of a LaTeX formula: ``m_1 l_1^2 \\ddot{q}_1`` gives ``m1*l1**2*qdd1``.
 
     Args:
         text: sums, products (also by standing side by side), ``/``, powers, ``\\frac``, ``\\sqrt``,
@@ -80,6 +80,11 @@ def expression(text: str, place: str = "expression") -> str:
     if reader.next:
         raise reader.unread()
     return result
+
+
+def _raised(exponent: str) -> str:
+    """An exponent in plain text, whole numbers without brackets."""
+    return f"**{exponent}" if exponent.isdigit() else f"**({exponent})"
 
 
 class _Reader:
@@ -192,7 +197,7 @@ class _Reader:
 
     def power(self) -> str:
         text = self.atom()
-        return f"{text}**({self.argument()})" if self.raised() else text
+        return text + _raised(self.argument()) if self.raised() else text
 
     def raised(self) -> bool:
         if self.next == "^":
@@ -263,7 +268,7 @@ class _Reader:
             )
         inside = self.arguments() if self.next in _PAIRS else self.bare_argument(name)
         text = f"{name}({inside})"
-        return f"{text}**({exponent})" if exponent else text
+        return text + _raised(exponent) if exponent else text
 
     def arguments(self) -> str:
         closing = _PAIRS[self.take()]
@@ -310,7 +315,7 @@ class _Reader:
             exponent = self.argument()
             below = self.subscript()
             if below:
-                return f"{head}{dots}{below}**({exponent})"
+                return f"{head}{dots}{below}{_raised(exponent)}"
             self.at = mark
         return f"{head}{dots}{below}"
 

@@ -104,7 +104,9 @@ class IsotropySearch(Rows):
     def introduction(self) -> Introduction:
         """Whether the arm is isotropic somewhere, where it is best, and how sure that is."""
         chosen = " (chosen for this arm)" if self.suggested else ""
-        length = "" if self.best_length is None else f", length {self.best_length:.6g} m"
+        length = ""
+        if self.best_length is not None:
+            length = f", length {self.best_length:.6g} m ({self.length})"
         if self.found:
             count = counted(len(self.configurations), "isotropic configuration")
             told = f"{count} (families count once)"
@@ -114,8 +116,7 @@ class IsotropySearch(Rows):
         return Introduction(
             f"{self.robot}, task {self.task}{chosen}: {told}",
             (
-                f"best: q = {vector(self.best_q)}, condition {self.best_condition:.8g}{length} "
-                f"({self.length})",
+                f"best: q = {vector(self.best_q)}, condition {self.best_condition:.8g}{length}",
                 str(self.evidence),
             ),
             tuple(cells) if self.found else (),

@@ -106,7 +106,7 @@ class TableDiagnosis(Rows):
         else:
             told = _(
                 "compared at {states} states: poses differ by {before:.3g} of the arm's size, by "
-                "{after:.1e} once repaired"
+                "{after:.2g} once repaired"
             )
         return told.format(states=self.states, before=self.error_before, after=self.error_after)
 
