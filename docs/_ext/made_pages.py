@@ -39,8 +39,5 @@ def write_if_changed(path: Path, text: str) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    from pygments.lexers.special import TextLexer
-
-    app.add_lexer("csv", TextLexer)  # Pygments has none
     app.connect("builder-inited", write_all)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
