@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from kinlab.doctor.confusions.books import MODIFIED, STANDARD
-from kinlab.doctor.confusions.walk import Line, Program, Step, again
+from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
 from kinlab.host.language import N_, _
 
 _ALIKE = (
@@ -155,7 +155,7 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
 
 
 def _of_line(
-    line: Line,
+    line: Assignment,
     axes: Mapping[int, tuple[int, ...]],
     shapes: Mapping[str, tuple[int, ...]],
     wide: bool,

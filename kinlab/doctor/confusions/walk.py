@@ -27,7 +27,7 @@ Inputs = Callable[[Array], dict[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
-class Line:
+class Assignment:
     """One line of a derivation: the assignment, and what it is, in words; ``""`` for plumbing."""
 
     statement: ast.stmt
@@ -39,7 +39,7 @@ class Program:
     """A derivation as text, read. Attributes: body; lines: all assignments."""
 
     body: tuple[ast.stmt, ...]
-    lines: tuple[Line, ...]
+    lines: tuple[Assignment, ...]
 
 
 @lru_cache(maxsize=64)
@@ -51,7 +51,7 @@ def program(text: str) -> Program:
     for node in ast.walk(tree):
         if isinstance(node, ast.Assign):
             above = rows[node.lineno - 2].strip() if node.lineno > 1 else ""
-            lines.append(Line(node, above[2:] if above.startswith("# ") else ""))
+            lines.append(Assignment(node, above[2:] if above.startswith("# ") else ""))
     return Program(tuple(tree.body), tuple(sorted(lines, key=lambda x: x.statement.lineno)))
 
 
