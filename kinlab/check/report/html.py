@@ -16,12 +16,13 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.places import place_in_note
+from kinlab.check.places import place_in_note, short_place
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import (
     HOW,
     TAKEN_APART,
     TITLE,
+    at_most,
     errors,
     lead,
     origin,
@@ -102,6 +103,8 @@ def _environment() -> Environment:
         "several": several,
         "size": size,
         "place": place_in_note,
+        "short_place": short_place,
+        "at_most": at_most,
         "mathml": lambda latex: Markup(mathml(latex)),
         "spread": lambda group: Markup(svg(group.errors, group.printed_errors)),
     }
