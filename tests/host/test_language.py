@@ -33,6 +33,7 @@ COVERED = (
     "cli/analysis_tables.py",
     "cli/check.py",
     "cli/derive.py",
+    "cli/fivebar",
     "cli/ik.py",
     "cli/mark.py",
     "cli/motion.py",
@@ -49,6 +50,8 @@ LEFT_ENGLISH: dict[str, tuple[str, ...]] = {
     "check/report/words.py": ("random state",),
     "cli/analysis_tables.py": ("none needed",),
     "cli/check.py": ("bold red",),
+    "cli/fivebar/design.py": ("LEAST LARGEST", "GOAL GOAL"),
+    "cli/fivebar/sizing.py": ("bold yellow",),
     "cli/ik.py": ("kinlab ik",),
     # the page's own script
     "viewer/page/static_page.py": ("\nconst viewer = ",),
