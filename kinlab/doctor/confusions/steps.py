@@ -403,6 +403,12 @@ def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
         yield step("transposed", does, 1.1, (node, ast.Call(node.func, [turned, other], [])))
         does = _("has the transpose {matrix}^T for the inverse {matrix}^-1").format(matrix=matrix)
         yield step("inverse", does, 1.05, (node, ast.BinOp(turned, ast.MatMult(), other)))
+    elif name == "defect" and isinstance(x[0], ast.BinOp):
+        swapped = ast.BinOp(x[0].right, ast.MatMult(), x[0].left)
+        does = _("has {written} for {meant} (the product's order)").format(
+            written=spelt(swapped), meant=spelt(x[0])
+        )
+        yield step("order", does, 1.05, (node, ast.Call(node.func, [swapped], [])))
     elif name == "inv":
         does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=spelt(x[0]))
         yield step("inverse", does, 1.05, (node, x[0]))
