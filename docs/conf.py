@@ -6,7 +6,6 @@ it is built, and a page that is opened asks for nothing either: formulas are Mat
 
 from __future__ import annotations
 
-import logging
 import os
 import sys
 from pathlib import Path
@@ -94,8 +93,3 @@ python_maximum_signature_line_length = 88
 add_module_names = False
 modindex_common_prefix = ["kinlab."]
 toc_object_entries_show_parents = "hide"
-
-# until every folder of the toctree has its first page
-logging.getLogger("sphinx.sphinx.directives.other").addFilter(
-    lambda record: "toctree glob pattern" not in str(record.msg)
-)

@@ -181,6 +181,14 @@ class Tolerances:
     """rad or m beyond a joint limit that still count as within: a limit of ten digits (6.283185307
     for a whole turn) does not hide what stands on it. Answers themselves are within the limits."""
 
+    root_crowd: float = 1e-3
+    """Roots on the unit circle nearer to each other than this may be one multiple root, which comes
+    as a crowd of simple ones about it."""
+
+    zeros_together: float = 1e-9
+    """Of the cosine of half the angle between two zeros: as near to 1 they may be one double zero,
+    which a formula finds to half the digits only."""
+
     stays_singular: float = 1e-9
     """sigma_min / sigma_max up to which the arm stayed singular; the held joints are known to
     1e-12."""

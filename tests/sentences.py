@@ -72,7 +72,7 @@ def marked_in_python(tree: ast.AST, place: str) -> list[tuple[str, str, int]]:
 def _is_looked_up(node: ast.expr) -> bool:
     """Whether an expression is a text that is marked elsewhere, and not one that is put together."""
     if isinstance(node, ast.Call):
-        return getattr(node.func, "attr", "format") not in ("format", "join")
+        return getattr(node.func, "attr", "") not in ("format", "join")
     return isinstance(node, ast.Name | ast.Attribute | ast.Subscript | ast.IfExp)
 
 
@@ -105,6 +105,20 @@ def records() -> list[tuple[str, str, str]]:
     return found
 
 
+def help_texts() -> list[tuple[str, str]]:
+    """What ``--help`` says: (text, command)."""
+    import typer
+
+    from kinlab.cli import all_commands, app
+
+    group = typer.main.get_command(app)
+    found = []
+    for one in (group, *all_commands(group)):
+        texts = [one.help, *(getattr(parameter, "help", None) for parameter in one.params)]
+        found += [(text, one.name) for text in texts if text]
+    return found
+
+
 def sentences() -> dict[str, Sentence]:
     """Every sentence of the package, by its source."""
     found: dict[str, Sentence] = {}
@@ -130,6 +144,8 @@ def sentences() -> dict[str, Sentence]:
             add(one, more, room_of(file), f"{place}:{line}")
     for one, room, place in records():
         add(one, "", room, place)
+    for one, command in help_texts():
+        add(one, "", "cli", f"kinlab {command} --help")
     return found
 
 
@@ -205,6 +221,7 @@ def update(folder: str) -> None:
 
 # -------- What should be marked and is not
 
+_MARKUP = re.compile(r"<[^>]*>?")
 _WORDS = re.compile(r"[A-Za-z]{2,}[,:;.]? +[A-Za-z]{2,}")
 """Two words beside each other: what makes a piece of text a sentence."""
 
@@ -236,7 +253,7 @@ def unmarked(tree: ast.AST) -> list[tuple[int, str]]:
         if isinstance(node, ast.Constant)
         and isinstance(node.value, str)
         and id(node) not in free
-        and _WORDS.search(node.value)
+        and _WORDS.search(_MARKUP.sub("", node.value))
     ]
 
 

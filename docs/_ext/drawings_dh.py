@@ -209,7 +209,7 @@ class Picture:
         drawn = "\n".join(text for _, text in sorted(self.pieces, key=lambda piece: piece[0]))
         return (
             f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {self.height:.0f}" '
-            f'role="img" aria-label="{escape(said, quote=True)}" class="drawing" '
+            f'role="img" aria-label="{escape(said, quote=True)}" class="robot-drawing" '
             'font-family="Georgia, Times, serif">\n' + drawn + "\n</svg>"
         )
 

@@ -16,10 +16,11 @@ import hashlib
 import html
 import re
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from docutils import nodes
-from sphinx.application import Sphinx
+if TYPE_CHECKING:  # the tests of what is cut out do without Sphinx
+    from docutils import nodes
+    from sphinx.application import Sphinx
 
 _FRAME = re.compile(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>')
 _SCRIPT = re.compile(r"<script>(.*?)</script>", re.DOTALL)
@@ -85,6 +86,8 @@ def write_page(text: str, folder: Path) -> str:
 
 
 def _cut_out(app: Sphinx, doctree: nodes.document) -> None:
+    from docutils import nodes
+
     docname = app.env.docname
     up = "../" * docname.count("/")
     words = _WORDS["zh" if docname.startswith("zh/") else "en"]

@@ -18,21 +18,9 @@ from words import Language, languages
 
 import kinlab
 from kinlab.check.catalogue import catalogue, plan, run
+from kinlab.check.places import places, told_of
 from kinlab.check.report.summary import Group, grouped, size
 from kinlab.formulas.typeset import mathml
-
-try:
-    from kinlab.check.places import places, told_of
-except ImportError:
-
-    def places() -> tuple:
-        return ()
-
-    def told_of(record, lang=None) -> dict[str, str]:
-        misprint = record.printed.misprint if record.printed else ""
-        told = {"title": record.title, "source": record.source, "place": record.source}
-        return told | {"misprint": misprint, "remark": record.remark}
-
 
 LONG = 70
 """Characters of LaTeX above which a form gets the whole width of the page."""
@@ -101,7 +89,7 @@ def page(number: str, groups: Sequence[Group], say: Language) -> str:
         for group in wrong:
             label = f"`{group.formula.key}`"
             told = told_of(group.formula, say.name)
-            lines.append(f"- [{label}](#{anchor(group)}){say(': ')}{ended(told['misprint'])}")
+            lines.append(f"- [{label}](#{anchor(group, say)}){say(': ')}{ended(told['misprint'])}")
         lines.append("")
     for source, several in groupby(ordered, lambda group: group.formula.source):
         section = re.sub(r"^\w+ \d{3}[,，] *", "", say(source))  # the page's title names the note
@@ -116,7 +104,7 @@ def card(group: Group, say: Language) -> list[str]:
     """One formula: place, forms, verdict, how far each form is from the engine, robot by robot."""
     record = group.formula
     told = told_of(record, say.name)
-    lines = [f"({anchor(group)})=", f"### `{record.key}` {literal(told['title'])}", ""]
+    lines = [f"({anchor(group, say)})=", f"### `{record.key}` {literal(told['title'])}", ""]
     engine = say("engine: {quantity}").format(quantity=f"`{record.quantity}`")
     lines += ["{.place}", " · ".join(filter(None, (literal(told["place"]), engine))), ""]
     forms = []
@@ -189,10 +177,10 @@ def line_by_line(number: str, known: set[str], say: Language) -> list[str]:
     return [*lines, ""]
 
 
-def anchor(group: Group) -> str:
-    """The label of a formula on its page."""
+def anchor(group: Group, say: Language) -> str:
+    """The label of a formula on its page; labels are one for the whole site."""
     plain = "".join(c if c.isalnum() else "-" for c in group.formula.key)
-    return f"formula-{plain}"
+    return f"formula-{plain}" if say.folder == "." else f"formula-{say.name}-{plain}"
 
 
 def literal(text: str) -> str:

@@ -269,7 +269,7 @@ def rooms() -> str:
     text += "What :doc:`/architecture` puts in order, from the rooms' own docstrings.\n\n"
     for file in sorted(Path(kl.__path__[0]).rglob("__init__.py")):
         name = ".".join(file.parent.relative_to(Path(kl.__path__[0]).parent).parts)
-        text += heading(name, "-") + f".. automodule:: {name}\n   :no-index-entry:\n\n"
+        text += heading(name, "-") + f".. automodule:: {name}\n\n"
     return text
 
 

@@ -130,7 +130,7 @@ def _arm_caption(table: kl.DHTable, q: np.ndarray) -> str:
 def _figure(svg: str, caption: str) -> str:
     flat = svg.replace("\n", "")
     return (
-        f'```{{raw}} html\n<figure class="drawing">{flat}\n'
+        f'```{{raw}} html\n<figure class="robot-drawing">{flat}\n'
         f"<figcaption>{caption}</figcaption></figure>\n```"
     )
 
@@ -477,7 +477,7 @@ def _card(name: str, words: str, drawn: str) -> str:
     flat = drawn.replace("\n", "")
     return (
         f":::{{grid-item-card}} {name}\n:link: generated/{name}\n:link-type: doc\n"
-        f'```{{raw}} html\n<div class="drawing thumbnail">{flat}</div>\n```\n{words}\n:::'
+        f'```{{raw}} html\n<div class="robot-drawing thumbnail">{flat}</div>\n```\n{words}\n:::'
     )
 
 

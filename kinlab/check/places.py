@@ -56,7 +56,7 @@ def places() -> tuple[Place, ...]:
 def place_in_note(record: Formula) -> str:
     """Where a formula stands in its note, in words; empty for one of no note."""
     told = []
-    mine = [one for one in places() if record.note == one.note and record.id in one.ids]
+    mine = _mine(record)
     for heading in dict.fromkeys(one.heading for one in mine):
         here = [one for one in mine if one.heading == heading]
         lines = _ranges(here)
@@ -67,6 +67,20 @@ def place_in_note(record: Formula) -> str:
             text = _("“{heading}”, in the text, lines {lines}")
         told.append(text.format(heading=heading, numbers=numbers, lines=lines))
     return _("; ").join(told)
+
+
+def short_place(record: Formula) -> str:
+    """As :func:`place_in_note`, without a heading that stands alone: the source says it."""
+    mine = _mine(record)
+    if len({one.heading for one in mine}) != 1:
+        return place_in_note(record)
+    lines, numbers = _ranges(mine), _numbers(mine)
+    text = _("formula {numbers}, lines {lines}") if numbers else _("in the text, lines {lines}")
+    return text.format(numbers=numbers, lines=lines)
+
+
+def _mine(record: Formula) -> list[Place]:
+    return [one for one in places() if record.note == one.note and record.id in one.ids]
 
 
 def _ranges(stretches: list[Place]) -> str:

@@ -33,7 +33,7 @@ import signal
 import sys
 import threading
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from types import FrameType
 from typing import Annotated, Any, get_type_hints
 
@@ -43,7 +43,7 @@ from typer.core import TyperGroup
 from kinlab.cli import analysis, check, derive, fivebar, ik, mark, motion, robots, view
 from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError, KinlabWarning
-from kinlab.host.language import LANGUAGES, all_speaking
+from kinlab.host.language import LANGUAGES, _, all_speaking
 
 _GROUPS = (
     robots,
@@ -81,7 +81,20 @@ class _Commands(TyperGroup):
         """Runs a command in the language that its words ask for."""
         words = list(sys.argv[1:] if args is None else args)
         with all_speaking(_asked(words)):
+            for one in (self, *all_commands(self)):
+                one.help = _(one.help) if one.help else None
+                for parameter in one.params:
+                    if getattr(parameter, "help", None):
+                        parameter.help = _(parameter.help)
             return super().main(words, *more, **given)
+
+
+def all_commands(group: Any) -> Iterator[Any]:
+    """The commands of a group and of the groups in it, and these groups themselves."""
+    for one in group.commands.values():
+        yield one
+        if hasattr(one, "commands"):
+            yield from all_commands(one)
 
 
 def _asked(words: Sequence[str]) -> str | None:
@@ -89,7 +102,7 @@ def _asked(words: Sequence[str]) -> str | None:
     if "--json" in words:
         return "en"
     for k, word in enumerate(words):
-        option, _, name = word.partition("=")
+        option, _sign, name = word.partition("=")
         if option == "--lang":
             return name or next(iter(words[k + 1 : k + 2]), None)
     return None
@@ -166,10 +179,10 @@ def main() -> None:
         complain(problem)
         sys.exit(2)
     except KeyboardInterrupt:
-        print("kinlab: stopped", file=sys.stderr)
+        print(_("kinlab: stopped"), file=sys.stderr)
         sys.exit(130)
     except MemoryError:
-        print("kinlab: not enough memory for this", file=sys.stderr)
+        print(_("kinlab: not enough memory for this"), file=sys.stderr)
         sys.exit(2)
     except BrokenPipeError:  # the reader of our output has gone, as in `kinlab list | head`
         sys.stderr.close()
@@ -184,10 +197,10 @@ def main() -> None:
 def _once(said: set[str]) -> Callable[..., None]:
     """Shows each warning as one line on stderr, whatever line of code it points to."""
 
-    def show(message: Warning | str, *_: Any, **__: Any) -> None:
+    def show(message: Warning | str, *_more: Any, **_given: Any) -> None:
         if str(message) not in said:
             said.add(str(message))
-            complain(f"warning: {message}")
+            complain(_("warning: {message}").format(message=message))
 
     return show
 

@@ -11,6 +11,7 @@ from kinlab.cli import analysis_pictures as pictures
 from kinlab.cli import analysis_tables as tables
 from kinlab.cli.robots import NAME, TOOL
 from kinlab.cli.screen import screen
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.model.robot import Robot
@@ -61,10 +62,14 @@ def singular(
     tables.print_determinant(console, robot, chosen)
     console.print(tables.families(search))
     effort = search.effort
+    told = _(
+        "{starts} starts, {converged} reached the singular set within the limits; the last new "
+        "family came with start {last} (seed {seed})"
+    ).format(
+        starts=effort.seeds, converged=effort.converged, last=effort.last_new, seed=effort.seed
+    )
     console.print(
-        f"{effort.seeds} starts, {effort.converged} reached the singular set within the "
-        f"limits; the last new family came with start {effort.last_new} (seed {effort.seed})\n"
-        f"{search.evidence}",
+        f"{told}\n{search.evidence}",
         style="dim",
         highlight=False,
     )
@@ -74,7 +79,7 @@ def singular(
         console.print(str(near.evidence), style="dim", highlight=False)
     if output is not None:
         pictures.singular(robot, chosen, slice_, seed, output)
-        console.print(f"wrote {output}", highlight=False)
+        console.print(_("wrote {file}").format(file=output), highlight=False)
 
 
 def isotropy(
@@ -105,7 +110,7 @@ def isotropy(
     tables.print_isotropy(console, robot, search)
     if output is not None:
         pictures.isotropy(robot, search, output)
-        console.print(f"wrote {output}", highlight=False)
+        console.print(_("wrote {file}").format(file=output), highlight=False)
 
 
 def workspace(
@@ -157,17 +162,18 @@ def workspace(
     )
     console.print(tables.headline(robot, chart.task, task == "auto"), highlight=False)
     if not chart.complete:
-        console.print(f"stopped after {len(chart.values)} samples", style="yellow")
+        told = _("stopped after {count} samples").format(count=len(chart.values))
+        console.print(told, style="yellow")
     if not len(chart.values):
         return
     console.print(tables.workspace_table(chart))
     console.print(str(chart.evidence), style="dim", highlight=False)
     if save is not None:
         chart.save(save)
-        console.print(f"wrote {save}", highlight=False)
+        console.print(_("wrote {file}").format(file=save), highlight=False)
     if output is not None:
         pictures.workspace(robot, chart, plane, cloud, output)
-        console.print(f"wrote {output}", highlight=False)
+        console.print(_("wrote {file}").format(file=output), highlight=False)
 
 
 def _solutions(robot: Robot, output: Path | None) -> None:
@@ -181,20 +187,18 @@ def _solutions(robot: Robot, output: Path | None) -> None:
     console.print(f"{chart.robot}: {chart.text}", highlight=False)
     for number in np.unique(chart.within_limits):
         share = 100.0 * float(np.mean(chart.within_limits == number))
-        console.print(
-            f"{int(number)} solutions within the limits: {share:.1f} % of the cells",
-            highlight=False,
-        )
-    for what, points in (("cusp", chart.cusps), ("node", chart.nodes)):
+        told = _("{count} solutions within the limits: {share} % of the cells")
+        console.print(told.format(count=int(number), share=f"{share:.1f}"), highlight=False)
+    cusp, node = _("cusp at {x} {one} m, {y} {two} m"), _("node at {x} {one} m, {y} {two} m")
+    for told, points in ((cusp, chart.cusps), (node, chart.nodes)):
         for one, two in points:
-            console.print(
-                f"{what} at {chart.labels[0]} {one:.6g} m, {chart.labels[1]} {two:.6g} m",
-                highlight=False,
-            )
+            x, y = chart.labels
+            shown = told.format(x=x, one=f"{one:.6g}", y=y, two=f"{two:.6g}")
+            console.print(shown, highlight=False)
     console.print(str(chart.evidence), style="dim", highlight=False)
     if output is not None:
         pictures.solutions(chart, output)
-        console.print(f"wrote {output}", highlight=False)
+        console.print(_("wrote {file}").format(file=output), highlight=False)
 
 
 def _task(text: str) -> Any:

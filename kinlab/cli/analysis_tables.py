@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from kinlab.cli.screen import styled
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy.configurations import IsotropySearch
@@ -15,8 +16,10 @@ if TYPE_CHECKING:
 
 
 def headline(robot: Robot, task: str, suggested: bool) -> Any:
-    chosen = " (chosen to suit the arm)" if suggested else ""
-    return styled((robot.name, "bold"), f": {robot.n} joints, task {task}{chosen}")
+    told = _(": {n} joints, task {task}")
+    if suggested:
+        told = _(": {n} joints, task {task} (chosen to suit the arm)")
+    return styled((robot.name, "bold"), told.format(n=robot.n, task=task))
 
 
 def print_determinant(console: Any, robot: Robot, task: Any) -> None:
@@ -28,7 +31,7 @@ def print_determinant(console: Any, robot: Robot, task: Any) -> None:
     found = factored_determinant(robot, task)
     console.print(f"det J = {found.expression}", highlight=False)
     for factor in found.factors:
-        where = "" if factor.within_limits else ", zero outside the joint limits only"
+        where = "" if factor.within_limits else _(", zero outside the joint limits only")
         console.print(f"  {factor.expression} = 0: {factor.meaning}{where}", highlight=False)
 
 
@@ -36,15 +39,22 @@ def families(search: SingularitySearch) -> Any:
     from rich.table import Table
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in ("class", "condition", "rank", "lost direction (at one q)", "joints that cancel"):
+    for title in (
+        _("class"),
+        _("condition"),
+        _("rank"),
+        _("lost direction (at one q)"),
+        _("joints that cancel"),
+    ):
         table.add_column(title, overflow="fold")
     for family in search.families:
         if family.pinned:
             pairs = zip(family.deciding, family.pinned, strict=True)
             condition = ", ".join(f"{joint} = {round(value, 6) + 0.0:g}" for joint, value in pairs)
         else:
-            condition = "a curve or surface in " + ", ".join(family.deciding)
-        edges = {False: " (edge of the workspace)", None: " (edge undecided)", True: ""}
+            told = _("a curve or surface in {joints}")
+            condition = told.format(joints=", ".join(family.deciding))
+        edges = {False: _(" (edge of the workspace)"), None: _(" (edge undecided)"), True: ""}
         edge = edges[family.beyond]
         first = family.representative
         table.add_row(
@@ -59,11 +69,18 @@ def families(search: SingularitySearch) -> Any:
 
 def nearest(near: NearestSingularity) -> str:
     if near.singularity is None:
-        return "no singular configuration within the limits was found"
+        return _("no singular configuration within the limits was found")
     q = ", ".join(f"{round(float(v), 6) + 0.0:g}" for v in near.singularity.q)
-    return (
-        f"nearest singularity: {near.singularity.kind} at distance {near.distance:.6g} rad (or m), "
-        f"q = {q}; sigma_min here {near.sigma[-1]:.4g} (length {near.length:.4g} m)"
+    told = _(
+        "nearest singularity: {kind} at distance {distance} rad (or m), q = {q}; sigma_min here "
+        "{sigma} (length {length} m)"
+    )
+    return told.format(
+        kind=near.singularity.kind,
+        distance=f"{near.distance:.6g}",
+        q=q,
+        sigma=f"{near.sigma[-1]:.4g}",
+        length=f"{near.length:.4g}",
     )
 
 
@@ -78,19 +95,22 @@ def print_designs(
     names = [part.strip() for part in free.split(",")]
     found = design_isotropic(robot, names, task, length, seeds=seeds, seed=seed)
     if not len(found):
-        console.print(
-            f"no isotropic design: best condition number {found.best_condition:.6g} "
-            f"from {found.seeds} starts",
-            highlight=False,
-        )
+        told = _("no isotropic design: best condition number {best} from {starts} starts")
+        best = f"{found.best_condition:.6g}"
+        console.print(told.format(best=best, starts=found.seeds), highlight=False)
         return None
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in [*names, "condition - 1", "family"]:
+    for title in [*names, _("condition - 1"), _("family")]:
         table.add_column(title, justify="right")
     for design in found:
         numbers = [f"{value:.9g}" for value in design.values.values()]
-        table.add_row(*numbers, f"{design.condition - 1.0:.1e}", f"{design.freedom} free")
-    console.print(f"isotropic designs ({found.scale}), the least changed first:", highlight=False)
+        table.add_row(
+            *numbers,
+            f"{design.condition - 1.0:.1e}",
+            _("{count} free").format(count=design.freedom),
+        )
+    told = _("isotropic designs ({scale}), the least changed first:").format(scale=found.scale)
+    console.print(told, highlight=False)
     console.print(table)
     return Robot.from_dh(found[0].table)
 
@@ -98,24 +118,30 @@ def print_designs(
 def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
     from rich.table import Table
 
-    size = {"given": "given", "optimal": "solved for", "none needed": "none needed"}[search.length]
+    sizes = {"given": _("given"), "optimal": _("solved for"), "none needed": _("none needed")}
+    size = sizes[search.length]
     if not search.found:
         assert search.spread is not None
         low, middle, high = search.spread
-        at = "" if search.best_length is None else f" at length {search.best_length:.6g} m"
+        told = _("no isotropic configuration; best condition number {best}")
+        if search.best_length is not None:
+            told = _(
+                "no isotropic configuration; best condition number {best} at length {length} m"
+            )
+        best, length = f"{search.best_condition:.6g}", f"{search.best_length or 0.0:.6g}"
+        console.print(told.format(best=best, length=length), highlight=False)
+        told = _("q = {q} (deg or m)").format(q=_degrees(robot, search.best_q))
+        console.print(told, highlight=False)
+        shares = {"low": f"{low:.6g}", "middle": f"{middle:.6g}", "high": f"{high:.6g}"}
+        told = _("local minima: 5 % {low}, 50 % {middle}, 95 % {high}").format(**shares)
         console.print(
-            f"no isotropic configuration; best condition number {search.best_condition:.6g}{at}\n"
-            f"q = {_degrees(robot, search.best_q)} (deg or m)",
-            highlight=False,
-        )
-        console.print(
-            f"local minima: 5 % {low:.6g}, 50 % {middle:.6g}, 95 % {high:.6g}\n{search.evidence}",
+            f"{told}\n{search.evidence}",
             style="dim",
             highlight=False,
         )
         return
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in ("q (deg or m)", "condition - 1", "length (m)", "free joints"):
+    for title in (_("q (deg or m)"), _("condition - 1"), _("length (m)"), _("free joints")):
         table.add_column(title)
     for found in search:
         length = "-" if found.length is None else f"{found.length:.6g}"
@@ -126,9 +152,9 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
             ", ".join(found.free) or "-",
         )
     console.print(table)
+    told = _("characteristic length: {size}; {converged} of {starts} starts (seed {seed})")
     console.print(
-        f"characteristic length: {size}; {search.converged} of {search.seeds} starts "
-        f"(seed {search.seed})",
+        told.format(size=size, converged=search.converged, starts=search.seeds, seed=search.seed),
         style="dim",
         highlight=False,
     )
@@ -149,12 +175,12 @@ def workspace_table(chart: WorkspaceMap) -> Any:
     from rich.table import Table
 
     table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in ("", "from", "to"):
+    for title in ("", _("from"), _("to")):
         table.add_column(title, justify="right" if title else "left")
     for name, column in zip("xyz", chart.points.T, strict=True):
         table.add_row(f"{name} (m)", f"{column.min():.4f}", f"{column.max():.4f}")
     radius = np.linalg.norm(chart.points[:, :2], axis=1)
-    table.add_row("distance from z (m)", f"{radius.min():.4f}", f"{radius.max():.4f}")
+    table.add_row(_("distance from z (m)"), f"{radius.min():.4f}", f"{radius.max():.4f}")
     table.add_row(chart.metric, f"{chart.values.min():.4g}", f"{chart.values.max():.4g}")
-    table.add_row("median", "", f"{np.median(chart.values):.4g}")
+    table.add_row(_("median"), "", f"{np.median(chart.values):.4g}")
     return table

@@ -9,6 +9,7 @@ import typer
 
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
+from kinlab.host.language import _
 
 ROBOT = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv file.")]
 WHAT = Annotated[str, typer.Option("--what", help="fk, J, det, M, C, g, tau, D, T or V.")]
@@ -39,4 +40,4 @@ def derive(
         echo(text)
     else:
         write_text(output, text + "\n")
-        echo(f"wrote {output}")
+        echo(_("wrote {file}").format(file=output))

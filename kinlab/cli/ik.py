@@ -11,6 +11,7 @@ import typer
 
 from kinlab.cli.robots import NAME, TOOL
 from kinlab.cli.screen import echo
+from kinlab.host.language import _
 
 
 def register(app: typer.Typer) -> None:
@@ -85,29 +86,38 @@ def ik(
     for joint, value, slide in zip(robot.joint_names, answer.q, slides, strict=True):
         shown = f"{1e3 * value:+.4f} mm" if slide else f"{np.degrees(value):+.4f} deg"
         echo(f"{joint:{width}}  {value:+.9f}  ({shown})")
+    told = _(
+        "{status}: position error {position} mm, rotation error {rotation} deg, {iterations} "
+        "iterations, {restarts} restarts, task {task}"
+    )
     echo(
-        f"{answer.status}: "
-        f"position error {1e3 * answer.position_error:.3g} mm, rotation error "
-        f"{np.degrees(answer.rotation_error):.3g} deg, {answer.iterations} iterations, "
-        f"{answer.restarts} restarts, task {answer.task}"
+        told.format(
+            status=answer.status,
+            position=f"{1e3 * answer.position_error:.3g}",
+            rotation=f"{np.degrees(answer.rotation_error):.3g}",
+            iterations=answer.iterations,
+            restarts=answer.restarts,
+            task=answer.task,
+        )
     )
     for remark in answer.remarks:
-        echo(f"note: {remark}")
+        echo(_("note: {note}").format(note=remark))
     if history is not None and answer.history is not None:
         from kinlab.plots.canvas import save
         from kinlab.plots.searches import ik_history
 
         save(ik_history({method: answer.history}, f"{robot.name}: {answer.status}"), history)
-        echo(f"wrote {history}")
+        echo(_("wrote {file}").format(file=history))
     broken = [
-        f"{joint} ({low:g} to {high:g})"
+        _("{joint} ({low} to {high})").format(joint=joint, low=f"{low:g}", high=f"{high:g}")
         for joint, value, low, high in zip(
             robot.joint_names, answer.q, robot.lower, robot.upper, strict=True
         )
         if not low <= value <= high
     ]
     if broken:
-        echo(f"kinlab: outside the limits of {', '.join(broken)}", err=True)
+        told = _("kinlab: outside the limits of {joints}").format(joints=_(", ").join(broken))
+        echo(told, err=True)
     if not answer.success:
         raise typer.Exit(1)
 
@@ -120,12 +130,26 @@ def _print_branches(robot: object, pose: object) -> None:
     found = ik_branches(robot, pose)  # type: ignore[arg-type]
     for q, name, inside in zip(found.q, found.names, found.within_limits, strict=True):
         values = " ".join(f"{value:+.6f}" for value in q)
-        echo(f"{values}  {name}{'' if inside else '  (outside the limits)'}")
+        echo(f"{values}  {name}" + ("" if inside else "  " + _("(outside the limits)")))
     worst = max(found.position_error, default=0.0), max(found.rotation_error, default=0.0)
+    if found.complete:
+        told = _(
+            "{count} solutions by {method}, {inside} within the limits, all there are; worst "
+            "error {position} mm, {rotation} deg"
+        )
+    else:
+        told = _(
+            "{count} solutions by {method}, {inside} within the limits, not all there are; worst "
+            "error {position} mm, {rotation} deg"
+        )
     echo(
-        f"{len(found)} solutions by {found.method}, {int(np.sum(found.within_limits))} within the "
-        f"limits, {'all there are' if found.complete else 'not all there are'}; worst error "
-        f"{1e3 * worst[0]:.2g} mm, {np.degrees(worst[1]):.2g} deg"
+        told.format(
+            count=len(found),
+            method=found.method,
+            inside=int(np.sum(found.within_limits)),
+            position=f"{1e3 * worst[0]:.2g}",
+            rotation=f"{np.degrees(worst[1]):.2g}",
+        )
     )
     if not len(found):
         raise typer.Exit(1)

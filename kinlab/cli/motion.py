@@ -9,6 +9,7 @@ import typer
 
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.motion import Motion
@@ -83,10 +84,14 @@ def motion(
             duration=duration,
             step=step,
         )
-    echo(f"{robot.name}, {planned.law}: {planned.duration:.6g} s, {len(planned)} samples")
+    told = _("{robot}, {law}: {duration} s, {count} samples")
+    duration_told = f"{planned.duration:.6g}"
+    echo(told.format(robot=robot.name, law=planned.law, duration=duration_told, count=len(planned)))
     speed, gain = planned.peak_velocity, planned.peak_acceleration
     for i, one in enumerate(robot.joint_names):
-        echo(f"  {one}: speed up to {speed.value[i]:.4g}, acceleration up to {gain.value[i]:.4g}")
+        told = _("{joint}: speed up to {speed}, acceleration up to {acceleration}")
+        most = {"speed": f"{speed.value[i]:.4g}", "acceleration": f"{gain.value[i]:.4g}"}
+        echo("  " + told.format(joint=one, **most))
     echo(str(check(robot, planned)))
     if servos:
         from kinlab.drives.arm import size_servos
@@ -94,4 +99,4 @@ def motion(
         echo(str(size_servos(robot, planned)))
     if output is not None:
         planned.write(output)
-        echo(f"wrote {output}")
+        echo(_("wrote {file}").format(file=output))

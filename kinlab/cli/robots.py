@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from kinlab.cli.screen import echo, screen, styled
+from kinlab.host.language import N_, _
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -22,6 +23,13 @@ TOOL = Annotated[
     typer.Option("--tool", help="Link that is the tool (URDF; a DH table has one of its own)."),
 ]
 OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
+
+
+_JOINT_COLUMNS = (
+    N_("joint"), N_("kind"), N_("lower"), N_("upper"), N_("velocity"), N_("effort"), N_("mass"),
+    N_("armature"),
+)  # fmt: skip
+_KINDS = (N_("revolute"), N_("prismatic"))
 
 
 def register(app: typer.Typer) -> None:
@@ -41,9 +49,9 @@ def list_robots() -> None:
 
     width = max(len(name) for name in [*shipped(), *example_robots()])
     table = Table(box=None, header_style="bold", pad_edge=False)
-    table.add_column("name", no_wrap=True, min_width=width)
-    table.add_column("DoF", justify="right", min_width=3)
-    table.add_column("source", no_wrap=True, overflow="ellipsis")
+    table.add_column(_("name"), no_wrap=True, min_width=width)
+    table.add_column(_("DoF"), justify="right", min_width=3)
+    table.add_column(_("source"), no_wrap=True, overflow="ellipsis")
     for name in shipped():
         robot = load(name)
         table.add_row(name, str(robot.n), robot.source.split("; ")[0])
@@ -54,7 +62,7 @@ def list_robots() -> None:
             about = f"example-robot-data, {entry.path.name}"
             table.add_row(shown, str(robot.n), about)
         except KinlabError as problem:
-            reason = "a tree: name a tool" if "a tree" in str(problem) else str(problem)
+            reason = _("a tree: name a tool") if "a tree" in str(problem) else str(problem)
             table.add_row(shown, "-", styled((f"example-robot-data, {reason}", "dim")))
     screen().print(table)
 
@@ -69,25 +77,28 @@ def info(name: NAME, tool: TOOL = None) -> None:
     console = screen()
     gravity = " ".join(f"{g:g}" for g in robot.model.gravity.linear)
     mass = sum(inertia.mass for inertia in list(robot.model.inertias)[1:])
-    about = f": {robot.n} joints, tool frame {robot.tool_name!r}"
+    about = _(": {n} joints, tool frame {tool!r}").format(n=robot.n, tool=robot.tool_name)
     console.print(styled((robot.name, "bold"), about))
-    console.print(f"source: {robot.source}", highlight=False)
-    console.print(f"moving mass {mass:.4g} kg, gravity {gravity} m/s²", highlight=False)
+    console.print(_("source: {source}").format(source=robot.source), highlight=False)
+    told = _("moving mass {mass} kg, gravity {gravity} m/s²")
+    console.print(told.format(mass=f"{mass:.4g}", gravity=gravity), highlight=False)
     if robot.singular_mass:
         console.print(robot.singular_mass, style="yellow")
     for line in remarks(robot):
         console.print(line, style="yellow", highlight=False, soft_wrap=True)
     for line in _missing_meshes(robot):
-        console.print(f"{line}; a plain shape is drawn instead", style="yellow", highlight=False)
+        told = _("{line}; a plain shape is drawn instead").format(line=line)
+        console.print(told, style="yellow", highlight=False)
     console.print(_joints(robot))
     if robot.model.damping.any() or robot.model.friction.any():
         console.print(_friction(robot))
     table = as_table(robot)
-    console.print(_rows(table, "" if robot.table else ", extracted"))
+    console.print(_rows(table, extracted=robot.table is None))
     if robot.table is None:
         console.print(table.source, style="dim", highlight=False)
     frames = [str(frame.name) for frame in robot.model.frames][1:]
-    console.print("frames: " + ", ".join(dict.fromkeys(frames)), highlight=False, soft_wrap=False)
+    told = _("frames: {names}").format(names=", ".join(dict.fromkeys(frames)))
+    console.print(told, highlight=False, soft_wrap=False)
 
 
 def urdf(name: NAME, output: OUTPUT = None, tool: TOOL = None) -> None:
@@ -107,11 +118,12 @@ def dh(name: NAME, tool: TOOL = None, output: OUTPUT = None) -> None:
         _give(table.to_toml(), output)
         return
     console = screen()
-    console.print(_rows(table, ""))
-    for which in ("base", "tool"):
+    console.print(_rows(table, extracted=False))
+    for which in (N_("base"), N_("tool")):
         rows = "; ".join(" ".join(f"{x:.6g}" for x in row) for row in getattr(table, which)[:3])
-        console.print(f"{which}: {rows}", highlight=False)
-    console.print(f"{table.source}; write it whole, inertias included, with -o", highlight=False)
+        console.print(f"{_(which)}: {rows}", highlight=False)
+    told = _("{source}; write it whole, inertias included, with -o").format(source=table.source)
+    console.print(told, highlight=False)
 
 
 def _give(text: str, output: Path | None) -> None:
@@ -121,7 +133,7 @@ def _give(text: str, output: Path | None) -> None:
         echo(text, nl=False)
     else:
         write_text(output, text)
-        echo(f"wrote {output}")
+        echo(_("wrote {file}").format(file=output))
 
 
 def _missing_meshes(robot: Robot) -> list[str]:
@@ -136,10 +148,11 @@ def _joints(robot: Robot) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    table = Table(title="joints", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in ("joint", "kind", "lower", "upper", "velocity", "effort", "mass", "armature"):
+    table = Table(title=_("joints"), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    for column in _JOINT_COLUMNS:
         left = column in ("joint", "kind")
-        table.add_column(column, justify="left" if left else "right", no_wrap=column != "joint")
+        justify: Literal["left", "right"] = "left" if left else "right"
+        table.add_column(_(column), justify=justify, no_wrap=column != "joint")
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v
@@ -147,7 +160,7 @@ def _joints(robot: Robot) -> Table:
         unit, factor = ("°", 180 / math.pi) if kind == "revolute" else (" m", 1.0)
         table.add_row(
             name,
-            kind,
+            _(kind),
             f"{robot.lower[k] * factor:.5g}{unit}",
             f"{robot.upper[k] * factor:.5g}{unit}",
             f"{model.upperVelocityLimit[k]:.4g}",
@@ -162,9 +175,9 @@ def _friction(robot: Robot) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
-    table = Table(title="joint friction", title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    table.add_column("joint")
-    for column in ("viscous [N m s or N s/m]", "Coulomb [N m or N]"):
+    table = Table(title=_("joint friction"), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
+    table.add_column(_("joint"))
+    for column in (_("viscous [N m s or N s/m]"), _("Coulomb [N m or N]")):
         table.add_column(column, justify="right")
     model = robot.model
     for name, *losses in zip(robot.joint_names, model.damping, model.friction, strict=True):
@@ -172,14 +185,17 @@ def _friction(robot: Robot) -> Table:
     return table
 
 
-def _rows(dh_table: DHTable, remark: str) -> Table:
+def _rows(dh_table: DHTable, *, extracted: bool) -> Table:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
 
     from kinlab.model.dh import row_words
 
     columns, rows = row_words(dh_table)
-    title = f"DH table, {dh_table.convention} convention{remark}"
+    told = _("DH table, {convention} convention")
+    if extracted:
+        told = _("DH table, {convention} convention, extracted")
+    title = told.format(convention=_(str(dh_table.convention)))
     table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     for column in columns:
         table.add_column(column, justify="right")

@@ -10,6 +10,7 @@ import typer
 
 from kinlab.cli.robots import TOOL
 from kinlab.cli.screen import echo
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.arrays import Array
@@ -67,10 +68,11 @@ def view(
     """Show a robot with sliders, frames, DH rows and ellipsoids, in the browser or as a file."""
     page = _open(name, tool, q, animate, meshes, against, branches)
     for note in page.notes:
-        echo(f"note: {note}", err=True)
+        echo(_("note: {note}").format(note=note), err=True)
     if save is not None:
         page.save(save)
-        echo(f"wrote {save}: open it in a browser; it needs no server and no network")
+        told = _("wrote {file}: open it in a browser; it needs no server and no network")
+        echo(told.format(file=save))
         return
     _serve(page, name, host, port, browser)
 
@@ -155,13 +157,15 @@ def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
 
     server = LiveServer(page, host, port)
     if port not in (0, server.port):
-        echo(f"port {port} is taken; using {server.port}")
-    echo(f"{name}: {server.url}   (Ctrl-C ends)")
+        echo(_("port {port} is taken; using {other}").format(port=port, other=server.port))
+    echo(_("{name}: {url}   (Ctrl-C ends)").format(name=name, url=server.url))
     if host not in ("127.0.0.1", "::1", "localhost"):
-        echo(f"note: {host} is not loopback; others on the network can open this page")
+        told = _("note: {host} is not loopback; others on the network can open this page")
+        echo(told.format(host=host))
     if os.environ.get("SSH_CONNECTION"):
-        echo(f"from your machine: ssh -L {server.port}:127.0.0.1:{server.port} <this host>")
+        told = _("from your machine: ssh -L {port}:127.0.0.1:{port} <this host>")
+        echo(told.format(port=server.port))
     if browser and not open_browser(server.url):
-        echo("no browser found here; open the address in yours")
+        echo(_("no browser found here; open the address in yours"))
     server.run()
-    echo("viewer closed")
+    echo(_("viewer closed"))

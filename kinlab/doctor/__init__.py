@@ -21,7 +21,7 @@ module              what it holds
                     on values
 ``terms``           Slips within single entries: the derived formula beside a user's text or
                     function
-``verdicts``         Right in another way: with rounded numbers, with numbers for names, or another
+``verdicts``        Right in another way: with rounded numbers, with numbers for names, or another
                     valid formula
 ``written``         A formula as its writer wrote it: names, literals with their digits, and
                     values at any numbers

@@ -19,6 +19,7 @@ from markupsafe import Markup, escape
 
 from kinlab.errors import MissingExtraError
 from kinlab.host.files import write_text
+from kinlab.host.language import _
 
 MOST_ROWS = 12
 """Rows of a table that are shown; the rest is counted."""
@@ -52,7 +53,7 @@ class Introduction:
     def more(self) -> str:
         """How many rows are not shown, in words."""
         left = max(self.of, len(self.rows)) - min(len(self.rows), MOST_ROWS)
-        return f"... and {left} more" if left else ""
+        return _("... and {count} more").format(count=left) if left else ""
 
     def text(self) -> str:
         """As text: the verdict, and the rest indented below it."""
@@ -204,7 +205,7 @@ def shown_cells(columns: Mapping[str, Any], digits: int = 5) -> tuple[tuple[str,
 
 def _cell(value: Any, digits: int) -> str:
     if isinstance(value, bool):
-        return "yes" if value else "no"
+        return _("yes") if value else _("no")
     return f"{value + 0.0:.{digits}g}" if isinstance(value, float) else str(value)
 
 

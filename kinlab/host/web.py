@@ -6,6 +6,13 @@ import base64
 import hashlib
 import re
 from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kinlab.host.language import _, language_tag
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
 
 _CONTROL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff]")
 
@@ -36,6 +43,26 @@ def policy(scripts: Sequence[str] = (), *, live: bool = False) -> str:
         "form-action 'none'",
     ]
     return f'<meta http-equiv="Content-Security-Policy" content="{"; ".join(rules)}">'
+
+
+def templates(*folders: Path) -> Environment:
+    """Templates of pages, looked for in the folders in turn.
+
+    What is put into one is escaped; a name that a template does not know is an error. Every
+    template knows ``_`` and ``language_tag``.
+    """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
+    made = Environment(
+        loader=FileSystemLoader(folders),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    made.globals |= {"_": _, "language_tag": language_tag}
+    return made
 
 
 def page_text(text: str) -> str:

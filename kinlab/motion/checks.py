@@ -246,7 +246,7 @@ def _singularities(space: TaskSpace, motion: Motion) -> tuple[float | None, list
         looked += len(centre)
         q, v, _ = motion.at(centre)
         values = space.sigma(q)
-        least = values[:, -1] - 1e-12 * values[:, 0]
+        least = values[:, -1] - TOLERANCES.singular_value_rounding * values[:, 0]
         reach = slope * (np.linalg.norm(v, axis=1) * half + 0.5 * push * half**2)
         good = reach <= 0.5 * least
         if good.any():

@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.tables.diagnosis import diagnose_table
 from kinlab.doctor.tables.reference.against import poses_of, read_mine, reference_robot
 from kinlab.doctor.tables.result import TableDiagnosis
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, joint_json, origins
@@ -53,10 +54,13 @@ def against_scene(
     scene = Scene(robot, q, meshes=False)
     other = _reference(scene, against, found, tool)
     if other is not None:
-        _draw_over(scene, other, "the repaired table" if other.table is found.repaired else "")
+        _draw_over(scene, other, _("the repaired table") if other.table is found.repaired else "")
     for part in _wrong(found):
         _light(scene, robot, table, part)
-    said = [f"{found.verdict} (against {found.reference}): {found.sentence}", *found.told]
+    first = _("{verdict} (against {reference}): {sentence}").format(
+        verdict=_(found.verdict), reference=found.reference, sentence=found.sentence
+    )
+    said = [first, *found.told]
     scene._spec["notes"] = [*said, *scene._spec["notes"]]
 
     return scene
@@ -90,8 +94,9 @@ def _draw_over(scene: Scene, other: Robot, name: str) -> None:
     camera = look_at(np.concatenate(seen), DIRECTION, MARGIN * reach(scene.robot))
     scene._spec["camera"] = camera.as_json()
     scene._spec["groups"]["reference"] = [root]
+    told = _("the other description ({name})").format(name=other.name)
     scene._spec["shown"].append("reference")
-    scene._spec["checks"].insert(0, ["reference", name or f"the other description ({other.name})"])
+    scene._spec["checks"].insert(0, ["reference", name or told])
 
 
 def _wrong(found: TableDiagnosis) -> list[int | str]:
@@ -141,6 +146,6 @@ def _light(scene: Scene, robot: Robot, table: DHTable, part: int | str) -> None:
     groups.setdefault("wrong", []).append(path)
     if len(groups["wrong"]) == 1:
         scene._spec["shown"].append("wrong")
-        scene._spec["checks"].insert(0, ["wrong", "what is wrong"])
+        scene._spec["checks"].insert(0, ["wrong", _("what is wrong")])
     if isinstance(part, int):
         scene._spec["shown"].append(f"dh{part - 1}")

@@ -11,6 +11,7 @@ from kinlab.analysis.structure.tasks import TASKS, generic_rank
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import StructureError
+from kinlab.host.language import N_, _
 from kinlab.model.extract import as_table
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -23,6 +24,15 @@ DIRECTION = np.array([1.0, -1.3, 0.7])
 
 MARGIN = 0.2
 """What is seen around the joints, over the arm's reach."""
+
+_TASKS = {
+    "pose": N_("pose"),
+    "position": N_("position"),
+    "orientation": N_("orientation"),
+    "xy": N_("xy"),
+    "xytheta": N_("xytheta"),
+}
+_CONVENTIONS = (N_("standard"), N_("modified"))
 
 _ROWS = ("x", "y", "z", "ωx", "ωy", "ωz")
 
@@ -42,13 +52,15 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     size = reach(robot)
     set_stage(vis, size)
     camera = look_at(origins(robot, q), DIRECTION, MARGIN * size)
-    spec = empty_spec(robot.name, f"{robot.n} joints. {robot.source}".strip(), camera)
+    spec = empty_spec(
+        robot.name, _("{n} joints. {source}").format(n=robot.n, source=robot.source).strip(), camera
+    )
     spec["notes"] += draw_arm(vis, robot, q, meshes=meshes)
     try:
         picture = draw_dh(vis, robot, as_table(robot))
     except StructureError as problem:  # an arm that DH parameters cannot hold
         picture = frames_only(vis, robot)
-        spec["notes"].append(f"no DH table: {problem}")
+        spec["notes"].append(_("no DH table: {reason}").format(reason=problem))
     rows, task = judged_rows(robot)
     model = robot.model
     spec |= {
@@ -61,13 +73,13 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
         "poses": _poses(robot),
         "body": joint_paths(model)[0],
         "dh": picture.rows,
-        "dh_convention": picture.convention,
+        "dh_convention": _(picture.convention),
         "dh_columns": columns(picture.convention),
         "labels": [label.as_json() for label in picture.labels],
     }
     spec["groups"] |= picture.groups
     spec["shown"].append("frames")
-    spec["checks"].insert(0, ["frames", "frames"])
+    spec["checks"].insert(0, ["frames", _("frames")])
     add_ellipsoids(vis, spec, size, linear_rank(robot))
     return spec
 
@@ -86,7 +98,8 @@ def judged_rows(robot: Robot) -> tuple[list[int], str]:
         moving = linear
     names = {rows: name for name, rows in TASKS.items()}
     coordinates = ", ".join(_ROWS[r] for r in moving)
-    return moving, f"task {names.get(tuple(moving), coordinates)}"
+    task = _(_TASKS.get(names.get(tuple(moving), ""), coordinates))
+    return moving, _("task {task}").format(task=task)
 
 
 def linear_rank(robot: Robot) -> int:
@@ -118,7 +131,7 @@ def _poses(robot: Robot) -> dict[str, list[float]]:
     """Named poses for the page's buttons, within the limits."""
     middle = 0.5 * (robot.lower + robot.upper)
     zero = np.clip(np.zeros(robot.n), robot.lower, robot.upper)
-    return {"Zero": zero.tolist(), "Middle": middle.tolist()}
+    return {_("Zero"): zero.tolist(), _("Middle"): middle.tolist()}
 
 
 def _flat(matrix: Array) -> list[float]:

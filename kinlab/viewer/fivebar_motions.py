@@ -12,6 +12,7 @@ from kinlab.errors import NameUnknownError, near
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.singularity import Circle
+from kinlab.host.language import N_, _
 from kinlab.viewer.motions import ShownMotion
 
 _SAMPLES = 201
@@ -34,7 +35,7 @@ def motion(linkage: FiveBar, kind: str, mode: Mode, assembly: int) -> ShownMotio
     name, path = MOTIONS[kind]
     xy, duration = path(linkage.largest_circle(mode, assembly))
     theta = np.unwrap(linkage.ik(xy, mode), axis=0)
-    return ShownMotion(name, theta, duration)
+    return ShownMotion(_(name), theta, duration)
 
 
 def _round(free: Circle) -> tuple[Array, float]:
@@ -57,8 +58,8 @@ def _pick(free: Circle) -> tuple[Array, float]:
 
 
 MOTIONS: dict[str, tuple[str, Callable[[Circle], tuple[Array, float]]]] = {
-    "sweep": ("Round the free circle", _round),
-    "line": ("Straight line by IK", _straight),
-    "pick": ("Pick and place by IK", _pick),
+    "sweep": (N_("Round the free circle"), _round),
+    "line": (N_("Straight line by IK"), _straight),
+    "pick": (N_("Pick and place by IK"), _pick),
 }
 """What ``kinlab view --animate`` can show of a five-bar: heading and path."""

@@ -18,6 +18,7 @@ from kinlab.arrays import Array, real_array
 from kinlab.drives.laws import rising
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
+from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm_page import judged_rows
 from kinlab.viewer.drawing.arm import reach
@@ -92,19 +93,19 @@ def sweep(robot: Robot, start: Array) -> ShownMotion:
         move = np.zeros((40, robot.n))
         move[:, joint] = np.where(wave > 0, up[joint], down[joint])[1:] * wave[1:]
         rows.extend(start + move)
-    return ShownMotion("Sweep of the joints", np.array(rows), 2.5 * robot.n)
+    return ShownMotion(_("Sweep of the joints"), np.array(rows), 2.5 * robot.n)
 
 
 def line(robot: Robot, start: Array) -> ShownMotion:
     """The tool along a straight line and back; what else its task holds stays as it is."""
     rows = _tool_path(robot, np.array([[0.0, 0.0], [1.0, 0.0]]))
-    return ShownMotion("Straight line by IK", np.vstack([rows, rows[::-1]]), 5.0)
+    return ShownMotion(_("Straight line by IK"), np.vstack([rows, rows[::-1]]), 5.0)
 
 
 def pick(robot: Robot, start: Array) -> ShownMotion:
     """Up, across, down, and the same way back."""
     rows = _tool_path(robot, np.array([[0.0, 0.0], [0.0, 0.4], [1.0, 0.4], [1.0, 0.0]]))
-    return ShownMotion("Pick and place by IK", np.vstack([rows, rows[::-1]]), 7.0)
+    return ShownMotion(_("Pick and place by IK"), np.vstack([rows, rows[::-1]]), 7.0)
 
 
 def locus(robot: Robot, start: Array) -> ShownMotion:
@@ -127,7 +128,7 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
     q = _on_locus(robot, det, rng)
     heading = rng.normal(size=robot.n)
     walk = [q]
-    for _ in range(3 * _STEPS):
+    for _step in range(3 * _STEPS):
         heading = _slide(det, q, heading)
         q = _settle(det, q + 0.02 * heading)
         outside = (q < robot.lower) | (q > robot.upper)
@@ -135,7 +136,7 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
             heading = np.where(outside, -heading, heading)
             q = walk[-1]
         walk.append(q)
-    return ShownMotion("Walk along det J = 0", np.array(walk), 12.0)
+    return ShownMotion(_("Walk along det J = 0"), np.array(walk), 12.0)
 
 
 def posture(robot: Robot, start: Array) -> ShownMotion:
@@ -156,7 +157,7 @@ def posture(robot: Robot, start: Array) -> ShownMotion:
     length = float(np.linalg.norm(np.diff(found.path.q, axis=0), axis=1).sum())
     rows = found.path.points(length / _STEPS)
     there_and_back = np.vstack([rows, rows[::-1]])
-    return ShownMotion("Change of posture without a singularity", there_and_back, 8.0)
+    return ShownMotion(_("Change of posture without a singularity"), there_and_back, 8.0)
 
 
 MOTIONS: dict[str, Callable[[Robot, Array], ShownMotion]] = {
@@ -174,12 +175,14 @@ def _tool_path(robot: Robot, corners: Array) -> Array:
 
     Poses are tried from the best conditioned down, and sizes from large to small.
     """
-    rows, _ = judged_rows(robot)
+    rows, _task = judged_rows(robot)
     if 0 not in rows or 1 not in rows:
         raise StructureError(
             f"robot {robot.name!r}: its tool cannot move freely in a plane; use the motion 'sweep'"
         )
-    pace, _, _ = rising(np.linspace(0.0, 1.0, _STEPS // (len(corners) - 1)))  # rests in corners
+    pace, _rate, _jerk = rising(
+        np.linspace(0.0, 1.0, _STEPS // (len(corners) - 1))
+    )  # rests in corners
     legs = [one + pace[:, None] * (two - one) for one, two in pairwise(corners)]
     shape = np.vstack([legs[0], *(leg[1:] for leg in legs[1:])])
     for q in _comfortable(robot, rows):
@@ -231,7 +234,7 @@ def _on_locus(robot: Robot, det: Callable[[Array], Array], rng: np.random.Genera
     if values.min() >= 0.0 or values.max() <= 0.0:
         raise StructureError(f"robot {robot.name!r}: det J does not change sign; no locus found")
     one, two = poses[int(np.argmin(values))], poses[int(np.argmax(values))]
-    for _ in range(60):
+    for _step in range(60):
         middle = 0.5 * (one + two)
         if det(middle) < 0.0:
             one = middle
@@ -258,7 +261,7 @@ def _slide(det: Callable[[Array], Array], q: Array, heading: Array) -> Array:
 
 def _settle(det: Callable[[Array], Array], q: Array) -> Array:
     """Back onto det J = 0 by Newton steps along its gradient."""
-    for _ in range(4):
+    for _step in range(4):
         normal = _slope(det, q)
         size = float(normal @ normal)
         if size < 1e-18:  # where two loci cross the gradient vanishes: already on both

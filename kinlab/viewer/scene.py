@@ -15,6 +15,7 @@ from kinlab.errors import NameUnknownError, StateError, near, warn
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.linkage import as_five_bar
+from kinlab.host.language import _
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
 from kinlab.viewer.drawing import shapes
@@ -119,9 +120,9 @@ class Scene(Page):
         if np.ptp(tool, axis=0).max() > 0.0:
             self.path("the tool's way", tool)
         if isinstance(motion, Simulation):
-            self.animate(rows, motion.t, "Simulated motion")
+            self.animate(rows, motion.t, _("Simulated motion"))
         else:
-            self.animate(rows, motion.t, f"Motion: {motion.law}")
+            self.animate(rows, motion.t, _("Motion: {law}").format(law=motion.law))
             found = check(self.robot, motion).findings
             for one in (x for x in found if x.kind != "branch"):  # it stands at its singularity
                 name = f"{one.kind}, t = {one.t:.3g} s"

@@ -229,3 +229,33 @@ def test_loci_bad_joints(joints, error, words):
 def test_a_slice_that_is_all_singular_is_refused():
     with pytest.raises(OptionError, match="every configuration of the slice"):
         kl.singular_loci(kl.load("puma560"), [1, 2], np.zeros(6))
+
+
+def test_links_of_one_length_have_a_sheet_that_is_a_double_zero():
+    """det J = l^3 sin q3 (cos q2 + cos(q2 + q3)): at q3 = pi both factors vanish whatever q2 is."""
+    half = np.pi / 2
+    links = [kl.DHLink(alpha=half), kl.DHLink(a=0.16), kl.DHLink(a=0.16)]
+    robot = kl.Robot.from_dh(kl.DHTable(name="equal", convention="standard", links=links))
+    families = kl.find_singularities(robot, "position").families
+    sheets = {f.deciding: [] for f in families}
+    for f in families:
+        sheets[f.deciding] += list(f.pinned)
+    np.testing.assert_allclose(sorted(sheets[("joint_3",)]), [0.0, np.pi], atol=1e-9)
+    assert sheets[("joint_2", "joint_3")] == []
+    for q3, there in ((np.pi, 0.0), (3.0, np.pi - 3.0), (-3.0, np.pi - 3.0)):
+        near = kl.nearest_singularity(robot, [0.3, 0.7, q3], "position")
+        assert near.distance <= there + 1e-9 and near.bound <= near.distance
+
+
+def test_limits_at_a_double_zero():
+    """The limit -3.14159265 is 4e-9 short of the double zero at -pi: singular to every digit there,
+    and no state a millionth away is taken for one."""
+    robot = kl.load("erd:finger_edu")
+    members = list(kl.find_singularities(robot))
+    middle, last = robot.joint_names[1:]
+    assert {s.deciding for s in members} == {(last,), (middle, last)}
+    for s in members:
+        assert s.ratio <= 1e-10
+        assert np.all((s.q >= robot.lower) & (s.q <= robot.upper))
+        if s.deciding == (last,):
+            assert min(abs(s.q[2]), np.pi - abs(s.q[2])) < 1e-7

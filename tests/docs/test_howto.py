@@ -1,6 +1,6 @@
 """The how-to pages do as printed: files are written, commands and Python run, in the page's order.
 
-- A block of ``toml``, ``csv``, ``tex`` or ``text`` whose first line is a comment with a file's name is
+- A block of ``toml``, ``tex`` or ``text`` whose first line is a comment with a file's name is
   written there; a block of ``python`` that begins so is written too, and run.
 - A block of ``python`` is run; the blocks of a page share their names, as a reader's session would.
 - Each line of ``sh`` that begins with ``kinlab`` is run in this process; it ends with exit code 0, or
@@ -19,7 +19,7 @@ from console import kinlab
 
 FOLDER = Path(__file__).resolve().parents[2] / "docs" / "howto"
 PAGES = sorted(FOLDER.glob("*.md"))
-BLOCK = re.compile(r"^```(python|sh|toml|csv|tex|text)\n(.*?)^```", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(r"^```(python|sh|toml|tex|text)\n(.*?)^```", re.DOTALL | re.MULTILINE)
 NAME = re.compile(r"[#%] (\S+\.(?:toml|csv|tex|txt|py))\n")
 
 
@@ -74,4 +74,4 @@ def test_no_block_is_of_a_kind_that_is_not_run():
         for page in PAGES
         for kind in re.findall(r"^ *```(\w+)$", page.read_text(encoding="utf-8"), re.M)
     }
-    assert kinds <= {"python", "sh", "toml", "csv", "tex", "text", "html"}
+    assert kinds <= {"python", "sh", "toml", "tex", "text", "html"}

@@ -14,7 +14,7 @@ import pytest
 import kinlab as kl
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "docs" / "_ext"))
-live = pytest.importorskip("live", reason="the extra docs is not installed")
+import live
 
 
 @pytest.fixture(scope="module")

@@ -117,7 +117,8 @@ def test_note_page_shows_each_formula_with_its_verdict():
 
     formulas = [one for one in catalogue() if one.note == "001"]
     groups = grouped(run(plan(formulas, lambda name: name in ("planar2r", "puma560")), samples=20))
-    text = note_pages.page("001", groups, note_pages.languages()[0])
+    english, chinese = note_pages.languages()
+    text = note_pages.page("001", groups, english)
     shown = re.findall(r"^### `([^`]+)`", text, re.MULTILINE)
     assert sorted(shown) == sorted(one.key for one in formulas)
     wrong = {one.key for one in formulas if one.printed is not None}
@@ -127,3 +128,10 @@ def test_note_page_shows_each_formula_with_its_verdict():
     assert text.count("**Misprint") == len(wrong)
     assert text.count("**Agrees.**") == len(formulas) - len(wrong)
     assert text.count('class="form printed') == len(wrong)
+    with chinese:
+        other = note_pages.page("001", groups, chinese)
+    labels = [set(re.findall(r"^\((.*)\)=$", one, re.MULTILINE)) for one in (text, other)]
+    assert len(labels[0]) == len(labels[1]) == len(formulas)
+    assert not labels[0] & labels[1]  # one label names one place of the whole site
+    assert other.count("**笔误") == len(wrong)
+    assert not re.search(r"Misprint|Agrees|Largest", other)

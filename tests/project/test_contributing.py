@@ -18,6 +18,7 @@ def test_every_kind_of_addition_has_its_section():
         "A robot",
         "A confusion of the doctor",
         "A closed form of the inverse kinematics",
+        "A sentence",
     ]
 
 

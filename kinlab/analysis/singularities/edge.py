@@ -73,7 +73,9 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
             solutions_ahead(space, q, -step * lost[:, 0]),
         )
         if min(counts) > 0:
-            proved = "the tool passes on to both sides: solutions stand a small step ahead on each"
+            proved = (
+                "the tool passes on to both sides: met a small step ahead on each, to a tenth of it"
+            )
             return Edge(True, Evidence(searched, min(counts), _STARTS, proved))
         if step == _STEPS[0]:
             near = counts

@@ -388,7 +388,6 @@ def _divide(tensor: Array, i: int) -> tuple[Array, Array] | None:
 
 def _zeros(rows: Array, degree: int) -> list[float]:
     """Angles at which all trigonometric polynomials (k, 2 degree + 1) vanish, each once."""
-    out: list[float] = []
     # z = exp(iq): each row is z^-degree times a polynomial of degree 2 degree
     weights = np.zeros(2 * degree + 1, dtype=complex)
     weights[degree] = rows[0, 0]
@@ -396,18 +395,24 @@ def _zeros(rows: Array, degree: int) -> list[float]:
         cosine, sine = rows[0, 2 * k - 1], rows[0, 2 * k]
         weights[degree + k] = 0.5 * (cosine - 1j * sine)
         weights[degree - k] = 0.5 * (cosine + 1j * sine)
+    roots = np.roots(weights[::-1])
+    # a zero of multiplicity m comes as m roots around it, some 1e-16^(1/m) away; their mean is
+    # as good as a simple root
+    means = [roots[np.abs(roots - z) < TOLERANCES.root_crowd].mean() for z in roots]
     orders = np.arange(1, degree + 1)
-    for z in np.roots(weights[::-1]):
+    found = []
+    for z in [*means, *roots]:
         if abs(abs(z) - 1.0) > 1e-5:
             continue
         q = float(np.angle(z))
         basis = np.ones(2 * degree + 1)
         basis[1::2], basis[2::2] = np.cos(orders * q), np.sin(orders * q)
-        if np.abs(rows @ basis).max() < 1e-8 and all(
-            abs(np.sin(0.5 * (q - other))) > 1e-4 for other in out
-        ):
+        found.append((float(np.abs(rows @ basis).max()), q))
+    out: list[float] = []
+    # the means stand first: of equally small values the mean is taken
+    for value, q in sorted(found, key=lambda one: one[0] > 1e-14):
+        if value < 1e-8 and all(abs(np.sin(0.5 * (q - other))) > 1e-4 for other in out):
             out.append(q)
-    # a double zero is solved to half the digits only: it is no pair to divide by
     return sorted(out)
 
 

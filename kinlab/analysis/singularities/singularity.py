@@ -278,6 +278,8 @@ def find_singularities(
     numbers = [0] * exact + [int(k) + 1 for k in np.flatnonzero(good)]
     for number, state in zip(numbers, states, strict=True):
         pulse()
+        if not _lost(space, state):
+            continue  # solved, but not to the digits that are promised
         sheet = next((one for one in known if one.has(space, state)), None)
         if sheet is None:
             held = supports(space, state)[0]
@@ -325,14 +327,23 @@ def _exact(space: TaskSpace) -> Iterator[Array]:
         if len(factor.joints) == 1 and factor.turns[0] and factor.degrees[0] == 1:
             joint = factor.joints[0]
             a, c, s = factor.coefficients[:, 0]
-            middle, half = np.arctan2(s, c), np.arccos(np.clip(-a / np.hypot(c, s), -1.0, 1.0))
-            for value in sorted({float(middle - half), float(middle + half)}):
+            middle, cosine = np.arctan2(s, c), np.clip(-a / np.hypot(c, s), -1.0, 1.0)
+            # two zeros that fell together are known to half the digits: the middle is tried too
+            near = np.round(cosine) if abs(cosine) > 1.0 - TOLERANCES.zeros_together else cosine
+            halves = np.arccos([cosine, near])
+            for value in sorted({float(middle + h) for h in (*halves, *-halves)}):
                 state = np.random.default_rng(10).uniform(lower, upper)
                 state[joint] = value
                 state = wrap(space.robot, state)
                 inside = between(state[joint], lower[joint], upper[joint], TOLERANCES.limit_digits)
-                if inside and holds(space, state, (joint,)):
+                if inside and holds(space, state, (joint,)) and _lost(space, state):
                     yield np.clip(state, lower, upper)
+
+
+def _lost(space: TaskSpace, q: Array) -> bool:
+    """Whether rank is lost at q to the digits that are promised."""
+    sigma = np.linalg.svd(space.jacobian(q, space.scale), compute_uv=False)
+    return not counting(sigma).all()
 
 
 def _pairs(space: TaskSpace) -> Iterator[tuple[tuple[int, int], Array]]:

@@ -12,16 +12,17 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.places import place_in_note
+from kinlab.check.places import place_in_note, short_place
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import (
     HOW,
     TAKEN_APART,
     TITLE,
+    at_most,
     errors,
     lead,
     origin,
@@ -32,8 +33,8 @@ from kinlab.check.report.words import (
 )
 from kinlab.check.unread import Unread
 from kinlab.formulas.typeset import mathml
-from kinlab.host.language import _, language_tag
-from kinlab.host.web import page_text, policy
+from kinlab.host.language import _
+from kinlab.host.web import page_text, policy, templates
 
 LONG = 110
 """Characters of LaTeX above which a form gets the whole width."""
@@ -94,14 +95,7 @@ def render(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    made = Environment(
-        loader=FileSystemLoader(_FOLDER),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
+    made = templates(_FOLDER)
     made.filters |= {
         "told": _told,
         "errors": errors,
@@ -109,14 +103,14 @@ def _environment() -> Environment:
         "several": several,
         "size": size,
         "place": place_in_note,
+        "short_place": short_place,
+        "at_most": at_most,
         "mathml": lambda latex: Markup(mathml(latex)),
         "spread": lambda group: Markup(svg(group.errors, group.printed_errors)),
     }
     made.globals |= {
         "wide": LONG,
         "narrow": NARROW,
-        "_": _,
-        "language_tag": language_tag,
         "safe": Markup,  # a sentence of ours; what is put into its fields is escaped
         "key": Markup('<span class="key {}">{}</span>').format,
         "code": Markup("<code>{}</code>").format,

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.places import place_in_note
+from kinlab.check.places import place_in_note, short_place
 from kinlab.check.report.markdown_text import code, formula, words
 from kinlab.check.report.summary import Group, size
 from kinlab.check.report.words import (
     HOW,
     TAKEN_APART,
     TITLE,
+    at_most,
     errors,
     lead,
     origin,
@@ -59,11 +60,10 @@ def text(
 def _line(group: Group) -> str:
     """A formula that agrees, in one line."""
     record = group.formula
-    told = _("agrees: {error} at most on {robots}")
     parts = [
         f"{code(record.key)} {words(_(record.title))}",
-        *map(words, filter(None, (_(record.source), place_in_note(record)))),
-        words(told.format(error=size(group.worst.corrected.max_error), robots=group.robots)),
+        *map(words, filter(None, (_(record.source), short_place(record)))),
+        words(_("agrees: {error}").format(error=at_most(group))),
     ]
     return "; ".join(parts)
 

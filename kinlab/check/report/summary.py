@@ -16,6 +16,9 @@ from kinlab.check.unread import Unread
 from kinlab.formulas.record import Formula
 from kinlab.host.language import _, speaking
 
+NO_ROBOT = "-"
+"""Stands for the robots of an identity, which has none."""
+
 
 @dataclass(frozen=True)
 class Group:
@@ -44,7 +47,7 @@ class Group:
         """The robots in a few words."""
         names = [row.robot for row in self.rows]
         if names == ["identity"]:
-            return "-"
+            return NO_ROBOT
         if len(names) <= 2:
             return _(", ").join(names)
         return _("{count} robots").format(count=len(names))

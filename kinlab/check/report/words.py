@@ -9,7 +9,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.report.summary import Group, size
+from kinlab.check.report.summary import NO_ROBOT, Group, size
 from kinlab.check.unread import Unread
 from kinlab.host.language import N_, _, ngettext
 from kinlab.tolerances import TOLERANCES
@@ -88,6 +88,14 @@ def errors(found: Diagnosis) -> str:
     if found.error_after is None:
         return text
     return _("{before}; {error} once repaired").format(before=text, error=size(found.error_after))
+
+
+def at_most(group: Group) -> str:
+    """The largest error of the corrected form, and the robots it is of, where there are any."""
+    error = size(group.worst.corrected.max_error)
+    if group.robots == NO_ROBOT:
+        return _("error {error} at most").format(error=error)
+    return _("error {error} at most on {robots}").format(error=error, robots=group.robots)
 
 
 def counts(groups: Sequence[Group]) -> str:

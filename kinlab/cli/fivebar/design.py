@@ -10,6 +10,7 @@ import typer
 
 from kinlab.cli.screen import fine_table, screen, styled
 from kinlab.errors import OptionError
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.fivebar.design.front import DesignFront
@@ -98,7 +99,7 @@ def design(
         _print_design(found)
     if output is not None:
         found.fivebar.save(output)
-        console.print(f"wrote {output}")
+        console.print(_("wrote {file}").format(file=output))
     if picture is not None:
         from kinlab import plots
 
@@ -106,7 +107,7 @@ def design(
             plots.fivebar_front(front) if pareto is not None else plots.fivebar_design(found),
             picture,
         )
-        console.print(f"wrote {picture}")
+        console.print(_("wrote {file}").format(file=picture))
 
 
 def _numbers(texts: list[str], option: str, default: float | None) -> dict[str, float]:
@@ -137,17 +138,18 @@ def _print_design(found: FiveBarDesign) -> None:
     box = found.workspace
     console.print(styled((f"l1 {l1:.6g} m, l2 {l2:.6g} m, e {e:.6g} m", "bold")))
     signs = "".join("+" if s > 0 else "-" for s in found.mode)
-    console.print(
-        f"over x {box.x_min:.6g} to {box.x_max:.6g}, y {box.y_min:.6g} to {box.y_max:.6g} m in "
-        f"mode {signs}"
-    )
+    told = _("over x {x0} to {x1}, y {y0} to {y1} m in mode {mode}")
+    sides = {"x0": box.x_min, "x1": box.x_max, "y0": box.y_min, "y1": box.y_max}
+    console.print(told.format(**{side: f"{at:.6g}" for side, at in sides.items()}, mode=signs))
     from kinlab.fivebar.design.goals import GOALS
 
-    table = fine_table("worst over the whole rectangle", "reached", "proved", "asked", left=(0,))
+    table = fine_table(
+        _("worst over the whole rectangle"), _("reached"), _("proved"), _("asked"), left=(0,)
+    )
     for name, goal in found.goals.items():
         if name == "torque" and not found.fivebar.payload:
             continue
-        asked = "best" if name in found.weights else ""
+        asked = _("best") if name in found.weights else ""
         if name in found.limits:
             sign = "≤" if GOALS[name].most else "≥"
             asked = f"{asked} {sign} {found.limits[name]:g}".strip()
@@ -157,11 +159,12 @@ def _print_design(found: FiveBarDesign) -> None:
     for line in found.remarks:
         console.print(styled((line, "bold")))
     if found.at_limit:
-        console.print(f"at the limit of {', '.join(found.at_limit)}: beyond it there is more")
+        told = _("at the limit of {names}: beyond it there is more")
+        console.print(told.format(names=_(", ").join(found.at_limit)))
 
 
 def _bound(goal: Proved) -> str:
-    return f"{goal.bound:.6g}" if math.isfinite(goal.bound) else "nothing"
+    return f"{goal.bound:.6g}" if math.isfinite(goal.bound) else _("nothing")
 
 
 def _print_front(front: DesignFront) -> None:
@@ -175,4 +178,5 @@ def _print_front(front: DesignFront) -> None:
     console = screen(highlight=False, soft_wrap=True)
     console.print(table)
     first, second = front.goals
-    console.print(f"{len(front.designs)} designs from the best {first} to the best {second}")
+    told = _("{count} designs from the best {first} to the best {second}")
+    console.print(told.format(count=len(front.designs), first=first, second=second))

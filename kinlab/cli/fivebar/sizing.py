@@ -9,6 +9,7 @@ import typer
 
 from kinlab.cli.screen import Screen, fine_table, screen, styled
 from kinlab.errors import OptionError, already_said
+from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.drives.fitting import MotorFit
@@ -95,11 +96,12 @@ def size(
         _print_cycle(done, console, fastest=fastest)
         if picture is not None:
             save(mechanisms.fivebar_cycle(fivebar, done), picture)
-            console.print(f"wrote {picture}")
+            console.print(_("wrote {file}").format(file=picture))
         return
     box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
     if workspace is None:
-        console.print(f"workspace: the largest rectangle of condition number up to {_CONDITION:g}")
+        told = _("workspace: the largest rectangle of condition number up to {number}")
+        console.print(told.format(number=f"{_CONDITION:g}"))
     round_trip = None if cycle is None else _read_cycle(cycle, fivebar, signs, v_max, a_max, box)
     with already_said():  # it is printed with the figures
         sizing = fivebar.size_servo(
@@ -120,7 +122,8 @@ def size(
         gains = picture.with_name(f"{picture.stem}-gain{picture.suffix}")
         save(mechanisms.fivebar_cycle(fivebar, sizing), picture)
         save(mechanisms.fivebar_gains(fivebar, sizing), gains)
-        console.print(f"wrote {picture} and {gains}")
+        told = _("wrote {file} and {other}").format(file=picture, other=gains)
+        console.print(told)
 
 
 def _pairs(gears: Path | None, gear: str | None) -> list[Gearbox] | None:
@@ -165,13 +168,25 @@ def _read_cycle(
 
 def _print_cycle(found: CycleSizing, console: Screen, *, fastest: bool) -> None:
     demand = found.demand
-    stretch = "" if found.slower == 1.0 else f", {found.slower:.4g} times slower than its limits"
-    head = "the fastest cycle of this drive: " if fastest else ""
-    console.print(f"{head}cycle {found.cycle.name}: {found.time:.4g} s{stretch}")
+    told = _("cycle {name}: {time} s").format(name=found.cycle.name, time=f"{found.time:.4g}")
+    if fastest:
+        told = _("the fastest cycle of this drive: {cycle}").format(cycle=told)
+    if found.slower != 1.0:
+        slower = _("{cycle}, {times} times slower than its limits")
+        told = slower.format(cycle=told, times=f"{found.slower:.4g}")
+    console.print(told)
+    told = _(
+        "cranks: peak {peak} N m, RMS {rms} N m, rate {rate} rad/s, power {power} W; load inertia "
+        "{inertia} kg m²"
+    )
     console.print(
-        f"cranks: peak {pair(demand.peak_torque)} N m, RMS {pair(demand.rms_torque)} N m, "
-        f"rate {pair(demand.peak_rate)} rad/s, power {pair(demand.peak_power)} W; "
-        f"load inertia {found.load_inertia:.4g} kg m²"
+        told.format(
+            peak=pair(demand.peak_torque),
+            rms=pair(demand.rms_torque),
+            rate=pair(demand.peak_rate),
+            power=pair(demand.peak_power),
+            inertia=f"{found.load_inertia:.4g}",
+        )
     )
     _print_fits(found.fits, console)
 
@@ -180,33 +195,45 @@ def _print_sizing(sizing: ServoSizing, console: object) -> None:
 
     assert isinstance(console, Screen)
     box, cycle = sizing.workspace, sizing.cycle
-    console.print(
-        f"workspace x {box.x_min:.4g} to {box.x_max:.4g}, y {box.y_min:.4g} to {box.y_max:.4g} m; "
-        f"v {sizing.v_max:g} m/s, a {sizing.a_max:g} m/s²"
-    )
+    told = _("workspace x {x0} to {x1}, y {y0} to {y1} m; v {v} m/s, a {a} m/s²")
+    sides = {"x0": box.x_min, "x1": box.x_max, "y0": box.y_min, "y1": box.y_max}
+    limits = {"v": f"{sizing.v_max:g}", "a": f"{sizing.a_max:g}"}
+    console.print(told.format(**{side: f"{at:.4g}" for side, at in sides.items()}, **limits))
     for remark in sizing.remarks:
         console.print(remark, style="bold yellow", soft_wrap=True)
-    table = fine_table("worst over the workspace", "crank 1", "crank 2", left=(0,))
+    table = fine_table(
+        _("worst over the workspace"),
+        *(_("crank {number}").format(number=k) for k in (1, 2)),
+        left=(0,),
+    )
     rows = {
-        "crank rate, rad/s": sizing.rate,
-        "load inertia, note's form, kg m²": sizing.load_inertia_note,
-        "load inertia, full, kg m²": sizing.load_inertia,
-        "torque, note's form, N m": sizing.torque_note,
-        "torque, full, N m": sizing.torque,
+        _("crank rate, rad/s"): sizing.rate,
+        _("load inertia, note's form, kg m²"): sizing.load_inertia_note,
+        _("load inertia, full, kg m²"): sizing.load_inertia,
+        _("torque, note's form, N m"): sizing.torque_note,
+        _("torque, full, N m"): sizing.torque,
     }
     for label, worst in rows.items():
         table.add_row(label, *(f"{v:.4g}" for v in worst.value))
     console.print(table)
     share = 100.0 * (1.0 - sizing.torque_note.largest / sizing.torque.largest)
-    console.print(f"the note's torque leaves out rods, f(v), gravity and rotor: {share:.0f} % low")
-    best = " and ".join(f"{x**0.5:.4g}" for x in dict.fromkeys(sizing.eta.tolist()))
-    console.print(
-        f"eta = m/I_A: torque per acceleration is least at sigma = sqrt(eta) = {best} rad/m; "
-        f"sigma in the workspace is {sizing.sigma[0]:.4g} to {sizing.sigma[1]:.4g}"
+    told = _("the note's torque leaves out rods, f(v), gravity and rotor: {share} % low")
+    console.print(told.format(share=f"{share:.0f}"))
+    best = _(" and ").join(f"{x**0.5:.4g}" for x in dict.fromkeys(sizing.eta.tolist()))
+    told = _(
+        "eta = m/I_A: torque per acceleration is least at sigma = sqrt(eta) = {best} rad/m; sigma "
+        "in the workspace is {low} to {high}"
     )
+    low, high = (f"{one:.4g}" for one in sizing.sigma)
+    console.print(told.format(best=best, low=low, high=high))
+    told = _("pick-and-place cycle of {time} s: peak {peak}, RMS {rms} N m, peak power {power} W")
     console.print(
-        f"pick-and-place cycle of {sizing.path.duration:.4g} s: peak {pair(cycle.peak_torque)}, "
-        f"RMS {pair(cycle.rms_torque)} N m, peak power {pair(cycle.peak_power)} W"
+        told.format(
+            time=f"{sizing.path.duration:.4g}",
+            peak=pair(cycle.peak_torque),
+            rms=pair(cycle.rms_torque),
+            power=pair(cycle.peak_power),
+        )
     )
     _print_fits(sizing.fits, console)
 
@@ -216,14 +243,16 @@ _SHOWN = 24
 
 
 def _print_fits(fits: tuple[MotorFit, ...], console: Screen) -> None:
-    columns = ["motor", "gear", "peak N m", "RMS N m", "r/min", "inertia", "margin"]
-    table = fine_table(*columns, "limited by, or fails", left=(0, 1, 7))
+    columns = [_("motor"), _("gear"), _("peak N m"), _("RMS N m"), _("r/min"), _("inertia")]
+    table = fine_table(*columns, _("margin"), _("limited by, or fails"), left=(0, 1, 7))
     good = sum(fit.fits for fit in fits)
     for fit in fits[: max(_SHOWN, good)]:
         torques, ratio = (f"{fit.peak:.3g}", f"{fit.rms:.3g}"), f"{fit.inertia_ratio:.3g}"
         named = fit.gear.nominal_torque is not None or fit.gear.max_speed is not None
-        more = f", and {len(fit.failed) - 1} more" if len(fit.failed) > 1 else ""
-        failed = f"{fit.failed[0]}{more}" if fit.failed else ""
+        failed = fit.failed[0] if fit.failed else ""
+        if len(fit.failed) > 1:
+            failed = _("{first}, and {count} more").format(first=failed, count=len(fit.failed) - 1)
+        fails = _("fails: {what}").format(what=failed)
         table.add_row(
             fit.motor.name,
             fit.gear.name if named else f"{fit.gear_ratio:.3g}",
@@ -231,12 +260,14 @@ def _print_fits(fits: tuple[MotorFit, ...], console: Screen) -> None:
             f"{fit.speed:.0f}",
             ratio,
             styled((f"{fit.margin:.3g}", "" if fit.fits else "red")),
-            " and ".join(fit.limits) if fit.fits else styled((f"fails: {failed}", "red")),
+            _(" and ").join(fit.limits) if fit.fits else styled((fails, "red")),
         )
     console.print(table)
     if len(fits) > max(_SHOWN, good):
-        console.print(f"{len(fits) - max(_SHOWN, good)} more fail by more")
+        told = _("{count} more fail by more")
+        console.print(told.format(count=len(fits) - max(_SHOWN, good)))
     unstated = {what for fit in fits for what in fit.unstated if fit.gear.inertia}
     if unstated:
-        console.print(f"not judged, for a gearbox does not state it: {', '.join(sorted(unstated))}")
-    console.print("inertia: I_L / (j² I_M), which the note wants between 1 and 3")
+        told = _("not judged, for a gearbox does not state it: {names}")
+        console.print(told.format(names=_(", ").join(sorted(unstated))))
+    console.print(_("inertia: I_L / (j² I_M), which the note wants between 1 and 3"))

@@ -7,16 +7,16 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from jinja2 import Environment
 from markupsafe import Markup
 
 from kinlab.check.report import html as report
 from kinlab.doctor.marking.judge import MISSING, WRONG
 from kinlab.doctor.marking.marks import Mark, Marks
 from kinlab.doctor.marking.words import KINDS
-from kinlab.host.language import N_, _, language_tag, ngettext
+from kinlab.host.language import N_, _, ngettext
 from kinlab.host.version import __version__
-from kinlab.host.web import page_text, policy
+from kinlab.host.web import page_text, policy, templates
 
 _FOLDER = Path(__file__).parent
 _REPORT = Path(report.__file__).parent
@@ -114,13 +114,6 @@ def _render(template: str, **values: Any) -> str:
 
 @cache
 def _environment() -> Environment:
-    made = Environment(
-        loader=FileSystemLoader([_FOLDER, _REPORT]),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    made.globals |= {"tone": _tone, "_": _, "ngettext": ngettext, "language_tag": language_tag}
+    made = templates(_FOLDER, _REPORT)
+    made.globals |= {"tone": _tone, "ngettext": ngettext}
     return made

@@ -15,6 +15,7 @@ import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.errors import UrdfError
+from kinlab.host.language import _
 from kinlab.model import urdf_read
 from kinlab.model.robot import Robot
 from kinlab.model.strict_numbers import strict_numbers
@@ -64,7 +65,8 @@ class DrawnBodies:
             )
         except (ValueError, RuntimeError) as problem:
             reason = " ".join(str(problem).split())[:200]
-            self.notes.append(f"the bodies cannot be drawn ({reason}); rods stand for them")
+            told = _("the bodies cannot be drawn ({reason}); rods stand for them")
+            self.notes.append(told.format(reason=reason))
         drawn = {int(body.parentJoint) for body in self.visuals.geometryObjects}
         if not drawn:
             self.bare = set(range(robot.model.njoints))
@@ -72,8 +74,8 @@ class DrawnBodies:
             if joint is not None and joint not in drawn:
                 self.bare.add(joint)
             stands = joint is not None and joint in self.bare - {0}
-            told = "a rod stands for it" if stands else "it is left out"
-            self.notes.append(f"{reason}; {told}")
+            told = _("{reason}; a rod stands for it") if stands else _("{reason}; it is left out")
+            self.notes.append(told.format(reason=reason))
 
     def _add(self, link: Any, visual: Any, paints: dict[str, Any]) -> None:
         """Writes one visual into our own document, or a note why not."""
@@ -170,11 +172,12 @@ def mesh_problem(file: Path, loader: Any, scale: Any) -> str:
 
     try:
         if file.stat().st_size > _MESH_LIMIT:
-            return f"{file.stat().st_size} bytes; at most {_MESH_LIMIT}"
+            told = _("{size} bytes; at most {most}")
+            return told.format(size=file.stat().st_size, most=_MESH_LIMIT)
         mesh = loader.load(str(file), np.asarray(scale, dtype=float))
         points = mesh.vertices()
         if not len(points) or not np.isfinite(points).all():
-            return "it has no points, or points that are not finite"
+            return _("it has no points, or points that are not finite")
         if file.suffix.lower() == ".dae":
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
@@ -182,7 +185,7 @@ def mesh_problem(file: Path, loader: Any, scale: Any) -> str:
         elif file.suffix.lower() == ".obj":
             file.read_text(encoding="utf-8")
     except UnicodeDecodeError:
-        return "it is not UTF-8 text"
+        return _("it is not UTF-8 text")
     except Exception as problem:  # noqa: BLE001  whatever a hostile mesh makes the two readers raise
         words = " ".join(str(problem).split())
         return f"{type(problem).__name__}: {words}"[:160].replace(str(file), file.name)

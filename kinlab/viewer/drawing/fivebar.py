@@ -14,6 +14,7 @@ from kinlab.errors import StructureError
 from kinlab.fivebar import FiveBar
 from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.geometry import solve_pose
+from kinlab.host.language import _
 from kinlab.viewer.drawing import shapes
 from kinlab.viewer.drawing.shapes import Label, add_ellipsoids, empty_spec, look_at, set_stage
 
@@ -75,7 +76,9 @@ def draw_page(
     edges = _type_one_points(linkage)
     corners = np.array([[p[0], 0.0, p[1]] for curve in edges for p in curve])
     camera = look_at(corners, np.array([0.25, -1.0, 0.12]), 0.0)
-    spec = empty_spec(linkage.name, f"five-bar. {linkage.source}".strip(), camera, HOME)
+    spec = empty_spec(
+        linkage.name, _("five-bar. {source}").format(source=linkage.source).strip(), camera, HOME
+    )
     _draw_bars(vis, linkage, size)
     spec |= {
         "kind": "fivebar",
@@ -89,7 +92,7 @@ def draw_page(
         "joints": [_crank(i, float(theta[i])) for i in range(2)],
         "q": theta.tolist(),
         "task": "θ̇ = J v",
-        "poses": {"Start": theta.tolist()},
+        "poses": {_("Start"): theta.tolist()},
         "shown": [*spec["shown"], "names", "loci"],
         "labels": [
             Label(HOME, (linkage.e, 0, 0), "A<sub>1</sub>", "names").as_json(),
@@ -100,20 +103,24 @@ def draw_page(
         ],
     }
     add_ellipsoids(vis, spec, size, 2)
-    spec["checks"] += [["names", "names"], ["loci", "singular loci"], ["workspace", "workspace"]]
+    spec["checks"] += [
+        ["names", _("names")],
+        ["loci", _("singular loci")],
+        ["workspace", _("workspace")],
+    ]
     spec["groups"]["loci"] = _draw_loci(vis, linkage, edges, size)
     spec["groups"]["workspace"] = [_draw_workspace(vis, linkage, mode, assembly, size)]
     spec["legend"] += [
-        {"name": "workspace: 1/κ", "low": 0.0, "high": 1.0},
-        {"name": "type I loci", "color": f"#{_ONE:06x}"},
-        {"name": "type II loci", "color": f"#{_TWO:06x}"},
+        {"name": _("workspace: 1/κ"), "low": 0.0, "high": 1.0},
+        {"name": _("type I loci"), "color": f"#{_ONE:06x}"},
+        {"name": _("type II loci"), "color": f"#{_TWO:06x}"},
     ]
     return spec
 
 
 def _crank(i: int, middle: float) -> dict[str, Any]:
     """A slider that starts in its middle, so that no crank begins at the end of its turn."""
-    name = f"crank {i + 1}"
+    name = _("crank {number}").format(number=i + 1)
     return {
         "name": name,
         "label": f"θ{i + 1}  {name}",

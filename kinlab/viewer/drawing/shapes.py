@@ -10,6 +10,7 @@ import meshcat.geometry as g
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.host.language import N_, _, language
 
 # -------- Texts that the page hangs beside points of the scene
 
@@ -98,6 +99,8 @@ RED, GREEN, BLUE = 0xC62828, 0x2E7D32, 0x1565C0
 
 ELLIPSOIDS = {"velocity": 0x00897B, "force": 0xEF6C00}
 """The kinds of ellipsoid and their colours."""
+
+ELLIPSOID_NAMES = {"velocity": N_("velocity ellipsoid"), "force": N_("force ellipsoid")}
 
 ELLIPSOID_SIZE = 0.2
 """Longest semi-axis of an ellipsoid over the size of the mechanism."""
@@ -305,12 +308,13 @@ def empty_spec(title: str, subtitle: str, camera: Camera, root: str = "/meshcat"
         "groups": {"trace": [trace]},
         "labels": [],
         "shown": ["added"],
-        "checks": [["trace", "tool trace"]],
+        "checks": [["trace", _("tool trace")]],
         "ellipsoids": [],
         "legend": [],
         "trace": trace,
         "animation": None,
         "live": "",
+        "lang": language(),
     }
 
 
@@ -329,4 +333,4 @@ def add_ellipsoids(vis: Any, spec: dict[str, Any], size: float, rank: int) -> No
         entry = {"kind": kind, "path": path, "size": ELLIPSOID_SIZE * size, "rank": rank}
         spec["ellipsoids"].append(entry)
         spec["groups"][kind] = [path]
-        spec["checks"].append([kind, f"{kind} ellipsoid"])
+        spec["checks"].append([kind, _(ELLIPSOID_NAMES[kind])])

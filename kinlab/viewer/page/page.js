@@ -8,6 +8,12 @@
 const kinlab = (() => {
   const THREE = MeshCat.THREE;
 
+  // ---- words: English here; start(spec) is given those of another language ---------------
+
+  let words = {};
+  const _ = (text) => words[text] || text;
+  const fill = (text, values) => text.replace(/\{(\w+)\}/g, (whole, name) => values[name]);
+
   // ---- small linear algebra ------------------------------------------------------------
 
   const IDENTITY = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -197,7 +203,7 @@ const kinlab = (() => {
           if (open(middle)) bad = middle;
           else good = middle;
         }
-        return { q: at(good), stopped: "type II singularity: the rods are in line" };
+        return { q: at(good), stopped: _("type II singularity: the rods are in line") };
       }
       return { q: to, stopped: "" };
     }
@@ -404,6 +410,7 @@ const kinlab = (() => {
   }
 
   function start(spec) {
+    words = spec.words || {};
     const model = spec.kind === "fivebar" ? fiveBar(spec) : serialArm(spec);
     const state = { q: spec.q.slice(), row: "", time: 0, playing: false, last: null };
     const active = new Set(spec.shown);
@@ -436,7 +443,7 @@ const kinlab = (() => {
       const coordinates = spec.planar ? at.slice(0, 2) : at;
       report.position.textContent = coordinates.map((x) => fixed(x, 4)).join("  ");
       report.angles.textContent = angles(T).map((x) => fixed(x, 1)).join("  ");
-      report.det.textContent = det === null ? "J is not square" : number(det);
+      report.det.textContent = det === null ? _("J is not square") : number(det);
       report.sigma.textContent = number(sigmaMin);
       report.kappa.textContent = number(kappa);
       for (const entry of spec.ellipsoids) drawEllipsoid(entry, model.linear(state.q), at);
@@ -543,7 +550,7 @@ const kinlab = (() => {
     function play(on) {
       state.playing = on;
       state.last = null;
-      report.play.textContent = on ? "Pause" : "Play";
+      report.play.textContent = on ? _("Pause") : _("Play");
     }
 
     function everyFrame(now) {
@@ -568,7 +575,7 @@ const kinlab = (() => {
       const step = "any";
       const range = element("input", { type: "range", min: joint.lower, max: joint.upper, step,
         "aria-label": joint.name });
-      const box = element("input", { type: "number", step, "aria-label": `${joint.name} value` });
+      const box = element("input", { type: "number", step, "aria-label": fill(_("{name} value"), joint) });
       const move = (value) => {
         stopPlaying();
         setJoints(state.q.map((x, k) => (k === i ? value : x)));
@@ -605,19 +612,20 @@ const kinlab = (() => {
       if (!spec.dh.length) return [];
       const head = ["i", ...spec.dh_columns].map((x) => element("th", { html: x }));
       return [
-        element("h2", {}, `DH table, ${spec.dh_convention}`),
+        element("h2", {}, fill(_("DH table, {convention}"), { convention: spec.dh_convention })),
         element("table", {}, element("tr", {}, ...head), ...report.dh.map((r) => r.line)),
-        element("button", { onclick: () => showRow("all"), id: "dh-all" }, "Draw all rows"),
-        element("small", {}, "or click a row. Lengths in m."),
+        element("button", { onclick: () => showRow("all"), id: "dh-all" }, _("Draw all rows")),
+        element("small", {}, _("or click a row. Lengths in m.")),
       ];
     }
 
     function animationPanel() {
       if (!spec.animation) return [];
       const end = spec.animation.times[spec.animation.times.length - 1];
-      report.play = element("button", { id: "play", onclick: () => play(!state.playing) }, "Play");
+      report.play = element("button", { id: "play", onclick: () => play(!state.playing) },
+        _("Play"));
       report.scrub = element("input", { type: "range", id: "scrub", min: 0, max: end, step: "any",
-        value: 0, "aria-label": "time", oninput: (event) => {
+        value: 0, "aria-label": _("time"), oninput: (event) => {
           play(false);
           seek(Number(event.target.value));
         } });
@@ -662,9 +670,9 @@ const kinlab = (() => {
     }
 
     report.ended = element("div", { class: "warning", id: "ended" },
-      "The server has ended. The sliders still work; reload when it is back.");
+      _("The server has ended. The sliders still work; reload when it is back."));
     report.ended.hidden = true;
-    const turns = line("roll, pitch, yaw [°]", "angles", "R = Rz(yaw) Ry(pitch) Rx(roll)");
+    const turns = line(_("roll, pitch, yaw [°]"), "angles", "R = Rz(yaw) Ry(pitch) Rx(roll)");
     report.stopped = element("div", { class: "warning", id: "stopped" });
     report.stopped.hidden = true;
     panel.append(
@@ -674,19 +682,20 @@ const kinlab = (() => {
       report.ended,
       ...spec.notes.map((text) => element("div", { class: "warning" }, text)),
       ...animationPanel(),
-      element("h2", {}, "Joints"),
+      element("h2", {}, _("Joints")),
       element("div", { id: "joints" }, ...model.joints.map(slider)),
       report.stopped,
       element("div", { class: "buttons" },
         ...Object.entries(spec.poses).map(([name, q]) => poseButton(name, q))),
-      element("h2", {}, "Tool"),
-      line(`x, y${spec.planar ? "" : ", z"} [m]`, "position", "position of the tool in the base"),
+      element("h2", {}, _("Tool")),
+      line(`x, y${spec.planar ? "" : ", z"} [m]`, "position",
+        _("position of the tool in the base")),
       spec.planar ? "" : turns,
-      element("h2", {}, `Jacobian, ${spec.task}`),
-      line("det J", "det", "determinant of the Jacobian's task rows"),
-      line("σ<sub>min</sub>", "sigma", "smallest singular value: 0 in a singular pose"),
-      line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", "condition number: 1 if isotropic"),
-      element("h2", {}, "Show"),
+      element("h2", {}, fill(_("Jacobian, {task}"), spec)),
+      line("det J", "det", _("determinant of the Jacobian's task rows")),
+      line("σ<sub>min</sub>", "sigma", _("smallest singular value: 0 in a singular pose")),
+      line("κ = σ<sub>max</sub>/σ<sub>min</sub>", "kappa", _("condition number: 1 if isotropic")),
+      element("h2", {}, _("Show")),
       ...spec.checks.map(([group, text]) => check(group, text)),
       ...spec.legend.map(legend),
       ...dhTable(),

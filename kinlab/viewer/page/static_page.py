@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import html
 import json
+import re
 from collections.abc import Callable, Sequence
 from importlib import resources
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import meshcat
 import umsgpack
 
+from kinlab.host.language import _, language_tag, speaking
 from kinlab.host.web import page_text, policy
 
 # -------- A meshcat window that remembers the scene instead of sending it to a server
@@ -74,7 +76,7 @@ def _clean(path: str) -> str:
 #          no network
 
 _PAGE = """<!DOCTYPE html>
-<html lang="en">
+<html lang="{lang}">
 <head>
 <meta charset="utf-8">
 {policy}
@@ -93,6 +95,9 @@ _PAGE = """<!DOCTYPE html>
 </html>
 """
 
+_MARKED = re.compile(r'\b_\("([^"]+)"\)')
+"""The sentences of our script that are translated."""
+
 _START = """
 const viewer = new MeshCat.Viewer(document.getElementById("meshcat-pane"));
 const bytes = (text) => Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
@@ -109,14 +114,21 @@ def page_html(spec: dict[str, Any], commands: Sequence[bytes]) -> str:
         commands: packed meshcat commands that build the scene.
     """
     ours = resources.files("kinlab.viewer.page")
+    script = (ours / "page.js").read_text(encoding="utf-8")
+    with speaking(spec["lang"]):
+        lang = language_tag()
+        words = {text: _(text) for text in _MARKED.findall(script)}
     # meshcat's script stands in the page as it is; ours and the data are kept from closing it
+    if spec["lang"] != "en":
+        spec = {**spec, "words": words}
     data = json.dumps(spec, allow_nan=False).replace("<", "\\u003c")
     packed = json.dumps([base64.b64encode(c).decode("ascii") for c in commands])
     parts = {
         "title": html.escape(f"{spec['title']} - kinlab"),
         "style": (ours / "page.css").read_text(encoding="utf-8"),
         "meshcat": (resources.files("meshcat") / "viewer/dist/main.min.js").read_text("utf-8"),
-        "script": (ours / "page.js").read_text(encoding="utf-8"),
+        "script": script,
+        "lang": lang,
         "start": _START.format(commands=packed, spec=data),
     }
     # line ends as the browser sees them, or the digests would differ
