@@ -165,14 +165,13 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     if not missing:
         return None
     if missing == count:
-        told = _("the formula gives no number at any state")
-        return Cause(told, ("no value",), ("",), 0.0, 1.0)
+        said = _("the formula gives no number at any state")
+        return Cause(said, ("no value",), ("",), 0.0, 1.0)
     error = float(np.max(relative_errors(case.hand[whole_], engine[whole_])))
     if error > TOLERANCES.formula_agrees:
         return None
     told = _(
-        "the formula gives no number at {missing} of {count} states; where it gives one, it is "
-        "right"
+        "the formula gives no number at {missing} of {count} states; elsewhere it is right"
     ).format(missing=missing, count=count)
     return Cause(told, ("no value",), ("",), error, 1.0)
 

@@ -14,7 +14,7 @@ import sentences
 
 import kinlab as kl
 from kinlab.check.diagnosis import shown_entry
-from kinlab.doctor.confusions.books import ABOUT
+from kinlab.doctor.confusions.books import LINES
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.roads import roads
 from kinlab.doctor.confusions.steps import steps
@@ -137,7 +137,7 @@ def taken_otherwise(robot, *quantities):
         case = prepare(robot, name, (), 10, 0)[0].few(2)
         for road in roads(case):
             axes = road.walked([()], case.arguments)[1].axes
-            assert {line.about for line in road.of.lines} - {""} <= {*ABOUT}
+            assert {line.about for line in road.of.lines} - {""} <= {*LINES}
             yield from steps(road.of, axes, road.n, False)
 
 
@@ -181,14 +181,20 @@ def test_every_kind_of_slip_has_its_name():
 
 LEFT_ENGLISH = {
     "known.py": (" left out",),
-    "steps.py": ("dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd"),
+    "words.py": (
+        "radians for degrees", "digits exchanged", "the acceleration of the centre of mass",
+        "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
+    ),
+    "steps.py": (
+        "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
+        "the acceleration of the centre of mass",
+    ),
     "handout.py": ("student id",),
     "judge.py": ("the sheet's",),
     "submission.py": ("student id", "left side"),
     "child.py": ("processor time", "files written", "open files", "core dumps"),
     "bodies.py": ("other end",),
     "cells.py": ("too many", "left out"),
-    "words.py": ("radians for degrees", "digits exchanged"),
     "readings.py": (
         "metres for millimetres", "radians for degrees", "tool to base", "base to tool",
         "base, tool", "tool, base", "degrees and millimetres", "radians and metres",
@@ -219,7 +225,7 @@ def test_every_sentence_of_the_doctor_is_marked():
         for line, said in found:
             if "\n" in said and (_ABOUT.search(said) or said.startswith("for ")):
                 # a derivation: what its lines are called stands in the comments
-                assert {about.strip() for about in _ABOUT.findall(said)} <= {*ABOUT}, inside
+                assert {about.strip() for about in _ABOUT.findall(said)} <= {*LINES}, inside
             elif said not in left:
                 wrong.append(f"{inside}:{line}: {said!r}")
     assert not wrong, "mark it with _ or N_ (kinlab.host.language):\n" + "\n".join(wrong)

@@ -6,6 +6,7 @@ module           what it holds
 ``books``        The textbooks' derivations as text, each written once, for any serial arm, and for
                  the five-bar
 ``derivations``  The textbooks' derivations walked with one step, then two or three, taken otherwise
+``entries``      What people write otherwise in the entries of a link's matrix that is written out
 ``known``        The table of known confusions: every reading that makes sense for a quantity
 ``otherwise``    What the engine says if asked otherwise: another frame, another split of C, terms
                  left out
@@ -16,5 +17,7 @@ module           what it holds
 ``steps``        Everything that one can do otherwise in one place of a derivation
 ``walk``         Walks a textbook's derivation, written as text, with one step or several taken
                  otherwise
+``words``        The words and signs in which a derivation's expressions are told; small ways to
+                 change them
 ===============  =================================================================================
 """

@@ -109,8 +109,8 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
     if not value:
         return
     kind = "offset" if column in ("theta", "d") else "table entry"
-    left_out = _("leaves {column} of link {number} out").format(column=column, number=i + 1)
-    yield _table(kind, left_out, _linked(i, **{column: 0.0}), cost=1.2, place=place)
+    forgets = _("leaves {column} of link {number} out").format(column=column, number=i + 1)
+    yield _table(kind, forgets, _linked(i, **{column: 0.0}), cost=1.2, place=place)
     yield _table(
         f"{column} sign",
         _("has {column} of link {number} with the opposite sign").format(

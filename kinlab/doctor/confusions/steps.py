@@ -9,12 +9,27 @@ matrix. Each follows from the expression alone: nothing here knows a textbook's 
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-from kinlab.doctor.confusions.books import MODIFIED, STANDARD
+from kinlab.doctor.confusions.entries import Make, entry_steps
 from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
-from kinlab.host.language import N_, _
+from kinlab.doctor.confusions.words import (
+    KNOWN,
+    across,
+    halves,
+    is_sum,
+    meant,
+    minus,
+    name_of,
+    spelt,
+    summands,
+    times,
+    told,
+    told_other,
+    which,
+)
+from kinlab.host.language import _
 
 _ALIKE = (
     "w dw", "dv dvc", "F f", "N nn", "P c", "F N", "f nn", "Jv Jw", "z o", "crank rod", "l1 l2",
@@ -23,98 +38,8 @@ _ALIKE = (
 )  # fmt: skip
 """Names that are easily taken for one another."""
 
-_AS_THERE = {
-    "standard": N_("{does} (as in the standard convention, {written} for {meant})"),
-    "modified": N_("{does} (as in the modified convention, {written} for {meant})"),
-}
-_NEIGHBOURS = {
-    ("joint", True): N_("takes {thing} of the joint before ({written} for {meant})"),
-    ("joint", False): N_("takes {thing} of the next joint ({written} for {meant})"),
-    ("frame", True): N_("takes {thing} of the frame before ({written} for {meant})"),
-    ("frame", False): N_("takes {thing} of the next frame ({written} for {meant})"),
-    ("link", True): N_("takes {thing} of the link before ({written} for {meant})"),
-    ("link", False): N_("takes {thing} of the next link ({written} for {meant})"),
-}
-
 _GIVEN = ("zero", "one", "end", "g", "number", "zeros", "nothing")
 """Names that nobody writes for another."""
-
-MEANT = {
-    "w": N_("the angular velocity w"),
-    "dw": N_("the angular acceleration omega_dot"),
-    "dv": N_("the acceleration of the link's origin"),
-    "dvc": N_("the acceleration of the centre of mass"),
-    "F": N_("the link's own force F"),
-    "N": N_("the link's own moment N"),
-    "f": N_("the force f"),
-    "nn": N_("the moment n"),
-    "P": N_("the lever arm P"),
-    "c": N_("the centre of mass P_C"),
-    "z": N_("the axis z"),
-    "o": N_("the origin o"),
-    "p": N_("the tool's point p"),
-    "pc": N_("the centre of mass"),
-    "R": N_("the rotation R"),
-    "I": N_("the inertia tensor"),
-    "m": N_("the mass m"),
-    "Ia": N_("the rotor inertia"),
-    "T": N_("the transform T"),
-    "A": N_("the matrix A"),
-    "g": N_("gravity"),
-    "q": N_("q"),
-    "qd": N_("the velocity qd"),
-    "qdd": N_("the acceleration qdd"),
-    "R_": N_("the rotation R"),
-    "crank": N_("the crank's direction u"),
-    "rod": N_("the rod's direction w"),
-    "l1": N_("the crank's length l1"),
-    "l2": N_("the rod's length l2"),
-    "Ib": N_("the inertia tensor"),
-    "cb": N_("the centre of mass P_C"),
-    "o_": N_("the frame's origin"),
-}
-"""What names stand for."""
-
-_SPELT = {"ct": "cos(theta)", "st": "sin(theta)", "ca": "cos(alpha)", "sa": "sin(alpha)",
-          "crank": "u", "rod": "w", "dw": "omega_dot", "dv": "v_dot", "dvc": "v_dot_C",
-          "nn": "n", "c": "P_C", "R_": "R", "o_": "o", "dd": "d", "Jb": "J", "Jm": "J",
-          "th": "theta", "Ib": "I", "cb": "P_C"}  # fmt: skip
-
-_KNOWN = {
-    "w x (I w)": N_("the gyroscopic term"),
-    "w x (w x P)": N_("the centripetal term of the link's origin"),
-    "w x (w x P_C)": N_("the centripetal term of the centre of mass"),
-    "omega_dot x P": N_("the tangential term of the link's origin"),
-    "omega_dot x P_C": N_("the tangential term of the centre of mass"),
-    "2*w x (qd*z)": N_("the Coriolis acceleration of a slide, prismatic joint"),
-    "2*w x (qd*(R^T z))": N_("the Coriolis acceleration of a slide, prismatic joint"),
-    "(R^T w) x (qd*z)": N_("w x z qd"),
-    "w x (qd*z)": N_("w x z qd"),
-    "qdd*z": N_("the acceleration d_ddot of a slide, theta_ddot of a hinge"),
-    "I omega_dot": N_("the inertia tensor's moment"),
-    "N": N_("the link's own moment"),
-    "F": N_("the link's own force"),
-    "P_C x F": N_("the moment of F"),
-    "(P + P_C) x F": N_("the moment of F at the centre of mass"),
-    "P x (R f)": N_("the lever arm of the next link's force"),
-    "R f": N_("the force of the next link"),
-    "R n": N_("the moment of the next link"),
-    "Ia*qdd": N_("the rotor inertia"),
-    "diagonal(Ia)": N_("the rotor inertia"),
-    "-g": N_("gravity"),
-    "g": N_("gravity"),
-    "G": N_("the gravity torques"),
-    "C v": N_("the velocity terms"),
-    "M a": N_("the inertia terms"),
-    "o": N_("the joint's origin"),
-    "R P_C": N_("the centre of mass in the link"),
-    "m*Jv^T Jv": N_("the mass's part"),
-    "Jw^T (R I R^T) Jw": N_("the inertia tensor's part"),
-    "D": N_("dM_ij/dq_k"),
-    "D_ikj": N_("dM_ik/dq_j"),
-    "D_jki": N_("dM_jk/dq_i"),
-}
-"""What terms are called."""
 
 
 def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool) -> list[Step]:
@@ -131,22 +56,17 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
     for line in of.lines:
         for node in ast.walk(line.statement):
             if isinstance(node, ast.Name | ast.Subscript) and id(node) in axes:
-                shapes[_name(node)] = (isinstance(node, ast.Subscript), *axes[id(node)])
+                shapes[name_of(node)] = (isinstance(node, ast.Subscript), *axes[id(node)])
     for line in of.lines:
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
     if not singly:
         return found
+    at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return [
-        Step(
-            s.kind,
-            _("{does}, at joint {joint}").format(does=s.sentence, joint=i + 1),
-            s.edits,
-            s.cost + 0.2,
-            i + 1,
-        )
+        Step(s.kind, at_joint.format(does=s.sentence, joint=i + 1), s.edits, s.cost + 0.2, i + 1)
         for s in found
         if s.cost < 1.3 and id(s.edits[0][0]) in looped
         for i in range(n)
@@ -167,14 +87,15 @@ def _of_line(
 
     def step(kind: str, does: str, cost: float, *edits: tuple[ast.expr, ast.expr]) -> Step:
         if kind == "only one term":
-            said = _("{does} for {line}").format(does=does, line=_that_of(line.about, does))
-            return Step(kind, said, edits, cost)
-        inside = around.get(id(edits[0][0])) if len(edits) == 1 else None
-        told, fields = inside or (N_("{does} in {line}"), {})
-        said = _(told).format(does=does, line=_(line.about), **fields)
+            return Step(kind, does, edits, cost)
+        term = around.get(id(edits[0][0])) if len(edits) == 1 else None
+        if term is None:
+            said = _("{does} in {line}").format(does=does, line=_(line.about))
+        else:
+            said = _("{does} in {term}, in {line}").format(does=does, term=term, line=_(line.about))
         return Step(kind, said, edits, cost)
 
-    yield from _terms(whole, step)
+    yield from _terms(whole, axes, line.about, step)
     for node in ast.walk(whole):
         if not isinstance(node, ast.expr) or id(node) not in axes:
             continue
@@ -183,80 +104,79 @@ def _of_line(
         elif isinstance(node, ast.Call):
             yield from _calls(node, step)
         elif isinstance(node, ast.Attribute):
-            does = _for(N_("has {written} for {meant} (not transposed)"), node.value, node)
+            does = _("has {new} for {old} (not transposed)").format(
+                new=spelt(node.value), old=spelt(node)
+            )
             yield step("transposed", does, 1.05, (node, node.value))
         elif isinstance(node, ast.IfExp):
             yield from _choices(node, step)
         elif isinstance(node, ast.List):
-            yield from _entries(node, step)
-        elif isinstance(node, ast.Subscript) and "R" in shapes and _name(node) in ("I", "c"):
+            yield from entry_steps(node, step)
+        elif isinstance(node, ast.Subscript) and "R" in shapes and name_of(node) in ("I", "c"):
             yield from _turned(node, step)
     yield from _others(whole, axes, shapes, wide, step)
 
 
-Make = Callable[..., Step]
-
-
-def _surroundings(whole: ast.expr) -> dict[int, tuple[str, dict[str, Any]]]:
+def _surroundings(whole: ast.expr) -> dict[int, str]:
     """For everything inside a term of a sum, or inside an entry of a matrix: in which."""
-    out: dict[int, tuple[str, dict[str, Any]]] = {}
+    out: dict[int, str] = {}
     for node in ast.walk(whole):
         if isinstance(node, ast.List):
             for r, row in enumerate(node.elts):
                 for c, entry in enumerate(row.elts if isinstance(row, ast.List) else ()):
-                    said = N_("{does} in entry ({row}, {column}), in {line}")
-                    where: tuple[str, dict[str, Any]] = (said, {"row": r + 1, "column": c + 1})
+                    where = _("entry ({row}, {column})").format(row=r + 1, column=c + 1)
                     out |= {id(inner): where for inner in ast.walk(entry)}
-        elif isinstance(node, ast.BinOp) and _is_sum(node):
-            for part in _summands(node):
+        elif isinstance(node, ast.BinOp) and is_sum(node):
+            for part in summands(node):
                 inside = (x for x in ast.walk(part) if x is not part)
-                if not _is_sum(part):
-                    where = (N_("{does} in {term}, in {line}"), {"term": _told(part)})
-                    out |= {id(inner): where for inner in inside}
+                if not is_sum(part):
+                    out |= {id(inner): told(part) for inner in inside}
     return out
 
 
-def _terms(whole: ast.expr, step: Make) -> Iterator[Step]:
+def _terms(
+    whole: ast.expr, axes: Mapping[int, tuple[int, ...]], about: str, step: Make
+) -> Iterator[Step]:
     """The terms of every sum: left out, with the other sign, twice, half; one alone."""
-    halves = {id(x) for node in ast.walk(whole) if _is_sum(node) for x in _halves(node)}
+    inner = {id(x) for node in ast.walk(whole) if is_sum(node) for x in halves(node)}
     tops = [id(x) for x in _branches(whole)]
     for node in ast.walk(whole):
-        if not isinstance(node, ast.expr) or id(node) in halves:
+        if not isinstance(node, ast.expr) or id(node) not in axes or id(node) in inner:
             continue
-        if not _is_sum(node) and (id(node) not in tops or isinstance(node, ast.List)):
+        if not is_sum(node) and (id(node) not in tops or isinstance(node, ast.List)):
             continue
-        parts = list(_summands(node))
+        parts = list(summands(node))
         for part in parts:
-            told = _told(part)
+            term = told(part)
             if len(parts) > 1 or isinstance(part, ast.UnaryOp):
-                called = _KNOWN.get(spelt(part), "").partition(" of ")[0].removeprefix("the ")
+                called = KNOWN.get(spelt(part), "").partition(" of ")[0].removeprefix("the ")
                 kind = called if called.endswith(" term") else "missing term"
                 yield step(
-                    kind, _("leaves {term} out").format(term=told), 1.0, (part, _times(0, part))
+                    kind, _("leaves {term} out").format(term=term), 1.0, (part, times(0, part))
                 )
             yield step(
                 "sign",
-                _("has {term} with the opposite sign").format(term=told),
+                _("has {term} with the opposite sign").format(term=term),
                 1.02,
-                (part, _minus(part)),
+                (part, minus(part)),
             )
             yield step(
-                "factor", _("counts {term} twice").format(term=told), 1.2, (part, _times(2, part))
+                "factor", _("counts {term} twice").format(term=term), 1.2, (part, times(2, part))
             )
             yield step(
-                "factor", _("counts {term} half").format(term=told), 1.15, (part, _times(0.5, part))
+                "factor", _("counts {term} half").format(term=term), 1.15, (part, times(0.5, part))
             )
             if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript):
-                does = _("takes {thing}").format(thing=_meant(part))
+                does = _that_of(about, part)
                 yield step("only one term", does, 1.0, (node, again(part)))
 
 
-def _that_of(what: str, does: str) -> str:
-    """``that of the centre of mass`` after the acceleration of something else."""
-    thing, of, rest = what.partition(" of ")
-    if of and f"{thing} of " in does:
-        return _("that of {what}").format(what=rest)
-    return _(what)
+def _that_of(what: str, part: ast.expr) -> str:
+    """Takes the acceleration of something for that of the centre of mass."""
+    of_centre = what == "the acceleration of the centre of mass"
+    if of_centre and name_of(part) == "dv":
+        return _("takes the acceleration of the link's origin for that of the centre of mass")
+    return _("takes {new} for {old}").format(new=meant(part), old=_(what))
 
 
 def _branches(node: ast.expr) -> Iterator[ast.expr]:
@@ -268,61 +188,51 @@ def _branches(node: ast.expr) -> Iterator[ast.expr]:
         yield node
 
 
-def _halves(node: ast.AST) -> tuple[ast.expr, ast.expr]:
-    assert isinstance(node, ast.BinOp)
-    return node.left, node.right
-
-
-def _is_sum(node: ast.AST) -> bool:
-    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
-
-
-def _summands(node: ast.expr) -> Iterator[ast.expr]:
-    if _is_sum(node):
-        assert isinstance(node, ast.BinOp)
-        yield from _summands(node.left)
-        yield from _summands(node.right)
-    else:
-        yield node
-
-
 def _binary(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) -> Iterator[Step]:
     left, right = node.left, node.right
     one, two = (len(axes.get(id(x), ())) for x in (left, right))
     if isinstance(node.op, ast.MatMult):
         if one == 2 and isinstance(left, ast.Attribute | ast.Name | ast.Subscript):
             if two == 1 and _turns(left):
-                does = _("does not rotate {thing} ({rotation} is left out)").format(
-                    thing=_told(right), rotation=spelt(left)
+                does = _("does not rotate {term} ({factor} is left out)").format(
+                    term=told(right), factor=spelt(left)
                 )
                 yield step("rotation left out", does, 1.1, (node, right))
             elif two == 1:
-                does = _left_out(left, node)
+                does = _("leaves the factor {factor} out of {term}").format(
+                    factor=spelt(left), term=spelt(node)
+                )
                 yield step("missing factor", does, 1.25, (node, right))
             if not isinstance(left, ast.Attribute):
-                does = _transposed(left)
-                yield step("transposed", does, 1.17, (left, _across(left)))
+                does = _("has {new} for {old} (transposed)").format(
+                    new=spelt(across(left)), old=spelt(left)
+                )
+                yield step("transposed", does, 1.17, (left, across(left)))
         if one == two == 2:
             same = isinstance(right, ast.Attribute) and spelt(right.value) == spelt(left)
             if not _turns(left) and (same or not isinstance(right, ast.Attribute)):
-                does = _("has {written} for {meant} (the product's order)").format(
-                    written=f"{spelt(right)} {spelt(left)}", meant=spelt(node)
-                )
                 turned = ast.BinOp(right, ast.MatMult(), left)
+                does = _("has {new} for {old} (the product's order)").format(
+                    new=spelt(turned), old=spelt(node)
+                )
                 yield step("order", does, 1.1, (node, turned))
             if not isinstance(right, ast.Attribute) and not isinstance(right, ast.BinOp):
-                does = _transposed(right)
-                yield step("transposed", does, 1.17, (right, _across(right)))
+                does = _("has {new} for {old} (transposed)").format(
+                    new=spelt(across(right)), old=spelt(right)
+                )
+                yield step("transposed", does, 1.17, (right, across(right)))
             yield from _sandwich(node, step)
     elif isinstance(node.op, ast.Mult | ast.Div):
         for factor, rest in ((left, right), (right, left)):
             if isinstance(factor, ast.Name | ast.Subscript) and (
                 isinstance(node.op, ast.Mult) or factor is right
             ):
-                does = _left_out(factor, node)
+                does = _("leaves the factor {factor} out of {term}").format(
+                    factor=spelt(factor), term=spelt(node)
+                )
                 yield step("missing factor", does, 1.15, (node, rest))
         if isinstance(left, ast.Constant):
-            does = _for(N_("has {written} for {meant} (the factor)"), right, node)
+            does = _("has {new} for {old} (the factor)").format(new=spelt(right), old=spelt(node))
             yield step("factor", does, 1.1, (node, right))
     elif isinstance(node.op, ast.Pow):
         assert isinstance(node.right, ast.Constant)
@@ -330,13 +240,13 @@ def _binary(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) ->
         for other in (power - 1, power + 1):
             if other:
                 new = ast.BinOp(left, ast.Pow(), ast.Constant(other))
-                does = _for(N_("has {written} for {meant} (power)"), new, node)
+                does = _("has {new} for {old} (power)").format(new=spelt(new), old=spelt(node))
                 yield step("power", does, 1.1, (node, new))
 
 
 def _turns(node: ast.expr) -> bool:
     """Whether an expression is a rotation."""
-    return _name(node.value if isinstance(node, ast.Attribute) else node) in ("R", "R_")
+    return name_of(node.value if isinstance(node, ast.Attribute) else node) in ("R", "R_")
 
 
 def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
@@ -351,11 +261,11 @@ def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
     plain, turned = spelt(inner.right), f"{spelt(last)} {spelt(inner.right)} {spelt(inner.left)}"
     right = f"{spelt(inner.left)} {plain} {spelt(last)}"
     does = _(
-        "takes {written} for {meant} (the inertia tensor is not rotated into the base axes)"
-    ).format(written=plain, meant=right)
+        "takes the inertia tensors in link axes as if in base axes (not rotated: {new} for {old})"
+    ).format(new=plain, old=right)
     yield step("tensor not rotated", does, 1.0, (node, inner.right))
-    does = _("has {written} for {meant} (the inertia tensor is rotated the wrong way)").format(
-        written=turned, meant=right
+    does = _("has {new} for {old} (the inertia tensor is rotated the wrong way)").format(
+        new=turned, old=right
     )
     new = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner.right), ast.MatMult(), inner.left)
     yield step("tensor transposed", does, 1.02, (node, new))
@@ -366,48 +276,50 @@ def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
     name, x = node.func.id, node.args
     if name == "cross":
         new = ast.Call(node.func, [x[1], x[0]], [])
-        does = _for(
-            N_(
-                "has the cross product's order exchanged: {written} for {meant}, the opposite sign,"
-            ),
-            new,
-            node,
-        )
+        does = _(
+            "has the cross product's order exchanged: {new} for {old}, the opposite sign,"
+        ).format(new=spelt(new), old=spelt(node))
         yield step("sign", does, 1.0, (node, new))
         if isinstance(x[0], ast.BinOp) and isinstance(x[0].op, ast.MatMult) and _turns(x[0].left):
             inner = ast.Call(node.func, [x[0].right, x[1]], [])
             late = ast.BinOp(x[0].left, ast.MatMult(), inner)
-            does = _for(
-                N_("has {written} for {meant} (rotated after the cross product)"), late, node
+            does = _("has {new} for {old} (rotated after the cross product)").format(
+                new=spelt(late), old=spelt(node)
             )
             yield step("order", does, 1.1, (node, late))
         if isinstance(x[1], ast.Call):
             less = ast.Call(node.func, [x[0], x[1].args[1]], [])
             yield step(
-                "power", _for(N_("has {written} for {meant}"), less, node), 1.15, (node, less)
+                "power",
+                _("has {new} for {old}").format(new=spelt(less), old=spelt(node)),
+                1.15,
+                (node, less),
             )
     elif name in ("sin", "cos"):
         new = ast.Call(ast.Name("cos" if name == "sin" else "sin"), x, [])
         yield step(
-            "sin/cos", _for(N_("has {written} for {meant} (sin/cos)"), new, node), 1.0, (node, new)
+            "sin/cos",
+            _("has {new} for {old} (sin/cos)").format(new=spelt(new), old=spelt(node)),
+            1.0,
+            (node, new),
         )
-        yield step("sign", _("has {term} with the opposite sign in {whole}").format(
-                       term=spelt(x[0]), whole=spelt(node)), 1.1,
-                   (x[0], _minus(x[0])))  # fmt: skip
+        does = _("has {angle} with the opposite sign in {term}").format(
+            angle=spelt(x[0]), term=spelt(node)
+        )
+        yield step("sign", does, 1.1, (x[0], minus(x[0])))
     elif name == "solve":
         matrix, other = spelt(x[0]), x[1]
-        plain, turned = ast.BinOp(x[0], ast.MatMult(), other), _across(x[0])
+        plain, turned = ast.BinOp(x[0], ast.MatMult(), other), across(x[0])
         does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=matrix)
         yield step("inverse", does, 1.05, (node, plain))
-        does = _("has {matrix}^T for {matrix} (transposed)").format(matrix=matrix)
+        does = _("has {new} for {old} (transposed)").format(new=spelt(turned), old=matrix)
         yield step("transposed", does, 1.1, (node, ast.Call(node.func, [turned, other], [])))
         does = _("has the transpose {matrix}^T for the inverse {matrix}^-1").format(matrix=matrix)
         yield step("inverse", does, 1.05, (node, ast.BinOp(turned, ast.MatMult(), other)))
     elif name == "defect" and isinstance(x[0], ast.BinOp):
         swapped = ast.BinOp(x[0].right, ast.MatMult(), x[0].left)
-        does = _("has {written} for {meant} (the product's order)").format(
-            written=spelt(swapped), meant=spelt(x[0])
-        )
+        does = _("has {new} for {old} (the product's order)")
+        does = does.format(new=spelt(swapped), old=spelt(x[0]))
         yield step("order", does, 1.05, (node, ast.Call(node.func, [swapped], [])))
     elif name == "inv":
         does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=spelt(x[0]))
@@ -415,14 +327,14 @@ def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
     elif name in ("ikj", "jki"):
         yield step(
             "Christoffel",
-            _("has {written} for {meant}").format(written="dM_ij/dq_k", meant=_told(node)),
+            _("has {new} for {old}").format(new="dM_ij/dq_k", old=told(node)),
             1.1,
             (node, x[0]),
         )
         other = ast.Call(ast.Name("jki" if name == "ikj" else "ikj"), x, [])
         yield step(
             "Christoffel",
-            _("has {written} for {meant}").format(written=_told(other), meant=_told(node)),
+            _("has {new} for {old}").format(new=told(other), old=told(node)),
             1.1,
             (node, other),
         )
@@ -431,12 +343,12 @@ def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
 def _turned(node: ast.Subscript, step: Make) -> Iterator[Step]:
     """What is in the link's axes already, rotated once more."""
     turn = ast.Subscript(ast.Name("R"), node.slice)
-    for one, two in ((turn, _across(turn)), (_across(turn), turn)):
+    for one, two in ((turn, across(turn)), (across(turn), turn)):
         new: ast.expr = ast.BinOp(one, ast.MatMult(), again(node))
-        if _name(node) == "I":
+        if name_of(node) == "I":
             new = ast.BinOp(new, ast.MatMult(), two)
-        does = _("rotates {thing} ({written} for {meant})").format(
-            thing=_meant(node), written=spelt(new), meant=spelt(node)
+        does = _("rotates {what} ({new} for {old})").format(
+            what=meant(node), new=spelt(new), old=spelt(node)
         )
         yield step("rotated twice", does, 1.15, (node, new))
 
@@ -470,70 +382,6 @@ def _slides(of: Program) -> Iterator[Step]:
                    tuple((node, node.orelse) for node in nodes), 1.15)  # fmt: skip
 
 
-def _entries(node: ast.List, step: Make) -> Iterator[Step]:
-    """The entries of a matrix that is written out."""
-    rows = [row.elts for row in node.elts if isinstance(row, ast.List)][:3]
-    for r, row in enumerate(rows):
-        for c, entry in enumerate(row):
-            empty = isinstance(entry, ast.Constant)
-            text = spelt(entry)
-            theirs = _other_convention(node, r, c)
-            if theirs is not None:
-                kind, does = _against(entry, theirs[1])
-                there = _(_AS_THERE[theirs[0]]).format(
-                    does=does, written=spelt(theirs[1]), meant=text
-                )
-                yield step(kind, there, 1.1, (entry, theirs[1]))
-            if not empty:
-                does = _(
-                    "has the opposite sign in entry ({row}, {column}) of the matrix: {written} for "
-                    "{meant}"
-                ).format(row=r + 1, column=c + 1, written=spelt(_minus(entry)), meant=text)
-                yield step("sign", does, 1.02, (entry, _minus(entry)))
-                does = _("leaves {term} out (0 for it)").format(term=text)
-                yield step("missing term", does, 1.08, (entry, ast.Constant(0)))
-                for name in ("ct", "st", "ca", "sa"):
-                    new = ast.BinOp(again(entry), ast.Mult(), ast.Name(name))
-                    does = _("has the extra factor {factor} in {written} for {meant}").format(
-                        factor=spelt(new.right), written=spelt(new), meant=text
-                    )
-                    yield step("extra factor", does, 1.2, (entry, new))
-            if c + 1 < len(row) and not (empty and isinstance(row[c + 1], ast.Constant)):
-                does = _("has {one} and {two} exchanged in row {row} of the matrix").format(
-                    one=text, two=spelt(row[c + 1]), row=r + 1
-                )
-                swapped = ((entry, again(row[c + 1])), (row[c + 1], again(entry)))
-                yield step("exchanged", does, 1.15, *swapped)
-        negative = [(x, _minus(x)) for x in row if _minus(x) is not x and spelt(x)[0] == "-"]
-        if len(negative) > 1:
-            does = _("leaves the minus sign out in row {row} of the matrix").format(row=r + 1)
-            yield step("sign", does, 1.1, *negative)
-
-
-def _other_convention(node: ast.List, r: int, c: int) -> tuple[str, ast.expr] | None:
-    """The entry that stands there in the other convention's matrix, where it is another one."""
-    for convention, text in (("standard", STANDARD), ("modified", MODIFIED)):
-        other = ast.parse(text.partition("=")[2].strip(), mode="eval").body
-        if ast.dump(other) != ast.dump(node):
-            mine, theirs = (x.elts[r].elts[c] for x in (node, other))  # type: ignore[attr-defined]
-            return None if ast.dump(mine) == ast.dump(theirs) else (convention, theirs)
-    return None
-
-
-def _against(mine: ast.expr, theirs: ast.expr) -> tuple[str, str]:
-    """A kind and words for another entry: a factor more, a factor less, or something else."""
-    one, two = (set(spelt(x).lstrip("-").split("*")) for x in (mine, theirs))
-    if two < one:
-        return "missing factor", _("leaves the factor {factor} out").format(
-            factor="*".join(sorted(one - two))
-        )
-    if one < two:
-        return "extra factor", _("has the extra factor {factor}").format(
-            factor="*".join(sorted(two - one))
-        )
-    return "convention", _for(N_("has {written} for {meant}"), theirs, mine)
-
-
 def _others(
     whole: ast.expr,
     axes: Mapping[int, tuple[int, ...]],
@@ -558,26 +406,20 @@ def _others(
             extra = 0.0 if chosen is found else 0.05
             for new, kind, cost in _instead(chosen[0], shapes, axes[id(chosen[0])], wide):
                 if kind == "index":
-                    takes = _which(chosen[0], new)
-                    does = _(takes).format(
-                        thing=_meant(new),
-                        written=spelt(new, True),
-                        meant=spelt(chosen[0], True),
+                    does = _("takes {what} ({new} for {old})").format(
+                        what=which(chosen[0], new),
+                        new=spelt(new, True),
+                        old=spelt(chosen[0], True),
                     )
                 else:
-                    does = _("has {written} for {meant} ({one} for {two})").format(
-                        written=spelt(new),
-                        meant=spelt(chosen[0]),
-                        one=_meant(new),
-                        two=_meant(chosen[0]),
-                    )
+                    does = told_other(chosen[0], new)
                 yield step(kind, does, cost + extra, *((x, again(new)) for x in chosen))
 
 
 def _instead(
     node: ast.expr, shapes: Mapping[str, tuple[int, ...]], axes: tuple[int, ...], wide: bool
 ) -> Iterator[tuple[ast.expr, str, float]]:
-    name = _name(node)
+    name = name_of(node)
     if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
         for shift in (-1, 1):
             index = _shifted(node.slice, shift)
@@ -611,115 +453,3 @@ def _shifted(index: ast.expr, shift: int) -> ast.expr | None:
     if not by:
         return base
     return ast.BinOp(base, ast.Add() if by > 0 else ast.Sub(), ast.Constant(1))
-
-
-def _which(old: ast.expr, new: ast.expr) -> str:
-    """Of which joint or link: the one before, or the next."""
-    assert isinstance(old, ast.Subscript)
-    assert isinstance(new, ast.Subscript)
-    name = _name(new)
-    thing = "joint" if name == "z" else "frame" if name in ("o", "o_", "T", "R_") else "link"
-    one, two = ast.unparse(old.slice), ast.unparse(new.slice)
-    back = "- 1" in two or ("+ 1" in one and "+ 1" not in two)
-    return _NEIGHBOURS[thing, back]
-
-
-# -------- expressions
-
-
-def _for(told: str, new: ast.expr, old: ast.expr) -> str:
-    """A marked sentence about what stands there and what should."""
-    return _(told).format(written=spelt(new), meant=spelt(old))
-
-
-def _left_out(factor: ast.expr, product: ast.expr) -> str:
-    told = _("leaves the factor {factor} out of {product}")
-    return told.format(factor=spelt(factor), product=spelt(product))
-
-
-def _transposed(matrix: ast.expr) -> str:
-    return _("has {matrix}^T for {matrix} (transposed)").format(matrix=spelt(matrix))
-
-
-def _minus(node: ast.expr) -> ast.expr:
-    if isinstance(node, ast.BinOp) and isinstance(node.left, ast.UnaryOp):
-        return ast.BinOp(node.left.operand, node.op, node.right)
-    return node.operand if isinstance(node, ast.UnaryOp) else ast.UnaryOp(ast.USub(), again(node))
-
-
-def _times(factor: float, node: ast.expr) -> ast.expr:
-    return ast.BinOp(ast.Constant(factor), ast.Mult(), again(node))
-
-
-def _across(node: ast.expr) -> ast.expr:
-    return ast.Attribute(again(node), "T")
-
-
-def _name(node: ast.expr) -> str:
-    if isinstance(node, ast.Subscript):
-        node = node.value
-    return node.id if isinstance(node, ast.Name) else ""
-
-
-def _meant(node: ast.expr) -> str:
-    called = MEANT.get(_name(node), "")
-    return _(called) if called else spelt(node)
-
-
-def _told(node: ast.expr) -> str:
-    """A term, with what it is called."""
-    text = spelt(node)
-    called = _KNOWN.get(text, MEANT.get(_name(node), text))
-    if called == text:
-        return text
-    return _("{term} ({name})").format(term=text, name=_(called))
-
-
-def spelt(node: ast.expr, indexed: bool = False) -> str:
-    """An expression as textbooks write it."""
-    if isinstance(node, ast.Constant):
-        return f"{float(str(node.value)):g}"
-    if isinstance(node, ast.Subscript):
-        name = spelt(node.value)
-        index = ast.unparse(node.slice).replace(" ", "")
-        return (
-            name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"
-        )
-    if isinstance(node, ast.Name):
-        return _SPELT.get(node.id, node.id)
-    if isinstance(node, ast.Attribute):
-        return f"{_closed(node.value, indexed)}^T"
-    if isinstance(node, ast.UnaryOp):
-        return f"-{_closed(node.operand, indexed)}"
-    if isinstance(node, ast.Call):
-        assert isinstance(node.func, ast.Name)
-        if node.func.id == "cross":
-            return " x ".join(_closed(x, indexed) for x in node.args)
-        if node.func.id in ("ikj", "jki"):
-            return f"D_{node.func.id}"
-        if node.func.id == "solve":
-            return f"{spelt(node.args[0])}^-1 {_closed(node.args[1], indexed)}"
-        return f"{node.func.id}({', '.join(spelt(x, indexed) for x in node.args)})"
-    if isinstance(node, ast.BinOp):
-        if _is_sum(node):
-            sign = "+" if isinstance(node.op, ast.Add) else "-"
-            return f"{spelt(node.left, indexed)} {sign} {spelt(node.right, indexed)}"
-        joint = {ast.MatMult: " ", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
-        one: ast.expr | None = (
-            node.left if isinstance(node.left, ast.BinOp) and not _is_sum(node.left) else None
-        )
-        if isinstance(node.left, ast.UnaryOp):
-            one = node.left
-        left = spelt(one, indexed) if one is not None else _closed(node.left, indexed)
-        loose = isinstance(node.right, ast.Call) and isinstance(node.op, ast.Mult)
-        right = spelt(node.right, indexed) if loose else _closed(node.right, indexed)
-        return f"{left}{joint}{right}"
-    return spelt(node.body, indexed) if isinstance(node, ast.IfExp) else ast.unparse(node)
-
-
-def _closed(node: ast.expr, indexed: bool) -> str:
-    """In parentheses where it is more than a name."""
-    text = spelt(node, indexed)
-    plain = isinstance(node, ast.Name | ast.Subscript | ast.Constant | ast.Attribute)
-    call = isinstance(node, ast.Call) and " x " not in text and " " not in text
-    return text if plain or call else f"({text})"

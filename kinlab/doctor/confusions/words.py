@@ -1,0 +1,198 @@
+"""The words and signs in which a derivation's expressions are told; small ways to change them."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.confusions.walk import again
+from kinlab.host.language import N_, _
+
+MEANT = {
+    "w": N_("the angular velocity w"), "dw": N_("the angular acceleration omega_dot"),
+    "dv": N_("the acceleration of the link's origin"),
+    "dvc": N_("the acceleration of the centre of mass"), "F": N_("the link's own force F"),
+    "N": N_("the link's own moment N"), "f": N_("the force f"), "nn": N_("the moment n"),
+    "P": N_("the lever arm P"), "c": N_("the centre of mass P_C"), "z": N_("the axis z"),
+    "o": N_("the origin o"), "p": N_("the tool's point p"), "pc": N_("the centre of mass"),
+    "R": N_("the rotation R"), "I": N_("the inertia tensor"), "m": N_("the mass m"),
+    "Ia": N_("the rotor inertia"),
+    "T": N_("the transform T"), "A": N_("the matrix A"), "g": N_("gravity"), "q": "q",
+    "qd": N_("the velocity qd"),
+    "qdd": N_("the acceleration qdd"), "R_": N_("the rotation R"),
+    "crank": N_("the crank's direction u"), "rod": N_("the rod's direction w"),
+    "l1": N_("the crank's length l1"), "l2": N_("the rod's length l2"),
+    "Ib": N_("the inertia tensor"), "cb": N_("the centre of mass P_C"),
+    "o_": N_("the frame's origin"),
+}  # fmt: skip
+"""What names stand for."""
+
+_SPELT = {"ct": "cos(theta)", "st": "sin(theta)", "ca": "cos(alpha)", "sa": "sin(alpha)",
+          "crank": "u", "rod": "w", "dw": "omega_dot", "dv": "v_dot", "dvc": "v_dot_C",
+          "nn": "n", "c": "P_C", "R_": "R", "o_": "o", "dd": "d", "Jb": "J", "Jm": "J",
+          "th": "theta", "Ib": "I", "cb": "P_C"}  # fmt: skip
+
+KNOWN = {
+    "w x (I w)": N_("the gyroscopic term"),
+    "w x (w x P)": N_("the centripetal term of the link's origin"),
+    "w x (w x P_C)": N_("the centripetal term of the centre of mass"),
+    "omega_dot x P": N_("the tangential term of the link's origin"),
+    "omega_dot x P_C": N_("the tangential term of the centre of mass"),
+    "2*w x (qd*z)": N_("the Coriolis acceleration of a slide, prismatic joint"),
+    "2*w x (qd*(R^T z))": N_("the Coriolis acceleration of a slide, prismatic joint"),
+    "(R^T w) x (qd*z)": N_("w x z qd"),
+    "w x (qd*z)": N_("w x z qd"),
+    "qdd*z": N_("the acceleration d_ddot of a slide, theta_ddot of a hinge"),
+    "I omega_dot": N_("the inertia tensor's moment"),
+    "N": N_("the link's own moment"),
+    "F": N_("the link's own force"),
+    "P_C x F": N_("the moment of F"),
+    "(P + P_C) x F": N_("the moment of F at the centre of mass"),
+    "P x (R f)": N_("the lever arm of the next link's force"),
+    "R f": N_("the force of the next link"),
+    "R n": N_("the moment of the next link"),
+    "Ia*qdd": N_("the rotor inertia"),
+    "diagonal(Ia)": N_("the rotor inertia"),
+    "-g": N_("gravity"),
+    "g": N_("gravity"),
+    "G": N_("the gravity torques"),
+    "C v": N_("the velocity terms"),
+    "M a": N_("the inertia terms"),
+    "o": N_("the joint's origin"),
+    "R P_C": N_("the centre of mass in the link"),
+    "m*Jv^T Jv": N_("the mass's part"),
+    "Jw^T (R I R^T) Jw": N_("the inertia tensor's part"),
+    "D": "dM_ij/dq_k",
+    "D_ikj": "dM_ik/dq_j",
+    "D_jki": "dM_jk/dq_i",
+}
+"""What terms are called."""
+
+
+def which(old: ast.expr, new: ast.expr) -> str:
+    """Of which joint or link: the one before, or the next."""
+    assert isinstance(old, ast.Subscript)
+    assert isinstance(new, ast.Subscript)
+    name = name_of(new)
+    thing = "joint" if name == "z" else "frame" if name in ("o", "o_", "T", "R_") else "link"
+    one, two = ast.unparse(old.slice), ast.unparse(new.slice)
+    back = "- 1" in two or ("+ 1" in one and "+ 1" not in two)
+    words = {
+        ("joint", True): _("{what} of the joint before"),
+        ("joint", False): _("{what} of the next joint"),
+        ("frame", True): _("{what} of the frame before"),
+        ("frame", False): _("{what} of the next frame"),
+        ("link", True): _("{what} of the link before"),
+        ("link", False): _("{what} of the next link"),
+    }
+    return words[thing, bool(back)].format(what=meant(new))
+
+
+def minus(node: ast.expr) -> ast.expr:
+    if isinstance(node, ast.BinOp) and isinstance(node.left, ast.UnaryOp):
+        return ast.BinOp(node.left.operand, node.op, node.right)
+    return node.operand if isinstance(node, ast.UnaryOp) else ast.UnaryOp(ast.USub(), again(node))
+
+
+def times(factor: float, node: ast.expr) -> ast.expr:
+    return ast.BinOp(ast.Constant(factor), ast.Mult(), again(node))
+
+
+def across(node: ast.expr) -> ast.expr:
+    return ast.Attribute(again(node), "T")
+
+
+def name_of(node: ast.expr) -> str:
+    if isinstance(node, ast.Subscript):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else ""
+
+
+def meant(node: ast.expr) -> str:
+    found = MEANT.get(name_of(node))
+    return spelt(node) if found is None else _(found)
+
+
+def told(node: ast.expr) -> str:
+    """A term, with what it is called."""
+    text = spelt(node)
+    called = KNOWN.get(text, MEANT.get(name_of(node), ""))
+    return f"{text} ({_(called)})" if called and called != text else text
+
+
+def spelt(node: ast.expr, indexed: bool = False) -> str:
+    """An expression as textbooks write it."""
+    if isinstance(node, ast.Constant):
+        return f"{float(str(node.value)):g}"
+    if isinstance(node, ast.Subscript):
+        name = spelt(node.value)
+        index = ast.unparse(node.slice).replace(" ", "")
+        return (
+            name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"
+        )
+    if isinstance(node, ast.Name):
+        return _SPELT.get(node.id, node.id)
+    if isinstance(node, ast.Attribute):
+        return f"{_closed(node.value, indexed)}^T"
+    if isinstance(node, ast.UnaryOp):
+        return f"-{_closed(node.operand, indexed)}"
+    if isinstance(node, ast.Call):
+        assert isinstance(node.func, ast.Name)
+        if node.func.id == "cross":
+            return " x ".join(_closed(x, indexed) for x in node.args)
+        if node.func.id in ("ikj", "jki"):
+            return f"D_{node.func.id}"
+        if node.func.id == "solve":
+            return f"{spelt(node.args[0])}^-1 {_closed(node.args[1], indexed)}"
+        return f"{node.func.id}({', '.join(spelt(x, indexed) for x in node.args)})"
+    if isinstance(node, ast.BinOp):
+        if is_sum(node):
+            sign = "+" if isinstance(node.op, ast.Add) else "-"
+            return f"{spelt(node.left, indexed)} {sign} {spelt(node.right, indexed)}"
+        joint = {ast.MatMult: " ", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
+        one: ast.expr | None = (
+            node.left if isinstance(node.left, ast.BinOp) and not is_sum(node.left) else None
+        )
+        if isinstance(node.left, ast.UnaryOp):
+            one = node.left
+        left = spelt(one, indexed) if one is not None else _closed(node.left, indexed)
+        loose = isinstance(node.right, ast.Call) and isinstance(node.op, ast.Mult)
+        right = spelt(node.right, indexed) if loose else _closed(node.right, indexed)
+        return f"{left}{joint}{right}"
+    return spelt(node.body, indexed) if isinstance(node, ast.IfExp) else ast.unparse(node)
+
+
+def _closed(node: ast.expr, indexed: bool) -> str:
+    """In parentheses where it is more than a name."""
+    text = spelt(node, indexed)
+    plain = isinstance(node, ast.Name | ast.Subscript | ast.Constant | ast.Attribute)
+    call = isinstance(node, ast.Call) and " x " not in text and " " not in text
+    return text if plain or call else f"({text})"
+
+
+def told_other(old: ast.expr, new: ast.expr) -> str:
+    """One name for another, with what they mean where that says more."""
+    one, two = spelt(new), spelt(old)
+    if (meant(new), meant(old)) == (one, two):
+        return _("has {new} for {old}").format(new=one, old=two)
+    return _("has {new} for {old} ({what} for {other})").format(
+        new=one, old=two, what=meant(new), other=meant(old)
+    )
+
+
+def halves(node: ast.AST) -> tuple[ast.expr, ast.expr]:
+    assert isinstance(node, ast.BinOp)
+    return node.left, node.right
+
+
+def is_sum(node: ast.AST) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+
+
+def summands(node: ast.expr) -> Iterator[ast.expr]:
+    if is_sum(node):
+        assert isinstance(node, ast.BinOp)
+        yield from summands(node.left)
+        yield from summands(node.right)
+    else:
+        yield node
