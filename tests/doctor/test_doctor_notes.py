@@ -25,7 +25,7 @@ NAMED = [
     ("002.C:torque", "spatial3r", ["the symmetric formula for C, not Christoffel's"]),
     ("002.pend:torque", "single_link", ["gravity with the opposite sign"]),
     ("002.pend:L", "single_link", ["gravity with the opposite sign"]),
-    ("002.M:M", "puma560", ["the inertia tensor is not rotated into the base axes"]),
+    ("002.M:M", "puma560", ["not rotated: I for R I R^T"]),
     ("002.el", "spatial3r", ["the opposite sign as a whole"]),
     ("000.lag:u", "spatial3r", ["gravity with the opposite sign"]),
     ("000.ne.in:tau", "spatial3r", ["leaves gravity out"]),
