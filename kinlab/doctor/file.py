@@ -20,7 +20,7 @@ from kinlab.doctor.terms import split_name
 from kinlab.doctor.written import Written, literal
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas import tree
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text, read_toml
 from kinlab.host.language import _
@@ -29,6 +29,8 @@ from kinlab.model.library import load
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 from kinlab.tolerances import TOLERANCES
+
+_DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 
 # -------- What the names in a formula file claim to be: tau1, g2, M12, C11, J11, x, T, V
 
@@ -152,12 +154,74 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
+    done = _by_quantity(file, robot, samples, seed)
+    if all(one.agrees for found in done.values() for one in found):
+        return [one for found in done.values() for one in found]
+    named, said = _gravity_named(file, robot)
+    if not said:
+        return [one for found in done.values() for one in found]
+    again = _by_quantity(named, robot, samples, seed)
+    return [
+        _read_better(first, second, file, said)
+        for plain, found in done.items()
+        for first, second in zip(found, again[plain], strict=True)
+    ]
+
+
+def _by_quantity(
+    file: FormulaFile, robot: Robot, samples: int, seed: int
+) -> dict[str, list[Diagnosis]]:
     wanted, titles = _claims(file, robot)
-    done: list[Diagnosis] = []
+    done: dict[str, list[Diagnosis]] = {}
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
-        done += _of_quantity(plain, answers, titles)
+        done[plain] = list(_of_quantity(plain, answers, titles))
     return done
+
+
+def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
+    """The file with ``g`` for each decimal that is g rounded, as 9.8, and what is to be said of it.
+
+    A slip is told beside a rounded number only where the number is read as what it stands for.
+    """
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    size = words.get("g", 0.0)
+    said: dict[str, str] = {}
+
+    def named(found: re.Match[str]) -> str:
+        if not size or not _stands_for(found[0], size):
+            return found[0]
+        if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
+            told = _("{written} stands for {meant}")
+            said[found[0]] = told.format(written=found[0], meant=f"g = {size:.10g}")
+        return "g"
+
+    texts = {entry: _DECIMAL.sub(named, text) for entry, text in file.texts.items()}
+    if not said:
+        return file, said
+    formulas = {
+        entry: formula if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
+        for entry, formula in file.formulas.items()
+    }
+    return replace(file, texts=texts, formulas=formulas), said
+
+
+def _read_better(
+    first: Diagnosis, second: Diagnosis, file: FormulaFile, said: dict[str, str]
+) -> Diagnosis:
+    """The second reading, in which rounded numbers are what they stand for, where it says more."""
+    if first.agrees or not (second.agrees or second.causes):
+        return first
+    here = " ".join(file.texts.get(entry, "") for entry in first.function.split(", "))
+    notes = tuple(told for digits, told in said.items() if digits in here)
+    second = replace(second, error_before=first.error_before)
+    if second.agrees:
+        form = second.form or "rounded"
+        return replace(second, form=form, remarks=(*notes, *second.remarks))
+    first_cause, *rest = second.causes
+    told = _("; ").join((first_cause.sentence, *notes))
+    causes = (replace(first_cause, sentence=told), *rest)
+    return replace(second, causes=causes)
 
 
 def require_sound(file: FormulaFile, robot: Robot) -> None:
@@ -238,7 +302,18 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
         _plain, index = split_name(label)
         part = replace(case, index=index)
         one = {label: formulas[label]}
-        yield examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
+        found = examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
+        yield _of_one_split(found) if plain == "coriolis_matrix" else found
+
+
+def _of_one_split(found: Diagnosis) -> Diagnosis:
+    """An entry of C without the rest of its row: it may belong to another valid C."""
+    if found.agrees or not found.causes:
+        return found
+    told = _("Christoffel's C is meant; with the whole row given, another valid C would be told")
+    first, *rest = found.causes
+    sentence = _("; ").join((first.sentence, told))
+    return replace(found, causes=(replace(first, sentence=sentence), *rest))
 
 
 def _complete_rows(

@@ -311,6 +311,9 @@ class Line:
                             "0.5": 0.5}.items():  # fmt: skip
             if size != float(self.segment(place)):
                 self.instead(place, shown, np.full(self.count, size), "factor", 1.25)
+        if "." in self.segment(place):  # a length's number, mistaken: 0.41 for l2 = 0.4
+            for word, value in self.atoms.items():
+                self.instead(place, word, value, "parameter", 1.2)
 
     def _call(self, place: _Place, node: ast.Call) -> None:
         name = node.func.id if isinstance(node.func, ast.Name) else ""

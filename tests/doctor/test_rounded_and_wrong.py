@@ -1,0 +1,77 @@
+"""A rounded number beside a slip: the slip is told, and the number is read as what it stands for."""
+
+from __future__ import annotations
+
+import pytest
+
+from kinlab.doctor.report import of_document
+
+
+def judged(robot="planar2r", **formulas):
+    found, unread = of_document({"robot": robot, "formulas": formulas}, "f.toml")
+    assert not unread
+    return found
+
+
+@pytest.mark.parametrize(
+    ("robot", "formulas", "told", "correct"),
+    [
+        (
+            "planar2r",
+            {"V": "m1*9.8*l1*s1 + m2*9.8*(l1*s1 + l2*s2)"},
+            "V: s2 should be s12",
+            "l2*s12)",
+        ),
+        (
+            "planar3r",
+            {"V": "9.8*(m1*l1/2*s1 + m2*(l1*s1+l2/2*s12) + m3*(l1*s1+l2*s12+l3/2*s12))"},
+            "s12 should be s123",
+            "l3/2*s123))",
+        ),
+        ("planar2r", {"g2": "m2*9.8*l2*c2"}, "c2 should be c12", "l2*c12"),
+        (
+            "planar2r",
+            {"g1": "(m1+m2)*g*l1*c1 + m2*g*l2*c12", "g2": "m2*9.8*l2*c2"},
+            "g2: c2 should be c12",
+            "l2*c12",
+        ),
+        (
+            "planar2r",
+            {"g1": "(m1+m2)*g*l1*c1 + m2*g*l2*c2", "g2": "m2*9.8*l2*c12"},
+            "g1: c2 should be c12",
+            "l2*c12",
+        ),
+    ],
+)
+def test_a_slip_beside_a_rounded_g(robot, formulas, told, correct):
+    (found,) = judged(robot, **formulas)
+    assert not found.agrees
+    first = found.causes[0]
+    assert told in first.sentence
+    assert "9.8 stands for g = 9.81" in first.sentence
+    assert "sign" not in first.sentence
+    assert any(text.endswith(correct) for text in first.corrected.values())
+
+
+def test_a_rounded_g_alone_is_right_whatever_else_the_file_holds():
+    wrong, right = judged(T="m1*l1**2*qd1**2", g2="m2*9.8*l2*c12")
+    assert not wrong.agrees
+    assert right.agrees
+    assert right.form == "rounded"
+    assert right.remarks == ("9.8 stands for g = 9.81",)
+
+
+@pytest.mark.parametrize(
+    ("x", "told"), [("-0.41*s12", "0.41 should be l2"), ("-0.5*s12", "0.5 should be l2")]
+)
+def test_the_number_of_a_length_mistaken(x, told):
+    (found,) = judged(J12=x)
+    assert told in found.causes[0].sentence
+    assert set(found.causes[0].corrected.values()) == {"-l2*s12"}
+
+
+def test_one_entry_of_C_is_said_to_be_judged_by_christoffel_s():
+    (found,) = judged(C12="-m2*l1*l2*s2*(2*qd1+qd2)")
+    assert "Christoffel's C is meant" in found.causes[0].sentence
+    whole_row = judged(C11="0", C12="-m2*l1*l2*s2*(2*qd1+qd2)")
+    assert [one.form for one in whole_row] == ["unusual"]
