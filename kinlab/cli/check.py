@@ -65,8 +65,13 @@ AGAINST = Annotated[
 
 
 _COLUMNS = (
-    N_("formula"), N_("what"), N_("robot"), N_("error"), N_("printed"), N_("verdict"),
-)  # fmt: skip
+    N_("formula"),
+    N_("what"),
+    N_("robot"),
+    N_("error"),
+    N_("printed"),
+    N_("verdict"),
+)
 
 
 def register(app: typer.Typer) -> None:

@@ -26,9 +26,15 @@ OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to th
 
 
 _JOINT_COLUMNS = (
-    N_("joint"), N_("kind"), N_("lower"), N_("upper"), N_("velocity"), N_("effort"), N_("mass"),
+    N_("joint"),
+    N_("kind"),
+    N_("lower"),
+    N_("upper"),
+    N_("velocity"),
+    N_("effort"),
+    N_("mass"),
     N_("armature"),
-)  # fmt: skip
+)
 _KINDS = (N_("revolute"), N_("prismatic"))
 
 

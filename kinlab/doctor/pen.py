@@ -307,8 +307,16 @@ class Line:
             self.instead(place, f"({new})" if tight else new, value, kind, cost)
 
     def _number(self, place: _Place) -> None:
-        for shown, size in {"1": 1.0, "2": 2.0, "3": 3.0, "4": 4.0, "6": 6.0, "8": 8.0, "12": 12.0,
-                            "0.5": 0.5}.items():  # fmt: skip
+        for shown, size in {
+            "1": 1.0,
+            "2": 2.0,
+            "3": 3.0,
+            "4": 4.0,
+            "6": 6.0,
+            "8": 8.0,
+            "12": 12.0,
+            "0.5": 0.5,
+        }.items():
             if size != float(self.segment(place)):
                 self.instead(place, shown, np.full(self.count, size), "factor", 1.25)
         if "." in self.segment(place):  # a length's number, mistaken: 0.41 for l2 = 0.4
@@ -419,9 +427,15 @@ class Line:
         for name, value in self.atoms.items():
             for power, more in ((1, 0.0), (2, 0.4)):
                 word = name if power == 1 else f"{name}**{power}"
-                change = Change(place.span[1], place.span[1], f"*{word}", "missing factor",
-                                1.4 + more + extra, N_("the factor {factor} is missing in {term}"),
-                                pieces={"factor": word, "term": piece})  # fmt: skip
+                change = Change(
+                    place.span[1],
+                    place.span[1],
+                    f"*{word}",
+                    "missing factor",
+                    1.4 + more + extra,
+                    N_("the factor {factor} is missing in {term}"),
+                    pieces={"factor": word, "term": piece},
+                )
                 if _is_sum(node):
                     change = replace(change, start=place.span[0], new=f"{body}*{word}")
                 self.put(place, place.value * value**power, change)
@@ -430,9 +444,15 @@ class Line:
         for factor in (*moving, *waves):
             new = f"{body}*{self.spelled(factor)}"
             times = place.value * tree.evaluate(factor, self.at)
-            change = Change(place.span[0], place.span[1], new, "missing factor", 1.45 + extra,
-                            N_("the factor {factor} is missing in {term}"),
-                            pieces={"factor": self.spelled(factor), "term": piece})  # fmt: skip
+            change = Change(
+                place.span[0],
+                place.span[1],
+                new,
+                "missing factor",
+                1.45 + extra,
+                N_("the factor {factor} is missing in {term}"),
+                pieces={"factor": self.spelled(factor), "term": piece},
+            )
             self.put(place, times, change)
 
     def _as_term(self, place: _Place) -> None:
@@ -447,9 +467,15 @@ class Line:
                 twice = re.search(rf"(?:^|[+-])\s*{re.escape(piece)}\s*(?:$|[+-])", inside)
                 cost = (1.12 if sign == "+" else 1.6) + 0.03 * piece.count("*") + 0.4 * bool(twice)
                 pieces = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
-                change = Change(place.span[1], place.span[1], f" {sign} {piece}", "missing term",
-                                cost, N_("the term {term} is missing in {sum}"),
-                                pieces=pieces)  # fmt: skip
+                change = Change(
+                    place.span[1],
+                    place.span[1],
+                    f" {sign} {piece}",
+                    "missing term",
+                    cost,
+                    N_("the term {term} is missing in {sum}"),
+                    pieces=pieces,
+                )
                 self.put(place, place.value + (value if sign == "+" else -value), change)
 
     @cached_property
@@ -480,8 +506,15 @@ class Line:
             value = self.root.value + np.broadcast_to(tree.evaluate(term, self.at), (self.count,))
             shown = self.spelled(term)
             sign, body = ("-", shown[1:]) if shown.startswith("-") else ("+", shown)
-            change = Change(end, end, f" {sign} {body}", "missing term", 1.3,
-                            N_("the term {term} is missing"), pieces={"term": shown})  # fmt: skip
+            change = Change(
+                end,
+                end,
+                f" {sign} {body}",
+                "missing term",
+                1.3,
+                N_("the term {term} is missing"),
+                pieces={"term": shown},
+            )
             self.put(self.root, value, change)
 
     def _throughout(self) -> None:
@@ -508,8 +541,13 @@ class Line:
                     pieces = {"one": swap[0][0], "two": swap[0][1]}
                     self._global(tuple(swap), "index", 2.2, told, pieces)
         if {"sin", "cos"} & set(words):
-            self._global((("sin", "cos"), ("cos", "sin")), "sin/cos", 1.9,
-                         N_("sin and cos are exchanged throughout"), {})  # fmt: skip
+            self._global(
+                (("sin", "cos"), ("cos", "sin")),
+                "sin/cos",
+                1.9,
+                N_("sin and cos are exchanged throughout"),
+                {},
+            )
         if words.count("g") > 1:
             told = N_("gravity has the opposite sign: every g should be -g")
             self._global((("g", "(-g)"),), "gravity sign", 1.5, told, {})
@@ -563,9 +601,11 @@ def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tu
         if not _is_term(place) or _inside_call(place) or _is_sum(place.node):
             continue
         start, end = place.span
-        inside = [k for k, c in enumerate(line.changes)
-                  if start <= c.start and c.end <= end and not c.everywhere
-                  and c.kind != "missing term"]  # fmt: skip
+        inside = [
+            k
+            for k, c in enumerate(line.changes)
+            if start <= c.start and c.end <= end and not c.everywhere and c.kind != "missing term"
+        ]
         if len(inside) < 2:
             continue
         slope = line._climbed(place, np.zeros(line.count))
@@ -605,8 +645,7 @@ def _checked(line: Line, found: list[tuple[int, ...]]) -> Iterator[Mended]:
     seen: set[str] = set()
     for way in found:
         changes = tuple(sorted((line.changes[k] for k in way), key=lambda c: (c.start, c.end)))
-        if any(a.end > b.start or a.everywhere or b.everywhere
-               for a, b in pairwise(changes)):  # fmt: skip
+        if any(a.end > b.start or a.everywhere or b.everywhere for a, b in pairwise(changes)):
             continue
         text = rewritten(line.source, changes)
         if text is None or text in seen:

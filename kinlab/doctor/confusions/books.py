@@ -168,75 +168,126 @@ LAGRANGE = {
     "gravity_torques": ("G", ""),
     "potential_energy": ("V", ""),
     "com_positions": ("com", ""),
-    "kinetic_energy": ("E", """
+    "kinetic_energy": (
+        "E",
+        """
 # the kinetic energy
 E = 0.5*v @ M @ v
-"""),
-    "momentum": ("E", """
+""",
+    ),
+    "momentum": (
+        "E",
+        """
 # the momentum
 E = M @ v
-"""),
-    "lagrangian": ("E", """
+""",
+    ),
+    "lagrangian": (
+        "E",
+        """
 # the Lagrangian L = T - V
 E = 0.5*v @ M @ v - V
-"""),
+""",
+    ),
     "coriolis_matrix": ("C", CHRISTOFFEL),
-    "coriolis_torques": ("c", CHRISTOFFEL + """
+    "coriolis_torques": (
+        "c",
+        CHRISTOFFEL
+        + """
 # the velocity torques
 c = C @ v
-"""),
-    "inverse_dynamics": ("tau", CHRISTOFFEL + """
+""",
+    ),
+    "inverse_dynamics": (
+        "tau",
+        CHRISTOFFEL
+        + """
 # the equation of motion
 tau = M @ a + C @ v + G
-"""),
-    "inverse_without_gravity": ("tau", CHRISTOFFEL + """
+""",
+    ),
+    "inverse_without_gravity": (
+        "tau",
+        CHRISTOFFEL
+        + """
 # the equation of motion
 tau = M @ a + C @ v
-"""),
-    "inverse_dynamics_loaded": ("tau", CHRISTOFFEL + """
+""",
+    ),
+    "inverse_dynamics_loaded": (
+        "tau",
+        CHRISTOFFEL
+        + """
 q = q
 # the equation of motion
 tau = M @ a + C @ v + G + Jt.T @ wrench
-"""),
-    "forward_dynamics": ("a", CHRISTOFFEL + """
+""",
+    ),
+    "forward_dynamics": (
+        "a",
+        CHRISTOFFEL
+        + """
 # the equation of motion
 a = solve(M, tau - C @ v - G)
-"""),
-    "mass_matrix_dot": ("E", """
+""",
+    ),
+    "mass_matrix_dot": (
+        "E",
+        """
 D = slope(M)
 # Mdot
 E = D @ v
-"""),
-    "mass_rate_velocity": ("E", """
+""",
+    ),
+    "mass_rate_velocity": (
+        "E",
+        """
 D = slope(M)
 # Mdot v
 E = (D @ v) @ v
-"""),
-    "skew_matrix": ("E", CHRISTOFFEL + """
+""",
+    ),
+    "skew_matrix": (
+        "E",
+        CHRISTOFFEL
+        + """
 # Mdot - 2C
 E = D @ v - 2*C
-"""),
-    "kinetic_gradient": ("E", """
+""",
+    ),
+    "kinetic_gradient": (
+        "E",
+        """
 D = slope(M)
 # the gradient of ½ v^T M v
 E = 0.5*(jki(D) @ v) @ v
-"""),
-    "lagrangian_gradient": ("E", """
+""",
+    ),
+    "lagrangian_gradient": (
+        "E",
+        """
 D = slope(M)
 # the gradient of the Lagrangian
 E = 0.5*(jki(D) @ v) @ v - G
-"""),
-    "momentum_rate": ("E", """
+""",
+    ),
+    "momentum_rate": (
+        "E",
+        """
 D = slope(M)
 # the momentum's rate
 E = M @ a + (D @ v) @ v
-"""),
-    "christoffel": ("E", """
+""",
+    ),
+    "christoffel": (
+        "E",
+        """
 D = slope(M)
 # Christoffel's ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i)
 E = 0.5*(D + ikj(D) - jki(D))
-"""),
-}  # fmt: skip
+""",
+    ),
+}
 """By quantity: what is asked for, and what follows the mass matrix."""
 
 STANDARD = """
@@ -377,20 +428,35 @@ CLOSED = {
     "fivebar_turn": ("acc", _LOOP + _MOVING),
     "fivebar_torque_massless": ("tau", _LOOP + _MOVING + _TORQUE),
     "fivebar_torque_per_acceleration": ("E", _LOOP + _GAIN),
-    "fivebar_torque_per_acceleration_worst": ("E", _LOOP + _GAIN + """
+    "fivebar_torque_per_acceleration_worst": (
+        "E",
+        _LOOP
+        + _GAIN
+        + """
 # the worst torque per acceleration
 E = norm(E)
-"""),
-    "fivebar_rate_per_speed": ("E", _LOOP + """
+""",
+    ),
+    "fivebar_rate_per_speed": (
+        "E",
+        _LOOP
+        + """
 Jm = columns(J).T
 # the worst crank rate per speed
 E = norm(Jm)
-"""),
-    "fivebar_power_massless": ("E", _LOOP + _MOVING + _TORQUE + """
+""",
+    ),
+    "fivebar_power_massless": (
+        "E",
+        _LOOP
+        + _MOVING
+        + _TORQUE
+        + """
 # the power
 E = tau*(Jm @ v)
-"""),
-}  # fmt: skip
+""",
+    ),
+}
 """By quantity: what is asked for, and the derivation."""
 OTHER_SIDE = """
 for i in outward:

@@ -88,11 +88,19 @@ def _arguments(case: Case) -> Iterator[Confusion]:
                 1.3,
             )
     for name, words, left_out, turned in (
-        ("v", "velocity", _("leaves the velocity terms out"),
-         _("has the velocity with the opposite sign")),
-        ("a", "acceleration", _("leaves the acceleration terms out"),
-         _("has the acceleration with the opposite sign")),
-    ):  # fmt: skip
+        (
+            "v",
+            "velocity",
+            _("leaves the velocity terms out"),
+            _("has the velocity with the opposite sign"),
+        ),
+        (
+            "a",
+            "acceleration",
+            _("leaves the acceleration terms out"),
+            _("has the acceleration with the opposite sign"),
+        ),
+    ):
         if name in have:
             yield _argument(f"{words} left out", left_out, (name,), np.zeros_like, 1.1)
             yield _argument(

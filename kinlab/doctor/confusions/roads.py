@@ -89,10 +89,21 @@ def roads(case: Case) -> Iterator[Road]:
 
 _PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T"}
 _OUTWARD = {"link_velocities": books.VELOCITIES, "link_accelerations": books.ACCELERATIONS}
-_FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial",
-           "planar_jacobian": "base", "statics": "base", "statics_tool": "tool"}  # fmt: skip
-_RECURSIVE = ("inverse_dynamics", "gravity_torques", "coriolis_torques", "mass_matrix",
-              "inverse_without_gravity")  # fmt: skip
+_FRAMES = {
+    "jacobian": "base",
+    "jacobian_tool": "tool",
+    "jacobian_spatial": "spatial",
+    "planar_jacobian": "base",
+    "statics": "base",
+    "statics_tool": "tool",
+}
+_RECURSIVE = (
+    "inverse_dynamics",
+    "gravity_torques",
+    "coriolis_torques",
+    "mass_matrix",
+    "inverse_without_gravity",
+)
 
 
 def _standard(robot: Robot) -> bool:
@@ -150,10 +161,11 @@ def _of_table(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     count, signs = len(q), _signs(robot)
     slide = [link.joint == "prismatic" for link in table.links]
     out: dict[str, Any] = {
-        "base": np.asarray(table.base)[None], "tool": np.asarray(table.tool)[None],
+        "base": np.asarray(table.base)[None],
+        "tool": np.asarray(table.tool)[None],
         "q": [s * column for s, column in zip(signs, q.T, strict=True)],
         "hinge": [not s for s in slide],
-    }  # fmt: skip
+    }
     for column in ("theta", "d", "a", "alpha"):
         out[column] = [np.full(1, float(getattr(link, column))) for link in table.links]
     rows = {name: [] for name in ("Rz", "Tz", "Tx", "Rx")}  # type: ignore[var-annotated]
@@ -207,8 +219,15 @@ def _links(robot: Robot, q: Array) -> tuple[list[Array], list[Array], list[bool]
         for k, link in enumerate(table.links):
             moved, none = signs[k] * q[:, k], 0.0 * q[:, k]
             theta, d = (none, moved) if slide[k] else (moved, none)
-            found.append(_link(link.theta + theta, link.d + d, link.a + none, link.alpha + none,
-                               _standard(robot)))  # fmt: skip
+            found.append(
+                _link(
+                    link.theta + theta,
+                    link.d + d,
+                    link.a + none,
+                    link.alpha + none,
+                    _standard(robot),
+                )
+            )
         return found, [s * np.array([0.0, 0.0, 1.0]) for s in signs], slide
     found, axes, slide = [], [], []
     for k in range(robot.n):
@@ -262,11 +281,20 @@ def _of_recursion(robot: Robot, q: Array, x: Stacks, in_base: bool) -> dict[str,
         if standard:
             places = [np.einsum("nji,nj->ni", t, p) for t, p in zip(turns, places, strict=True)]
     return {
-        **_bodies(robot), "Ia": [np.full(1, r) for r in robot.model.armature.tolist()],
-        "zero": np.zeros((1, 3)), "one": np.eye(3)[None], "end": np.zeros((1, 3)), "g": gravity,
-        "qd": list(x["v"].T), "qdd": list(x["a"].T), "hinge": [not s for s in slide], "z": z,
-        "R": turns, "P": places, "R_": [f[:, :3, :3] for f in frames[1:]],
-    }  # fmt: skip
+        **_bodies(robot),
+        "Ia": [np.full(1, r) for r in robot.model.armature.tolist()],
+        "zero": np.zeros((1, 3)),
+        "one": np.eye(3)[None],
+        "end": np.zeros((1, 3)),
+        "g": gravity,
+        "qd": list(x["v"].T),
+        "qdd": list(x["a"].T),
+        "hinge": [not s for s in slide],
+        "z": z,
+        "R": turns,
+        "P": places,
+        "R_": [f[:, :3, :3] for f in frames[1:]],
+    }
 
 
 def _frames(robot: Robot, found: list[Array]) -> list[Array]:
@@ -300,15 +328,25 @@ def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     carried[:] = np.eye(6)
     carried[:, :3, 3:] = -np.cross(p[:, None, :], np.eye(3)).swapaxes(1, 2) * -1.0
     return {
-        **_bodies(robot), "Ia": robot.model.armature[None], "zero": np.zeros((1, 3)),
-        "number": np.zeros(1), "zeros": np.zeros((1, n)), "nothing": np.zeros((1, n, n)),
-        "g": np.array(robot.model.gravity.linear)[None], "hinge": [not s for s in slide],
-        "z": z, "o": o, "p": p, "q": q, "Jt": jacobian(robot, np.real(q)), "both": both,
+        **_bodies(robot),
+        "Ia": robot.model.armature[None],
+        "zero": np.zeros((1, 3)),
+        "number": np.zeros(1),
+        "zeros": np.zeros((1, n)),
+        "nothing": np.zeros((1, n, n)),
+        "g": np.array(robot.model.gravity.linear)[None],
+        "hinge": [not s for s in slide],
+        "z": z,
+        "o": o,
+        "p": p,
+        "q": q,
+        "Jt": jacobian(robot, np.real(q)),
+        "both": both,
         "carried": carried,
         "o_": {k: f[:, :3, 3] for k, f in enumerate(frames)},
         "R_": {k: f[:, :3, :3] for k, f in enumerate(frames)},
         **{name: x[name] for name in ("v", "a", "tau", "wrench") if name in x},
-    }  # fmt: skip
+    }
 
 
 def _tool(robot: Robot) -> Array:
@@ -365,12 +403,22 @@ def _of_loop(loop: Any, x: Stacks) -> dict[str, Any]:
 
     r = x["xy"]
     out: dict[str, Any] = {
-        "e": np.full(1, loop.e), "m": np.full(1, loop.payload), "g": np.full(1, loop.g),
-        "l1": each(loop.l1), "l2": each(loop.l2), "s": each(S), "IA": each(loop.arm),
-        "mc": each(loop.crank * loop.crank_com), "E1": E1[None], "E2": E2[None], "H": H[None],
-        "r": r, "x": r[:, 0], "y": r[:, 1],
+        "e": np.full(1, loop.e),
+        "m": np.full(1, loop.payload),
+        "g": np.full(1, loop.g),
+        "l1": each(loop.l1),
+        "l2": each(loop.l2),
+        "s": each(S),
+        "IA": each(loop.arm),
+        "mc": each(loop.crank * loop.crank_com),
+        "E1": E1[None],
+        "E2": E2[None],
+        "H": H[None],
+        "r": r,
+        "x": r[:, 0],
+        "y": r[:, 1],
         **{name: x[name] for name in ("v", "a") if name in x},
-    }  # fmt: skip
+    }
     for name in ("theta", "mode"):
         if name in x:
             out[name] = list(x[name].T)

@@ -32,10 +32,32 @@ from kinlab.doctor.confusions.words import (
 from kinlab.host.language import _
 
 _ALIKE = (
-    "w dw", "dv dvc", "F f", "N nn", "P c", "F N", "f nn", "Jv Jw", "z o", "crank rod", "l1 l2",
-    "A B C", "ct st", "sa ca", "a dd d", "x y", "qd qdd", "p o", "pc p", "E1 E2", "v a", "M C",
-    "o_ o", "R_ R", "G q",
-)  # fmt: skip
+    "w dw",
+    "dv dvc",
+    "F f",
+    "N nn",
+    "P c",
+    "F N",
+    "f nn",
+    "Jv Jw",
+    "z o",
+    "crank rod",
+    "l1 l2",
+    "A B C",
+    "ct st",
+    "sa ca",
+    "a dd d",
+    "x y",
+    "qd qdd",
+    "p o",
+    "pc p",
+    "E1 E2",
+    "v a",
+    "M C",
+    "o_ o",
+    "R_ R",
+    "G q",
+)
 """Names that are easily taken for one another."""
 
 _GIVEN = ("zero", "one", "end", "g", "number", "zeros", "nothing")
@@ -376,10 +398,18 @@ def _slides(of: Program) -> Iterator[Step]:
         if isinstance(node, ast.IfExp) and isinstance(node.test, ast.Subscript)
     ]
     if len(nodes) > 1:
-        yield Step("slide as hinge", _("treats a slide (prismatic joint) as a hinge (revolute)"),
-                   tuple((node, node.body) for node in nodes), 1.0)  # fmt: skip
-        yield Step("hinge as slide", _("treats a hinge (revolute) as a slide (prismatic joint)"),
-                   tuple((node, node.orelse) for node in nodes), 1.15)  # fmt: skip
+        yield Step(
+            "slide as hinge",
+            _("treats a slide (prismatic joint) as a hinge (revolute)"),
+            tuple((node, node.body) for node in nodes),
+            1.0,
+        )
+        yield Step(
+            "hinge as slide",
+            _("treats a hinge (revolute) as a slide (prismatic joint)"),
+            tuple((node, node.orelse) for node in nodes),
+            1.15,
+        )
 
 
 def _others(
@@ -393,8 +423,9 @@ def _others(
     places: dict[str, list[ast.expr]] = {}
     inner = {id(x.value) for x in ast.walk(whole) if isinstance(x, ast.Subscript)}
     called = {id(x.func) for x in ast.walk(whole) if isinstance(x, ast.Call)}
-    index = {id(y) for x in ast.walk(whole) if isinstance(x, ast.Subscript)
-             for y in ast.walk(x.slice)}  # fmt: skip
+    index = {
+        id(y) for x in ast.walk(whole) if isinstance(x, ast.Subscript) for y in ast.walk(x.slice)
+    }
     for node in ast.walk(whole):
         named = isinstance(node, ast.Name | ast.Subscript) and id(node) in axes
         if named and not {id(node)} & (inner | called | index):

@@ -371,8 +371,9 @@ def _product(one: Array, two: Array) -> Array:
     if two.ndim == 3 and one.ndim == 3:
         return np.asarray(np.sum(one * two, axis=-1))
     if two.ndim == 3:
-        out: Array = np.einsum("...ij,...j->...i" if one.ndim == 4 else "...ijk,...k->...ij",
-                               one, two)  # fmt: skip
+        out: Array = np.einsum(
+            "...ij,...j->...i" if one.ndim == 4 else "...ijk,...k->...ij", one, two
+        )
         return out
     if one.ndim == 3:
         left: Array = np.einsum("...i,...ij->...j", one, two)

@@ -374,9 +374,17 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
             place = name if len(model.formulas) > 1 else _("the formula as a whole")
             right_one = (f"{name} = {right}",)
             return Outcome(
-                question.id, WRONG, points, question.points, kinds, (), place, told(kinds),
-                right_one, tuple(formulas),
-            )  # fmt: skip
+                question.id,
+                WRONG,
+                points,
+                question.points,
+                kinds,
+                (),
+                place,
+                told(kinds),
+                right_one,
+                tuple(formulas),
+            )
     return Outcome(question.id, RIGHT, question.points, question.points, formulas=tuple(formulas))
 
 

@@ -26,10 +26,14 @@ _BINS = 10
 def student_page(marks: Marks, mark: Mark) -> str:
     """What one student sees."""
     rows = [
-        {"question": question, "outcome": outcome, "tone": _tone(outcome),
-         "pictures": [Markup(text) for text in (mark.pictures or {}).get(question.id, ())]}
+        {
+            "question": question,
+            "outcome": outcome,
+            "tone": _tone(outcome),
+            "pictures": [Markup(text) for text in (mark.pictures or {}).get(question.id, ())],
+        }
         for question, outcome in zip(marks.sheet.questions, mark.outcomes, strict=True)
-    ]  # fmt: skip
+    ]
     return _render(
         "student.html.j2",
         title=marks.sheet.title,
@@ -50,10 +54,15 @@ def class_page(marks: Marks) -> str:
             for kind in () if outcome.right else dict.fromkeys(outcome.kinds):
                 who.setdefault((outcome.question, kind), []).append(mark)
     slips = [
-        {"question": question, "kind": kind, "told": _phrase(kind), "marks": found,
-         "share": 100.0 * len(found) / len(marks.marks)}
+        {
+            "question": question,
+            "kind": kind,
+            "told": _phrase(kind),
+            "marks": found,
+            "share": 100.0 * len(found) / len(marks.marks),
+        }
         for (question, kind), found in sorted(who.items(), key=lambda i: (-len(i[1]), i[0]))
-    ]  # fmt: skip
+    ]
     questions = []
     for k, question in enumerate(marks.sheet.questions):
         verdicts = Counter(_tone(mark.outcomes[k]) for mark in marks.marks)
@@ -99,10 +108,14 @@ def _histogram(marks: Marks) -> list[dict[str, Any]]:
         counts[min(_BINS - 1, int(_BINS * mark.total / most))] += 1
     highest = max([*counts, 1])
     return [
-        {"from": f"{most * k / _BINS:g}", "to": f"{most * (k + 1) / _BINS:g}", "count": count,
-         "height": 7.0 * count / highest}
+        {
+            "from": f"{most * k / _BINS:g}",
+            "to": f"{most * (k + 1) / _BINS:g}",
+            "count": count,
+            "height": 7.0 * count / highest,
+        }
         for k, count in enumerate(counts)
-    ]  # fmt: skip
+    ]
 
 
 def _render(template: str, **values: Any) -> str:

@@ -241,10 +241,14 @@ def _with_notes(marks: Iterable[Mark]) -> list[Mark]:
 def _as_record(mark_: Mark) -> dict[str, Any]:
     pictures = {k: list(v) for k, v in (mark_.pictures or {}).items()}
     return {
-        "file": mark_.file, "student": mark_.student, "name": mark_.name, "note": mark_.note,
-        "slug": mark_.slug, "pictures": pictures,
+        "file": mark_.file,
+        "student": mark_.student,
+        "name": mark_.name,
+        "note": mark_.note,
+        "slug": mark_.slug,
+        "pictures": pictures,
         "outcomes": [outcome.as_dict() for outcome in mark_.outcomes],
-    }  # fmt: skip
+    }
 
 
 def _recorded(folder: Path | None, slug: str, fingerprint: str) -> Mark | None:

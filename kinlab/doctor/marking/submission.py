@@ -222,8 +222,10 @@ def _of_latex(text: str) -> list[tuple[str, Any]]:
         raise FileError(f"more than {_MOST} formulas in one file")
     body = _BODY.search(text)
     text = body[1] if body else text
-    shown = [next(v for k, v in m.groupdict().items() if k != "env" and v is not None)
-             for m in _SHOWN.finditer(text)]  # fmt: skip
+    shown = [
+        next(v for k, v in m.groupdict().items() if k != "env" and v is not None)
+        for m in _SHOWN.finditer(text)
+    ]
     if not shown:  # bare lines, as a fragment may be
         shown = [line for line in text.splitlines() if "=" in line]
     pieces: list[tuple[str, Any]] = []
@@ -317,9 +319,15 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
 
 
 _HEADS = {
-    "inverse_dynamics": "tau", "gravity_torques": "g", "coriolis_torques": "c", "mass_matrix": "M",
-    "coriolis_matrix": "C", "jacobian": "J", "planar_jacobian": "J", "fk": "T",
-}  # fmt: skip
+    "inverse_dynamics": "tau",
+    "gravity_torques": "g",
+    "coriolis_torques": "c",
+    "mass_matrix": "M",
+    "coriolis_matrix": "C",
+    "jacobian": "J",
+    "planar_jacobian": "J",
+    "fk": "T",
+}
 
 
 def _head(question: Question) -> str:

@@ -326,13 +326,19 @@ def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
     if not np.any(written[:3, 3]):
         return
     for factor, kind, told in (
-        (1e-3, "millimetres",
-         N_("{frame} has the slip 'millimetres' in its translation: meant is {meant}")),
+        (
+            1e-3,
+            "millimetres",
+            N_("{frame} has the slip 'millimetres' in its translation: meant is {meant}"),
+        ),
         (0.1, "decimal", N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")),
-        (10.0, "decimal",
-         N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")),
+        (
+            10.0,
+            "decimal",
+            N_("{frame} has the slip 'decimal' in its translation: meant is {meant}"),
+        ),
         (-1.0, "sign", N_("{frame} has the slip 'sign' in its translation: meant is {meant}")),
-    ):  # fmt: skip
+    ):
         scaled = np.array(written)
         scaled[:3, 3] *= factor
         yield kind, scaled, told
