@@ -57,6 +57,7 @@ def singular(
 
     robot, console = load(name, tool), screen()
     chosen = _task(task)
+    state = None if at is None else _numbers(at, robot.n, "--at")
     search = find_singularities(robot, chosen, seed=seed)
     console.print(tables.headline(robot, search.task, search.suggested), highlight=False)
     tables.print_determinant(console, robot, chosen)
@@ -73,8 +74,8 @@ def singular(
         style="dim",
         highlight=False,
     )
-    if at is not None:
-        near = nearest_singularity(robot, _numbers(at, robot.n, "--at"), chosen, seed=seed)
+    if state is not None:
+        near = nearest_singularity(robot, state, chosen, seed=seed)
         console.print(tables.nearest(near), highlight=False)
         console.print(str(near.evidence), style="dim", highlight=False)
     if output is not None:

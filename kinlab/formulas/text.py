@@ -176,12 +176,25 @@ def parse(text: str, place: str = "expression") -> Node:
         parsed = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError) as problem:
         where = f" near column {problem.offset}" if isinstance(problem, SyntaxError) else ""
-        raise ExpressionError(f"{place}: no arithmetic{where}: {_short(text)}") from None
+        raise ExpressionError(
+            f"{place}: no arithmetic{where}: {_short(text)}{_remedy(text)}"
+        ) from None
     except (RecursionError, MemoryError):
         raise ExpressionError(f"{place}: nested too deep") from None
     if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:
         raise ExpressionError(f"{place}: more than {MOST_NODES} terms and factors")
     return _Reader(place).read(parsed.body)
+
+
+def _remedy(text: str) -> str:
+    """What is likely to be missing in a text that is no arithmetic."""
+    opened, closed = text.count("("), text.count(")")
+    if opened != closed:
+        more = "a bracket is not closed" if opened > closed else "a bracket is closed too often"
+        return f"; {more}"
+    if re.search(r"[\w)] +[\w(]", text):
+        return "; write * between factors"
+    return ""
 
 
 def tidied(text: str) -> str:
