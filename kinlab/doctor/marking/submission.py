@@ -17,6 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from kinlab.check.diagnosis import ENTRY_LETTERS
 from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.terms import split_name
@@ -318,21 +319,11 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
     return None, ""
 
 
-_HEADS = {
-    "inverse_dynamics": "tau",
-    "gravity_torques": "g",
-    "coriolis_torques": "c",
-    "mass_matrix": "M",
-    "coriolis_matrix": "C",
-    "jacobian": "J",
-    "planar_jacobian": "J",
-    "fk": "T",
-}
-
-
 def _head(question: Question) -> str:
-    """The letter of a whole quantity: M of mass_matrix."""
-    return "" if "[" in question.quantity else _HEADS.get(question.plain, "")
+    """The letter of a whole vector or matrix: M of mass_matrix."""
+    if "[" in question.quantity or question.plain.endswith("energy"):
+        return ""
+    return ENTRY_LETTERS.get(question.plain, "")
 
 
 def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> dict[str, str]:
