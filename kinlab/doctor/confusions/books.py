@@ -402,9 +402,9 @@ _BARS = """
 """
 _MOVING = """
     # the bias f(v) of the crank's acceleration
-    f[i] = ((v @ rod[i])**2*(crank[i] @ rod[i])/l1[i] + (v @ crank[i])**2/l2[i])/(l1[i]*k[i]**3)
+    fv[i] = ((v @ rod[i])**2*(crank[i] @ rod[i])/l1[i] + (v @ crank[i])**2/l2[i])/(l1[i]*k[i]**3)
     # the crank's acceleration
-    acc[i] = J[i] @ a + f[i]
+    acc[i] = J[i] @ a + fv[i]
     # the crank's own torque
     own[i] = IA[i]*acc[i] + mc[i]*g*(crank[i] @ E1)
 """
