@@ -125,6 +125,7 @@ def N_(text: str) -> str:
     return text
 
 
+@cache
 def _known(name: str) -> str | None:
     """The language of a name or of a locale; None where it is none of ours."""
     short = re.split(r"[-_.@]", name.strip().lower(), maxsplit=1)[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from math import comb
 
@@ -116,9 +116,8 @@ def _sound(case: Case, road: Road) -> dict[int, tuple[int, ...]] | None:
     mine = values[(slice(None), slice(None), *case.index)][0]
     if mine.shape != right.shape or mine.shape != few.hand.shape:
         return None
-    size = error_sizes(right)
-    gap = np.max(np.abs(mine - right).reshape(len(mine), -1), axis=1) / size
-    return walk.axes if float(np.max(gap)) <= TOLERANCES.formula_agrees else None
+    error = _errors(values, replace(few, hand=right), error_sizes(right))[0]
+    return walk.axes if error <= TOLERANCES.formula_agrees else None
 
 
 def _apart(case: Case, road: Road, tried: list[Step]) -> list[Step]:
@@ -146,16 +145,17 @@ def _tried(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
     for start in range(0, len(ways), _CHUNK):
         part = ways[start : start + _CHUNK]
         errors = _errors(road.walked(part, few.arguments)[0], few, size[:1])
-        near += [way for way, error in zip(part, errors, strict=True) if error <= _LOOSE]
+        near += [
+            way
+            for way, error in zip(part, errors, strict=True)
+            if error <= TOLERANCES.formula_agrees
+        ]
     if not near:
         return
     errors = _errors(road.walked(near, case.arguments)[0], case, size)
     for way, error in zip(near, errors, strict=True):
-        if error <= _LOOSE:
+        if error <= TOLERANCES.formula_agrees:
             yield Found(way, float(error), sum(s.cost for s in way) + _JOINED * (len(way) - 1))
-
-
-_LOOSE = TOLERANCES.formula_agrees
 
 
 def _errors(values: Array, case: Case, size: Array) -> Array:

@@ -19,6 +19,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions import books
 from kinlab.doctor.confusions.walk import Program, Step, Walk, program
 from kinlab.engine.kinematics import jacobian
+from kinlab.model.dh import link_transform
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
 from kinlab.notes.loop import E1, E2, H, S
@@ -174,27 +175,14 @@ def _of_table(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
         theta = link.theta + (0.0 * moved if slide[k] else moved)
         d = link.d + (moved if slide[k] else 0.0 * moved)
         zero = np.zeros(count, dtype=q.dtype)
-        rows["Rz"].append(_link(theta, zero, zero, zero))
-        rows["Tz"].append(_link(zero, d, zero, zero))
-        rows["Tx"].append(_link(zero, zero, zero + link.a, zero))
-        rows["Rx"].append(_link(zero, zero, zero, zero + link.alpha))
+        for name, a, alpha, move, turn in (
+            ("Rz", 0.0, 0.0, zero, theta),
+            ("Tz", 0.0, 0.0, d, zero),
+            ("Tx", link.a, 0.0, zero, zero),
+            ("Rx", 0.0, link.alpha, zero, zero),
+        ):
+            rows[name].append(link_transform(Convention.STANDARD, a, alpha, move, turn))
     return {**out, **rows}
-
-
-def _link(theta: Array, d: Array, a: Array, alpha: Array, standard: bool = True) -> Array:
-    """A link's matrix, (N, 4, 4), of real or complex angles."""
-    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    out = np.zeros((len(theta), 4, 4), dtype=np.result_type(theta, d))
-    out[:, 3, 3] = 1.0
-    if standard:
-        out[:, 0] = np.stack([ct, -st * ca, st * sa, a * ct], axis=1)
-        out[:, 1] = np.stack([st, ct * ca, -ct * sa, a * st], axis=1)
-        out[:, 2] = np.stack([0 * ca, sa, ca, d], axis=1)
-    else:
-        out[:, 0] = np.stack([ct, -st, 0 * ca, a], axis=1)
-        out[:, 1] = np.stack([st * ca, ct * ca, -sa, -sa * d], axis=1)
-        out[:, 2] = np.stack([st * sa, ct * sa, ca, ca * d], axis=1)
-    return out
 
 
 def _signs(robot: Robot) -> list[float]:
@@ -204,7 +192,7 @@ def _signs(robot: Robot) -> list[float]:
 
 
 def _axis(joint: Any) -> Array:
-    """A joint's axis in its own frame, and whether it slides."""
+    """A joint's motion in its own frame, (6,): along its axis, then about it."""
     column: Array = np.asarray(joint.createData().S).reshape(6, -1)[:, 0]
     return column
 
@@ -220,12 +208,12 @@ def _links(robot: Robot, q: Array) -> tuple[list[Array], list[Array], list[bool]
             moved, none = signs[k] * q[:, k], 0.0 * q[:, k]
             theta, d = (none, moved) if slide[k] else (moved, none)
             found.append(
-                _link(
-                    link.theta + theta,
+                link_transform(
+                    Convention(str(table.convention)),
+                    link.a,
+                    link.alpha,
                     link.d + d,
-                    link.a + none,
-                    link.alpha + none,
-                    _standard(robot),
+                    link.theta + theta,
                 )
             )
         return found, [s * np.array([0.0, 0.0, 1.0]) for s in signs], slide
@@ -317,16 +305,16 @@ def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     # the neighbours of the first and of the last joint, as the textbooks' frames have them
     for k, frame in ((0, frames[0]), (n + 1, frames[-1])):
         z[k], o[k] = frame[:, :3, 2], frame[:, :3, 3]
-    tool = np.eye(4) if robot.table is None else np.asarray(robot.table.tool)
-    last = frames[-1]
-    if robot.table is None:
-        tool = np.asarray(_tool(robot))
-    pose = last @ tool
+    pose = frames[-1] @ (
+        robot.model.frames[robot.tool].placement.homogeneous
+        if robot.table is None
+        else np.asarray(robot.table.tool)
+    )
     turn, p = pose[:, :3, :3], pose[:, :3, 3]
     both, carried = np.zeros((len(q), 6, 6), q.dtype), np.zeros((len(q), 6, 6), q.dtype)
     both[:, :3, :3] = both[:, 3:, 3:] = turn
     carried[:] = np.eye(6)
-    carried[:, :3, 3:] = -np.cross(p[:, None, :], np.eye(3)).swapaxes(1, 2) * -1.0
+    carried[:, :3, 3:] = np.cross(p[:, None, :], np.eye(3)).swapaxes(1, 2)
     return {
         **_bodies(robot),
         "Ia": robot.model.armature[None],
@@ -347,17 +335,6 @@ def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
         "R_": {k: f[:, :3, :3] for k, f in enumerate(frames)},
         **{name: x[name] for name in ("v", "a", "tau", "wrench") if name in x},
     }
-
-
-def _tool(robot: Robot) -> Array:
-    """The tool in the last joint's frame."""
-    import pinocchio as pin
-
-    data, q = robot.model.createData(), pin.neutral(robot.model)
-    pin.framesForwardKinematics(robot.model, data, q)
-    frame = robot.model.getFrameId(robot.tool_name)
-    placed: Array = (data.oMi[robot.n].inverse() * data.oMf[frame]).homogeneous
-    return placed
 
 
 def _of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:

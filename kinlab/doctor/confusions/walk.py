@@ -21,7 +21,7 @@ import numpy as np
 from kinlab.arrays import Array
 
 Rows = Any
-"""Which alternatives are worked out: their numbers, or None for all."""
+"""Which alternatives are worked out: their numbers in order, or None for all."""
 Inputs = Callable[[Array], dict[str, Any]]
 """From positions (N, n), real or complex, to the values of the program's names."""
 
@@ -84,9 +84,9 @@ class Walk:
         of: the program.
         inputs: the values of its names: (N, ...) each, or a list of them by joint, from 1 (None
             where there is none), or plain flags by joint.
+        q: the positions at which they are asked for, (N, n).
         ways: the alternatives, each a combination of steps; ``()`` is the derivation itself.
         n: number of joints.
-        count: number of states.
     """
 
     def __init__(
@@ -181,11 +181,13 @@ class Walk:
         out = np.array(self._spread(plain, rows))
         for new, which, joints in marks:
             here = which[(joints == 0) | (joints == self.joint)]
+            at = here
             if rows is not None:
-                here = here[np.isin(here, rows)]
+                at = np.searchsorted(rows, here)
+                met = rows.take(at, mode="clip") == here
+                at, here = at[met], here[met]
             if not len(here):
                 continue
-            at = here if rows is None else np.searchsorted(rows, here)
             try:
                 part = self.value(new, here)
             except (Absent, ValueError, TypeError, IndexError, np.linalg.LinAlgError):
@@ -304,12 +306,6 @@ class Walk:
             out = np.stack(np.broadcast_arrays(*x), axis=-1)
         elif name == "twist":
             out = np.concatenate(np.broadcast_arrays(*x), axis=-1)
-        elif name == "rotation":
-            out = x[0][..., :3, :3]
-        elif name == "origin":
-            out = x[0][..., :3, 3]
-        elif name == "axis":
-            out = x[0][..., :3, 2]
         elif name == "diagonal":
             out = x[0][..., None] * np.eye(x[0].shape[-1])
         elif name == "inv":
