@@ -19,11 +19,12 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.serial import SERIAL
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.confusions.numbers import rounded_robots
 from kinlab.doctor.confusions.robots import with_gravity
-from kinlab.doctor.derived import LETTERS, Derivation, searchable
+from kinlab.doctor.derived import LETTERS, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, names_for
+from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
 from kinlab.doctor.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -42,6 +43,13 @@ _CLOSE = 0.025
 """Relative change up to which one digit is a rounding."""
 _SIMPLE = 12
 _UNITS = {"": 1.0, "pi": math.pi, "sqrt(2)": math.sqrt(2), "sqrt(3)": math.sqrt(3)}
+CLOSE = 2e-3
+"""Relative error up to which a function may be right with rounded constants inside."""
+_SAME_DIGITS = 1e-4
+"""Relative error below which a function that no slip explains is right to its digits: constants
+of four digits and forward differences reach it, no term that is left out does."""
+_ROUGH = 0.03
+"""Share of the answer that rounded constants may change: g = 10 is 2 %."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -50,7 +58,7 @@ class Excuse:
     """Why a formula that is not the engine's, digit for digit, is right.
 
     Attributes:
-        form: ``"rounded"`` or ``"unusual"``; ``""`` where there is only a remark.
+        form: ``"rounded"``, ``"unusual"`` or ``"digits"``; ``""`` where there is only a remark.
         remarks: in plain words.
     """
 
@@ -278,21 +286,22 @@ def _free_fit(
 # -------- Valid formulas that are not the engine's
 
 
-def unusual(case: Case, engine: Array) -> Excuse | None:
+def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
     """Another valid formula of the same thing: a C with the same C qd, a potential's other zero.
 
     Args:
         case: with the hand formula's answers, of the engine's shape.
         engine: the engine's answers.
+        slack: relative error that finite differences may leave, beside rounding.
     """
     name, hand = case.quantity.name, case.hand
     if hand.shape != engine.shape or not np.isfinite(hand).all():
         return None
     if name == "coriolis_matrix" and len(case.index) <= 1:
-        return _another_split(case, engine)
+        return _another_split(case, engine, slack)
     if name == "christoffel" and not case.index:
         symmetric = 0.5 * (hand + np.swapaxes(hand, 2, 3))
-        if _same(symmetric, engine, engine):
+        if _same(symmetric, engine, engine, slack):
             said = _(
                 "it is not symmetric in the last two indices, as Christoffel's symbols are; the "
                 "sums over qd_j qd_k are the same"
@@ -301,7 +310,7 @@ def unusual(case: Case, engine: Array) -> Excuse | None:
     if name in _ENERGIES:
         gap = hand - engine
         constant = gap[:1]
-        if _same(gap, np.broadcast_to(constant, gap.shape), engine):
+        if _same(gap, np.broadcast_to(constant, gap.shape), engine, slack):
             size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
             said = _(
                 "the potential has another zero (the difference is {size:.6g} J everywhere), "
@@ -311,16 +320,16 @@ def unusual(case: Case, engine: Array) -> Excuse | None:
     return None
 
 
-def _another_split(case: Case, engine: Array) -> Excuse | None:
+def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
     speeds = case.arguments["v"]
     torques = np.einsum("n...j,nj->n...", engine, speeds)
-    if not _same(np.einsum("n...j,nj->n...", case.hand, speeds), torques, torques):
+    if not _same(np.einsum("n...j,nj->n...", case.hand, speeds), torques, torques, slack):
         return None
     if case.index:
         return Excuse("unusual", (_("C*qd is right, but C is not Christoffel's"),))
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
-    skew = _same(rest, np.zeros_like(rest), slope)
+    skew = _same(rest, np.zeros_like(rest), slope, slack)
     if skew:
         said = _(
             "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
@@ -330,9 +339,9 @@ def _another_split(case: Case, engine: Array) -> Excuse | None:
     return Excuse("unusual", (said,))
 
 
-def _same(one: Array, two: Array, size: Array) -> bool:
+def _same(one: Array, two: Array, size: Array, slack: float = 0.0) -> bool:
     gap = np.max(np.abs((one - two).reshape(len(one), -1)), axis=1)
-    return bool(np.max(gap / error_sizes(size)) <= TOLERANCES.formula_agrees)
+    return bool(np.max(gap / error_sizes(size)) <= max(slack, TOLERANCES.formula_agrees))
 
 
 # -------- Functions, and the robot's own data, rounded
@@ -421,6 +430,18 @@ def gravity_rounded(case: Case, engine: Array) -> Excuse | None:
     return Excuse("rounded", (said.format(written=f"g = {one.text}", meant=f"{size:.10g}"),))
 
 
+def to_digits(error: float) -> Excuse | None:
+    """A function that nothing explains, and that is right to so many digits that no slip is."""
+    if error > _SAME_DIGITS:
+        return None
+    said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
+    return Excuse("digits", (said.format(digits=_digits(error)),))
+
+
+def _digits(error: float) -> int:
+    return max(1, math.floor(-math.log10(2 * error)))
+
+
 def roundings(case: Case, engine: Array, function: bool) -> Iterator[Excuse]:
     """Roundings in the robot's data, or of a function, that account for every state."""
     if case.quantity.domain is not SERIAL:
@@ -430,9 +451,25 @@ def roundings(case: Case, engine: Array, function: bool) -> Iterator[Excuse]:
         answer = replace(case, robot=full[0]).answer(())
         if answer.shape == case.hand.shape and _same(case.hand, answer, engine):
             yield Excuse("rounded", full[1])
-    weighed = gravity_rounded(case, engine) if function else None
+    if not function or case.hand.shape != engine.shape:
+        return
+    weighed = gravity_rounded(case, engine)
     if weighed is not None:
         yield weighed
+    gap = np.where(np.isfinite(case.hand), np.abs(case.hand - engine), np.inf)
+    few = case.few(2)
+    if np.max(gap) > _ROUGH * np.max(np.abs(engine)):
+        return
+    for robot, said in rounded_robots(case.robot):
+        other = replace(few, robot=robot)
+        answer = other.answer(())
+        if _same(few.hand, answer, engine[:2]) or gravity_rounded(other, answer):
+            other = replace(case, robot=robot)
+            answer = other.answer(())
+            if _same(case.hand, answer, engine):
+                yield Excuse("rounded", said)
+            elif (also := gravity_rounded(other, answer)) is not None:
+                yield Excuse("rounded", (*said, *also.remarks))
 
 
 _ENDLESS = tuple(
@@ -453,6 +490,14 @@ def coefficients_rounded(
         words: the joint functions of the derived entry, each once.
         at: values of the names at the states.
     """
+    both = _coefficients(entry, words, at)
+    return None if both is None else _all_rounded(*both)
+
+
+def _coefficients(
+    entry: AnswerEntry, words: list[Node], at: dict[str, Array]
+) -> tuple[Array, Array] | None:
+    """The hand formula's and the engine's coefficients of the words, where they are all of it."""
     columns = np.array([np.broadcast_to(tree.evaluate(w, at), entry.hand.shape) for w in words]).T
     if 2 * columns.shape[1] > len(entry.hand) or np.linalg.matrix_rank(columns) < columns.shape[1]:
         return None
@@ -460,6 +505,10 @@ def coefficients_rounded(
     theirs, *_rest = np.linalg.lstsq(columns, entry.engine, rcond=None)
     if entry.error(columns @ mine, entry.hand) > TOLERANCES.formula_agrees:
         return None
+    return mine, theirs
+
+
+def _all_rounded(mine: Array, theirs: Array) -> list[str] | None:
     said = []
     for one, two in zip(mine.tolist(), theirs.tolist(), strict=True):
         if abs(one - two) <= TOLERANCES.formula_agrees * max(np.max(np.abs(theirs)), 1e-12):
@@ -582,14 +631,53 @@ def _kept(
     return found
 
 
-def of_function(entry: AnswerEntry, derived: Derivation, case: Case) -> list[str] | None:
-    """Rounded coefficients of a function's entry, in words, or None."""
+def of_coefficients(case: Case, engine: Array) -> Excuse | None:
+    """A function whose coefficients are the derived ones, rounded, in every entry; or None.
+
+    Where the digits of each cannot be told (a sum of rounded numbers), it is right to digits.
+    """
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None:
+        return None
+    remarks: list[str] = []
+    largest = 0.0
+    for entry in entries(case, engine):
+        if entry.agrees:
+            continue
+        found = _of_function(entry, derived, case)
+        if found is None:
+            return None
+        remarks += found[0]
+        largest = max(largest, found[1])
+    if not largest:
+        return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
+    said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
+    return Excuse("digits", (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)))
+
+
+def _of_function(
+    entry: AnswerEntry, derived: Derivation, case: Case
+) -> tuple[list[str], float] | None:
+    """Rounded coefficients of a function's entry, in words; else how far they are off, relative."""
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
     if not searchable(poly) or not len(poly):
         return None
     right = derived.tree(poly)
     words = joint_functions([right], names_for(derived, case.quantity.arguments))
-    return coefficients_rounded(entry, words, numbers_at(case))
+    both = _coefficients(entry, words, numbers_at(case))
+    if both is None:
+        return None
+    told = _all_rounded(*both)
+    if told is not None:
+        return told, 0.0
+    mine, theirs = both
+    known = np.abs(theirs) > TOLERANCES.no_share * np.max(np.abs(theirs))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        gap = float(np.max(np.abs(mine - theirs)[known] / np.abs(theirs)[known]))
+    stray = np.max(np.abs(mine[~known]), initial=0.0)
+    small = stray <= TOLERANCES.formula_agrees * np.max(np.abs(theirs))
+    return ([], gap) if small and gap <= CLOSE else None
 
 
 def of_data(text: Written, entry: AnswerEntry, derived: Derivation, case: Case) -> str | None:
