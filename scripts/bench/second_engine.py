@@ -6,8 +6,8 @@
 Parties, in processes of their own that take turns on the same states: that checkout's
 ``mass_matrix``, ``coriolis_matrix`` and ``potential_energy`` of (N, n); today's, one Pinocchio
 call after the other; and Pinocchio on all cores. Ratios are medians over the rounds of a party's
-time over that of the compiled engine, with quartiles. The rule: a second engine stays where it is 3 times faster
-than Pinocchio can be had, at every length of stack.
+time over that of the compiled engine, with quartiles. The rule: a second engine stays where it is
+3 times faster than Pinocchio can be had, at every length of stack.
 """
 
 from __future__ import annotations
