@@ -117,7 +117,7 @@ def ik(
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
-    history = truth(history, "history")
+    history = history is not False and truth(history, "history")
     if branch is not None:
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")

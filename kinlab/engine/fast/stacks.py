@@ -23,7 +23,7 @@ from kinlab.arrays import Array, truth
 from kinlab.engine import dynamics, kinematics
 from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
 from kinlab.engine.fast.arrays import chain
-from kinlab.engine.fast.threads import over_rows, thread_count
+from kinlab.engine.fast.threads import STATES_PER_THREAD, over_rows, thread_count
 from kinlab.engine.kinematics import (
     each_state,
     frame_jacobian,
@@ -231,4 +231,7 @@ def _in_parallel(call: Any, robot: Robot, *stacks: Array) -> Array:
 
 def _on_threads(function: Any, *arguments: Array) -> None:
     rows = len(arguments[-1])
-    over_rows(function, rows, *arguments, threads=thread_count(rows))
+    if rows < 2 * STATES_PER_THREAD:
+        function(*arguments, 0, rows)
+    else:
+        over_rows(function, rows, *arguments, threads=thread_count(rows))
