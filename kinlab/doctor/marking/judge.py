@@ -21,8 +21,9 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
+from kinlab.doctor.rounding import stand_ins
 from kinlab.doctor.terms import split_name
-from kinlab.doctor.verdicts import stand_ins, together
+from kinlab.doctor.verdicts import together
 from kinlab.doctor.written import Written
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
