@@ -443,7 +443,7 @@ def _stands_for(digits: str, value: float) -> bool:
     """Whether a number is another one, or that one rounded to its digits."""
     one = literal(digits.lstrip("-"))
     gap = abs((-one.value if digits.startswith("-") else one.value) - value)
-    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.half)
+    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.reach)
 
 
 def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:

@@ -23,7 +23,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.edits import Names
 from kinlab.doctor.search import pairs_adding_up
-from kinlab.doctor.written import Written
+from kinlab.doctor.written import Written, operands
 from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
 from kinlab.formulas.tree import Node
@@ -134,7 +134,7 @@ class Line:
         # children need their parent and the parent its value: values first
         place = _Place(node, above, role, self._value(node))
         self.places.append(place)
-        for k, child in enumerate(_children(node)):
+        for k, child in enumerate(operands(node)):
             self._place(child, place, k)
         return place
 
@@ -705,17 +705,6 @@ def brief(text: str) -> str:
 
 def _words(text: str) -> list[str]:
     return re.findall(r"[A-Za-z_]\w*", text)
-
-
-def _children(node: ast.expr) -> list[ast.expr]:
-    match node:
-        case ast.BinOp(left=left, right=right):
-            return [left, right]
-        case ast.UnaryOp(operand=operand):
-            return [operand]
-        case ast.Call(args=args):
-            return list(args)
-    return []
 
 
 def _is_sum(node: ast.expr) -> bool:

@@ -195,8 +195,7 @@ def _starts(space: TaskSpace, q: Array) -> Array:
     share *= rng.uniform(0.0, np.pi, (quarter, 1))
     swept = q + (share @ motions + rng.normal(scale=0.01, size=(quarter, robot.n))) * _unit(space)
     states[quarter : 2 * quarter] = wrap(robot, swept)
-    clipped: Array = np.clip(states, np.minimum(lower, q), np.maximum(upper, q))
-    return clipped
+    return np.clip(states, np.minimum(lower, q), np.maximum(upper, q))
 
 
 def _unit(space: TaskSpace) -> Array:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import fk, jacobian
@@ -54,6 +55,14 @@ class Axes:
             return slide
         velocity: Array = np.cross(self.direction[i], at - self.point[i])
         return velocity
+
+
+def frame_origins(robot: Robot, q: Array) -> Array:
+    """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    joints = [placement.translation for placement in list(data.oMi)[1:]]
+    return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])
 
 
 def meeting_point(axes: Axes, joints: tuple[int, ...]) -> Array | None:

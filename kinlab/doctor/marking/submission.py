@@ -107,7 +107,10 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     about = path.lstat()
     if stat.S_ISLNK(about.st_mode):
         raise FileError(f"{shown}: is a link; hand in the file itself")
-    text = read_text(path, limit=LARGEST)
+    try:
+        text = read_text(path, limit=LARGEST)
+    except FileError as problem:  # a student need not know where the class's folder is
+        raise FileError(str(problem).replace(str(path), shown, 1)) from None
     if "\x00" in text:
         raise FileError(f"{shown}: not text")
     suffix = path.suffix.lower()
