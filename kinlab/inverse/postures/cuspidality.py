@@ -30,7 +30,7 @@ from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
-from kinlab.inverse.postures.regional import Regional, first_axis, is_regional, singular_points
+from kinlab.inverse.postures.regional import Regional, is_regional, singular_points
 from kinlab.inverse.postures.roadmap import Roadmap
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -164,7 +164,7 @@ def _near_cusps(robot: Robot, rng: np.random.Generator) -> Array:
     """Joint positions beside the cusps of a 3R arm, where four solutions are near, (M, n)."""
     if not is_regional(robot):
         return np.empty((0, robot.n))
-    found = singular_points(Regional.of(robot, *first_axis(robot))).cusps
+    found = singular_points(Regional.of(robot)).cusps
     rows = np.repeat(found, _BESIDE, axis=0)
     rows = rows + rng.normal(scale=0.3, size=rows.shape)
     return np.concatenate([np.zeros((len(rows), 1)), rows], axis=1)

@@ -18,7 +18,6 @@ from kinlab.host.progress import takes_long
 from kinlab.inverse.postures.regional import (
     Regional,
     collapsed_points,
-    first_axis,
     is_regional,
     nodes,
     singular_points,
@@ -117,8 +116,7 @@ def solution_map(robot: ArmLike, *, cells: int = 160, angle: float = 0.0) -> Sol
 
 
 def _regional(robot: Robot, cells: int) -> SolutionMap:
-    origin, axis = first_axis(robot)
-    arm = Regional.of(robot, origin, axis)
+    arm = Regional.of(robot)
     segments = singular_segments(arm)
     curves = arm.points(segments.reshape(-1, 2)).reshape(-1, 2, 2)
     special = singular_points(arm)
@@ -126,9 +124,9 @@ def _regional(robot: Robot, cells: int) -> SolutionMap:
     low, high = _bounds(curves)
     low[0] = 0.0
     u, v, flat = _cells(low, high, cells)
-    across = np.linalg.svd(axis[np.newaxis])[2][1]
+    across = np.linalg.svd(arm.axis[np.newaxis])[2][1]
     poses = np.tile(np.eye(4), (len(flat), 1, 1))
-    poses[:, :3, 3] = origin + flat[:, :1] * across + flat[:, 1:] * axis
+    poses[:, :3, 3] = arm.origin + flat[:, :1] * across + flat[:, 1:] * arm.axis
     counts: SolutionCounts = solution_count(robot, poses)
     drawn = np.random.default_rng(0).uniform(-np.pi, np.pi, (_DRAWN, robot.n))
     tried: SolutionCounts = solution_count(robot, fk(robot, drawn))
