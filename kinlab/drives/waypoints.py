@@ -18,8 +18,8 @@ import numpy as np
 from kinlab.arrays import Array, number, real_array, shown
 from kinlab.drives.cycles import LIFT, TRAVEL, Path, superpose
 from kinlab.drives.laws import quintic_time
-from kinlab.drives.records import csv_rows
-from kinlab.errors import ExpressionError, OptionError, near
+from kinlab.drives.records import csv_rows, require_known
+from kinlab.errors import ExpressionError, OptionError
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml
 
@@ -257,10 +257,7 @@ def read_cycle(path: str | File, v_max: float | None = None, a_max: float | None
         }
     else:
         data = read_toml(text, place, OptionError)
-    keys = tuple(f.name for f in fields(Cycle))
-    for key in data:
-        if key not in keys:
-            raise OptionError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    require_known(data, (f.name for f in fields(Cycle)), place, OptionError)
     rows = data.get("points")
     if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
         raise OptionError(f"{place}: no [[points]] in it")
@@ -287,9 +284,7 @@ def _from_csv(row: Mapping[str, Any], place: str) -> dict[str, Any]:
 
 def _waypoint(row: Mapping[str, Any], place: str) -> Waypoint:
     keys = tuple(f.name for f in fields(Waypoint))
-    for key in row:
-        if key not in keys:
-            raise OptionError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    require_known(row, keys, place, OptionError)
     at = row.get("at")
     if not isinstance(at, list) or len(at) not in (2, 3):
         raise OptionError(f"{place}: at is {shown(at)}; write at = [x, y], m")

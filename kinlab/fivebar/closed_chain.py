@@ -10,9 +10,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shaped, shown
+from kinlab.arrays import Array, shaped
 from kinlab.errors import OptionError, SingularError, UnreachableError
-from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_mode
+from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_assembly, read_mode
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -126,12 +126,7 @@ class ClosedChain:
             UnreachableError: the rods cannot meet there; the message holds the gap that is left.
             OptionError: another assembly, or a guess of the other sign.
         """
-        if (
-            not isinstance(assembly, (int, np.integer))
-            or assembly not in (1, -1)
-            or assembly is True
-        ):
-            raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
+        read_assembly(assembly)
         name, data = self.linkage.name, self.model.createData()
         angles = shaped(theta, (2,), f"{name}: theta")
         q = np.zeros(4)

@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors
+from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both
 from kinlab.drives.gears import Gearbox, gears_of
 from kinlab.drives.motors import Motor, motors_of
 from kinlab.drives.waypoints import Cycle
@@ -96,8 +96,7 @@ def size_cycle(
             says where and when, and how far it must be moved.
         InertiaError: bars without mass, and ``massless`` not said. MotorError: a figure is missing.
     """
-    if gears is not None and gear_ratio is not None:
-        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
+    refuse_both(gears, gear_ratio)
     require_masses(linkage, massless)
     return _sized(
         linkage, cycle, _slower(cycle, time), motors_of(motors), gears, gear_ratio, mode, efficiency
@@ -192,11 +191,7 @@ def _sized(
         raise type(problem)(f"{problem}; {_shift(bare, path, mode)}") from None
     inertia = _load_inertia(bare, path, mode)
     duty = Duty.of_cycle(demand, inertia, efficiency)
-    fits = (
-        fit_motors(duty, motors, gear_ratio)
-        if gears is None
-        else fit_drives(duty, motors, gears_of(gears))
-    )
+    fits = fit_all(duty, motors, None if gears is None else gears_of(gears), gear_ratio)
     signs = int(mode[0]), int(mode[1])
     return CycleSizing(cycle, signs, slower, path, demand, inertia, fits)
 

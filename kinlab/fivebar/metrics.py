@@ -64,8 +64,7 @@ def sigma(linkage: FiveBar, pose: Pose) -> Array:
     jac = rate_matrix(linkage, pose)
     a, b, c, d = jac[:, 0, 0], jac[:, 0, 1], jac[:, 1, 0], jac[:, 1, 1]
     rotation, mirror = np.hypot(a + d, b - c), np.hypot(a - d, b + c)
-    both: Array = 0.5 * np.stack([rotation + mirror, np.abs(rotation - mirror)], axis=1)
-    return both
+    return 0.5 * np.stack([rotation + mirror, np.abs(rotation - mirror)], axis=1)
 
 
 def condition_number(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, real_array
 from kinlab.errors import OptionError, StructureError
-from kinlab.fivebar.arguments import HANGING, Mask, Mode, read_mode, read_points
+from kinlab.fivebar.arguments import HANGING, Mask, Mode, read_assembly, read_mode, read_points
 from kinlab.fivebar.geometry import grid, solve_pose
 from kinlab.fivebar.metrics import condition_number
 from kinlab.fivebar.singularity import Circle, type_one, type_two_of_mode
@@ -118,8 +118,7 @@ def free_region(linkage: FiveBar, mode: Mode = HANGING, assembly: int = 1) -> Fr
         OptionError: a mode or assembly that does not exist.
     """
     signs = read_mode(mode)
-    if assembly not in (1, -1):
-        raise OptionError(f"assembly {assembly!r} does not exist; choose +1 or -1")
+    read_assembly(assembly)
     both = (int(signs[0]), int(signs[1]))
     return FreeRegion(linkage, both, assembly, type_one(linkage), type_two_of_mode(linkage, mode))
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.structure.task_space import TaskSpace
+from kinlab.analysis.structure.task_space import TaskSpace, mask_of
 from kinlab.arrays import Array, between
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import SingularError, UnreachableError
@@ -35,7 +35,7 @@ def follow(
     seed: int,
 ) -> Array:
     """Joint positions at the times, (N, n), on one branch and clear of singularities."""
-    mask = [row in space.rows for row in range(6)]
+    mask = mask_of(space.rows)
     near = TOLERANCES.follows
     begin = ik(robot, goals[0], q0, "lm", near, near, seed, task=mask)
     if not begin.success:
@@ -62,7 +62,7 @@ def _on_one_branch(
     robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, seed: int
 ) -> Array:
     """:func:`kinlab.ik_path` from q on, some rows at a time, up to the first that ends the way."""
-    mask = [row in space.rows for row in range(6)]
+    mask = mask_of(space.rows)
     rows = [q[np.newaxis]]
     near = TOLERANCES.follows
     for first in range(0, len(goals), _ROWS):
@@ -80,7 +80,13 @@ def _on_one_branch(
 
 
 def _refuse_row(
-    robot: Robot, times: Array, goals: Array, found: IKPath, bad: int, first: int, mask: list[bool]
+    robot: Robot,
+    times: Array,
+    goals: Array,
+    found: IKPath,
+    bad: int,
+    first: int,
+    mask: tuple[bool, ...],
 ) -> None:
     """Says why a row of a path cannot be had: another branch, or out of reach."""
     row = first + bad
@@ -146,8 +152,7 @@ def _with_spare_joints(
 
 def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
     rows = list(space.rows)
-    out: Array = np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
-    return out
+    return np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
 
 
 # -------- What is said where a way cannot be had

@@ -276,8 +276,7 @@ def _by_curvature(
     value -= 1e-13 * (
         np.abs(constant) + np.einsum("nk,nk->n", np.abs(multiplier), np.abs(over.value))
     )
-    out: Array = np.sqrt(np.where(convex, np.maximum(value, 0.0), 0.0)) * (1.0 - 1e-12)
-    return out
+    return np.sqrt(np.where(convex, np.maximum(value, 0.0), 0.0)) * (1.0 - 1e-12)
 
 
 def _truncated_inverse(gradient: Array, rank: int) -> Array:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from kinlab import symbolic
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
-from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
+from kinlab.analysis.structure.task_space import TaskSpace, mask_of, read_task, search_box, wrap
 from kinlab.arrays import Array, between, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -180,8 +180,7 @@ def _meaning(
     inside = between(found, lower, upper).all(axis=1)
     # zeros outside the limits show the meaning where there are none inside
     zeros = [*found[inside], *found[~inside]][:_EXAMPLES]
-    mask = tuple(i in space.rows for i in range(6))
-    examples = [describe_singularity(robot, q, mask) for q in zeros]
+    examples = [describe_singularity(robot, q, mask_of(space.rows)) for q in zeros]
     meaning = "/".join(sorted({e.kind for e in examples})) or "never zero"
     names = tuple(
         name

@@ -22,10 +22,14 @@ from kinlab.analysis.singularities.certified import nearest_zero
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, revolute
+from kinlab.analysis.structure.task_space import (
+    TaskSpace,
+    mask_of,
+    one_state,
+    read_reachable_task,
+    revolute,
+)
 from kinlab.arrays import Array, between, seed_of, whole
-from kinlab.engine.states import joint_vector
-from kinlab.errors import OptionError
 from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
@@ -103,9 +107,7 @@ def nearest_singularity(
     robot = as_robot(robot)
     boxes, points, seed = whole(boxes, "boxes"), whole(points, "points"), seed_of(seed)
     space = read_reachable_task(robot, task)
-    here = joint_vector(robot, q, "q")
-    if here.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {here.shape}; give one state")
+    here = one_state(robot, q)
     sigma = singular_values(space.jacobian(here, space.scale))
     parts = factors(space)
     if parts is None:
@@ -115,7 +117,7 @@ def nearest_singularity(
     distance = np.inf if state is None else float(np.linalg.norm(state - here))
     bound = float(np.clip(bound, 0.0, distance))
     meets = bool(bound >= distance - 2.0 * TOLERANCES.distance_gap)
-    found = None if state is None else describe_singularity(robot, state, space_mask(space.rows))
+    found = None if state is None else describe_singularity(robot, state, mask_of(space.rows))
     return NearestSingularity(
         distance,
         bound,
@@ -231,11 +233,6 @@ def slope_bound(space: TaskSpace) -> float:
         for j in range(robot.n)
     ]
     return float(np.sqrt(sum(slope)))
-
-
-def space_mask(rows: tuple[int, ...]) -> tuple[bool, ...]:
-    """The mask of six booleans of these rows."""
-    return tuple(i in rows for i in range(6))
 
 
 def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120) -> Array:

@@ -326,5 +326,4 @@ def _all_singular(space: TaskSpace, states: Array) -> bool:
 
 def _ratio(space: TaskSpace, states: Array) -> Array:
     sigma = space.sigma(states)
-    ratio: Array = sigma[:, -1] / np.maximum(sigma[:, 0], 1e-300)
-    return ratio
+    return sigma[:, -1] / np.maximum(sigma[:, 0], 1e-300)

@@ -356,8 +356,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
 def _columns(poses: Array, axis: NDArray[np.intp]) -> Array:
     """Column axis[p] of the rotation of each pose (N, P, 4, 4), (N, P, 3)."""
     index = axis[None, :, None, None]
-    out: Array = np.take_along_axis(poses[..., :3, :3], index, axis=-1)[..., 0]
-    return out
+    return np.take_along_axis(poses[..., :3, :3], index, axis=-1)[..., 0]
 
 
 def _in_order(chain: Chain, columns: Sequence[int]) -> list[tuple[int, int]]:

@@ -142,8 +142,7 @@ def frames(chain: Chain, q: Array) -> Array:
 
 def tool_poses(chain: Chain, q: Array) -> Array:
     """Tool poses, (N, 4, 4)."""
-    out: Array = frames(chain, q)[:, -1]
-    return out
+    return frames(chain, q)[:, -1]
 
 
 def stacked_frames(chains: Sequence[Chain], q: Array) -> Array:
