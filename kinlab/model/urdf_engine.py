@@ -47,11 +47,11 @@ def document(tree: UrdfTree, chain: Collection[str]) -> Any:
         etree.SubElement(element, "child", link=joint.child)
         write_origin(element, joint.placement[:3, 3], joint.rpy)
         if moves:
-            etree.SubElement(element, "axis", xyz=numbers(joint.axis))
+            etree.SubElement(element, "axis", xyz=joined(joint.axis))
             _write_amounts(element, "limit", joint, ("effort", "velocity", "lower", "upper"))
             if joint.damping or joint.friction:
                 _write_amounts(element, "dynamics", joint, ("damping", "friction"))
-    extension = etree.SubElement(root, EXTENSION, gravity=numbers(tree.gravity))
+    extension = etree.SubElement(root, EXTENSION, gravity=joined(tree.gravity))
     if tree.unphysical:
         extension.set("unphysical", "true")
     for name, armature in tree.armature.items():
@@ -63,7 +63,7 @@ def write_origin(element: Any, xyz: Array, rpy: Array) -> None:
     """Adds an ``<origin>`` to an lxml element."""
     from lxml import etree
 
-    etree.SubElement(element, "origin", xyz=numbers(xyz), rpy=numbers(rpy))
+    etree.SubElement(element, "origin", xyz=joined(xyz), rpy=joined(rpy))
 
 
 def write_inertial(link: Any, inertial: Inertial) -> None:
@@ -83,7 +83,7 @@ def _write_amounts(element: Any, tag: str, joint: JointRecord, names: tuple[str,
     etree.SubElement(element, tag, {name: _digits(getattr(joint, name)) for name in names})
 
 
-def numbers(values: Array) -> str:
+def joined(values: Array) -> str:
     """Numbers as they stand in an attribute."""
     return " ".join(map(_digits, values))
 

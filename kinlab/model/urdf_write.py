@@ -11,7 +11,7 @@ from kinlab.arrays import Array
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.rotations import matrices_rpy
-from kinlab.model.urdf_engine import document, numbers, write_origin
+from kinlab.model.urdf_engine import document, joined, write_origin
 from kinlab.model.urdf_records import (
     Inertial,
     JointRecord,
@@ -263,7 +263,7 @@ def text_of(table: DHTable, tree: UrdfTree) -> str:
             visual = etree.SubElement(links[f"link_{i}" if i else BASE_LINK], "visual")
             geometry = etree.SubElement(visual, "geometry")
             if shape.box is not None:
-                etree.SubElement(geometry, "box", size=numbers(np.array(shape.box)))
+                etree.SubElement(geometry, "box", size=joined(np.array(shape.box)))
             else:
                 sizes = {"radius": repr(shape.radius), "length": repr(shape.length)}
                 etree.SubElement(geometry, "cylinder", sizes)

@@ -196,7 +196,7 @@ class _Key:
 
     def __init__(self, robot: Robot, file: FormulaFile) -> None:
         self.robot, self.file = robot, file
-        self.texts = (id(robot), *file.texts.items(), *file.symbol_texts.items())
+        self.texts = (id(robot), *file.as_typed.items(), *file.symbol_texts.items())
 
     def __hash__(self) -> int:
         return hash(self.texts)
@@ -272,7 +272,7 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
     places, formulas = _places(found, best, file, robot)
     answer: list[str] = []
     if best is not None:
-        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
+        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.shown.items())]
     return Outcome(
         question.id,
         WRONG,
