@@ -17,7 +17,7 @@ from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import need_function, relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import terms, verdicts
+from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
@@ -252,8 +252,8 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
     odd = verdicts.unusual(case, engine)
     if odd is not None:
         return odd
-    for found in verdicts.roundings(case, engine, not written):
-        return found
+    for said_of_all in rounding.roundings(case, engine, not written):
+        return Excuse("rounded", said_of_all)
     off = [entry for entry in entries(case, engine) if not entry.agrees]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
@@ -262,7 +262,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
         text = written.get(entry.label)
         if text is not None:
             at = verdicts.numbers_at(case)
-            changed = verdicts.stand_ins(text, at, entry.engine, entry.scale)
+            changed = rounding.stand_ins(text, at, entry.engine, entry.scale)
             if changed is None and derived is not None:
                 said = verdicts.of_data(text, entry, derived, case)
                 if said is None:
@@ -271,7 +271,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
                 continue
             if changed is None:
                 return None
-            remarks += [*text.rounded, *verdicts.rounding_remarks(changed, at)]
+            remarks += [*text.rounded, *rounding.rounding_remarks(changed, at)]
             continue
         if written or derived is None:
             return None
@@ -439,6 +439,7 @@ def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
         max(s.error for s in slips),
         sum(s.cost for s in slips),
         {s.entry: s.corrected for s in slips if s.corrected},
+        {s.entry: s.typed for s in slips if s.typed},
     )
 
 

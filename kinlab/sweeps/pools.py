@@ -92,7 +92,7 @@ def spread(
     Raises:
         SweepError: workers died several times without finishing a chunk, or the caller's
             executor broke.
-        Exception: what the measure raised.
+        Exception: what the measure raised, of the first run of which it did.
     """
     waiting = deque(runs)
     running: dict[Future[Columns], Run] = {}
@@ -114,6 +114,11 @@ def spread(
                 except BrokenExecutor:
                     broken = True
                     waiting.appendleft(run)
+                except Exception as error:
+                    # whichever worker is faster: the error of the first run that has one
+                    earlier = [f for f in sorted(flying, key=flying.__getitem__) if flying[f] < run]
+                    told = [e for f in earlier if (e := f.exception()) is not None]
+                    raise next((e for e in told if not isinstance(e, BrokenExecutor)), error)
                 else:
                     crashes = 0
                     yield run, columns

@@ -65,6 +65,14 @@ def frame_origins(robot: Robot, q: Array) -> Array:
     return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])
 
 
+def first_axis(robot: Robot) -> tuple[Array, Array]:
+    """A point of the first axis, nearest to the base's origin, and its direction, (3,) each."""
+    axes = Axes.at(robot, np.zeros(robot.n))
+    axis, origin = axes.direction[0], axes.point[0]
+    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
+    return origin - axis * float(origin @ axis), axis
+
+
 def meeting_point(axes: Axes, joints: tuple[int, ...]) -> Array | None:
     """The point where these revolute axes meet, (3,), or ``None``."""
     chosen = list(joints)

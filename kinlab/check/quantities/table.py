@@ -22,11 +22,12 @@ def yourdfpy_pose(robot: Robot, q: Any) -> Array:
     import io
 
     import yourdfpy
+    from lxml import etree
 
     place = f"robot {robot.name!r}"
     tree = read_tree(urdf_read.parse(robot.urdf, place), place)
-    text = document(tree, list(robot.joint_names))
-    urdf = yourdfpy.URDF.load(io.BytesIO(text.encode()), load_meshes=False, build_scene_graph=True)
+    text = etree.tostring(document(tree, robot.joint_names))
+    urdf = yourdfpy.URDF.load(io.BytesIO(text), load_meshes=False, build_scene_graph=True)
     mine = list(urdf.actuated_joint_names)
     rest = np.zeros(len(mine))
     poses = []
