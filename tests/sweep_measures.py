@@ -56,3 +56,9 @@ def slow(_, q):
 def raises(_, q):
     """Fails like a wrong formula does."""
     raise ZeroDivisionError("in the measure")
+
+
+def raises_late(_, q):
+    """A long block fails after a second, a short one at once."""
+    time.sleep(len(q) // 4096)
+    raise ZeroDivisionError(f"block of {len(q)}")

@@ -43,7 +43,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.structure.task_space import TaskSpace, read_length, read_task
+from kinlab.analysis.structure.task_space import TaskSpace, one_state, read_length, read_task
 from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
@@ -108,8 +108,7 @@ def singular_values(jacobians: ArrayLike) -> Array:
         raise OptionError(f"Jacobian: shape {matrix.shape}; expected (..., m, n)")
     values = np.linalg.svd(matrix, compute_uv=False)
     missing = matrix.shape[-2] - values.shape[-1]
-    padded: Array = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, max(missing, 0))])
-    return padded
+    return np.pad(values, [(0, 0)] * (values.ndim - 1) + [(0, max(missing, 0))])
 
 
 def condition_number(sigma: Array) -> Array:
@@ -202,8 +201,7 @@ def read_kind(kind: Any) -> Callable[[Array], Array]:
 def weighted(matrix: Array, mass: Array) -> Array:
     """J L^-T with M = L L^T, whose singular values squared are 1 / eigenvalues of Lambda."""
     lower = np.linalg.cholesky(mass)
-    half: Array = np.swapaxes(np.linalg.solve(lower, np.swapaxes(matrix, -1, -2)), -1, -2)
-    return half
+    return np.swapaxes(np.linalg.solve(lower, np.swapaxes(matrix, -1, -2)), -1, -2)
 
 
 @dataclass(frozen=True, repr=False)
@@ -258,9 +256,7 @@ def dexterity(robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float = 
     """
     robot = as_robot(robot)
     space, size = read_task(robot, task), read_length(length)
-    state = joint_vector(robot, q, "q")
-    if state.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    state = one_state(robot, q)
     sigma = singular_values(space.jacobian(state, size))
     numbers = {name: float(KINDS[name](sigma)) for name in KINDS if name != "asada"}
     rank = int(np.sum(regular(sigma)))
@@ -333,9 +329,7 @@ def characteristic_length(
     """
     robot = as_robot(robot)
     space = read_task(robot, task)
-    state = joint_vector(robot, q, "q")
-    if state.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    state = one_state(robot, q)
     given = read_length_choice(length)
     if not space.mixed:
         return CharacteristicLength(None, _condition(space, state, 1.0), space.name, "none needed")
@@ -447,9 +441,7 @@ def ellipsoid(
     robot = as_robot(robot)
     kind = word(kind, ELLIPSOIDS, "ellipsoid")
     space, size = read_task(robot, task), read_length(length)
-    state = joint_vector(robot, q, "q")
-    if state.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    state = one_state(robot, q)
     matrix = space.jacobian(state, size)
     if kind == "dynamic":
         require_inertia(robot)

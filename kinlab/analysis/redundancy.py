@@ -16,10 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import regular
-from kinlab.analysis.structure.task_space import read_task
+from kinlab.analysis.structure.task_space import one_state, read_task
 from kinlab.arrays import Array, frozen
-from kinlab.engine.states import joint_vector
-from kinlab.errors import OptionError
 from kinlab.host.evidence import Evidence
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.tolerances import TOLERANCES
@@ -60,9 +58,7 @@ def redundancy(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Redundancy:
     """
     robot = as_robot(robot)
     space = read_task(robot, task)
-    state = joint_vector(robot, q, "q")
-    if state.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    state = one_state(robot, q)
     left, sigma, right = np.linalg.svd(space.jacobian(state))
     rank = int(np.sum(regular(sigma)))
     inverse = None

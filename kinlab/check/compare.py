@@ -183,8 +183,7 @@ def relative_errors(hand: Array, engine: Array, scale: float = 0.0) -> Array:
         (N,).
     """
     gap = np.max(np.abs((hand - engine).reshape(len(engine), -1)), axis=1, initial=0.0)
-    errors: Array = np.where(np.isfinite(gap), gap, np.inf) / error_sizes(engine, scale)
-    return errors
+    return np.where(np.isfinite(gap), gap, np.inf) / error_sizes(engine, scale)
 
 
 def error_sizes(engine: Array, scale: float = 0.0) -> Array:
@@ -229,5 +228,4 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
             f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
             f"shape {engine.shape[1:]} ({quantity.about}){meant and '; '}{meant}"
         )
-    result: Array = values.astype(float)
-    return result
+    return values.astype(float)

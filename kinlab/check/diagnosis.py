@@ -62,6 +62,7 @@ class Cause:
             finite differences of a function leave (1e-5).
         cost: how far-fetched it is; causes are ranked by it.
         corrected: the right formulas by entry, where they are known.
+        typed: those of them that their writer would type in another way: as LaTeX, MATLAB, ...
     """
 
     sentence: str
@@ -70,6 +71,12 @@ class Cause:
     error_after: float
     cost: float
     corrected: dict[str, str] = field(default_factory=dict)
+    typed: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def shown(self) -> dict[str, str]:
+        """The right formulas by entry, as their writer would type them."""
+        return {**self.corrected, **self.typed}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -217,7 +224,7 @@ class Diagnosis(Answer):
             lines = [best.sentence, errors]
             lines += [
                 _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}")
-                for name, text in best.corrected.items()
+                for name, text in best.shown.items()
             ]
             lines += [_("or: {slip}").format(slip=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
@@ -258,7 +265,7 @@ class Diagnosis(Answer):
                     "kinds": list(c.kinds),
                     "places": list(c.places),
                     "error_after": _finite(c.error_after),
-                    "corrected": c.corrected,
+                    "corrected": c.shown,
                 }
                 for c in self.causes
             ],

@@ -6,7 +6,6 @@ module                 what it holds
 ``against``            ``kinlab check mine.toml --against other``: which cell of a DH table is
                        wrong?
 ``analysis``           Commands about dexterity: singular, isotropy, workspace
-``analysis_pictures``  Pictures of the commands about dexterity
 ``analysis_tables``    What the commands about dexterity print
 ``check``              The command check: hand formulas beside the engine
 ``derive``             The command derive: an arm's formulas, derived from its DH table
@@ -19,7 +18,7 @@ module                 what it holds
 ``view``               Command view: a robot or five-bar in the browser, or as one HTML file
 =====================  ===========================================================================
 
-One file per group of commands; a new command is a new file and one line in ``_GROUPS``. A
+One file per group of commands, which its ``COMMANDS`` names; a new file is a word in ``_GROUPS``. A
 :class:`kinlab.errors.KinlabError` becomes one line on stderr and exit code 2.
 """
 
@@ -45,17 +44,7 @@ from kinlab.cli.screen import complain
 from kinlab.errors import KinlabError, KinlabWarning
 from kinlab.host.language import LANGUAGES, _, all_speaking
 
-_GROUPS = (
-    robots,
-    check,
-    mark,
-    derive,
-    ik,
-    motion,
-    analysis,
-    fivebar,
-    view,
-)
+_GROUPS = (robots, check, mark, derive, ik, motion, analysis, view)
 
 _OLDER = {"tip": "tool"}
 """What options were called before, which is still understood."""
@@ -157,7 +146,9 @@ def _root(lang: LANG = None) -> None:
 
 
 for _group in _GROUPS:
-    _group.register(app)
+    for _name, _command in _group.COMMANDS.items():
+        app.command(_name)(_command)
+app.add_typer(fivebar.GROUP, name="fivebar")
 _offer_languages(app)
 
 

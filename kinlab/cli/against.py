@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from kinlab.host.language import _
+from kinlab.cli.screen import wrote
 
 
 def check_against(
@@ -42,7 +42,7 @@ def check_against(
             typer.echo(("\n" if k else "") + str(one))
     for file in report:
         write_table_report(file, found)
-        typer.echo(_("wrote {file}").format(file=file), err=json)
+        wrote(file, err=json)
     if not all(one.agrees for one in found):
         raise typer.Exit(1)
 

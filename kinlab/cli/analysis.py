@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from kinlab.cli import analysis_pictures as pictures
 from kinlab.cli import analysis_tables as tables
 from kinlab.cli.robots import NAME, TOOL
-from kinlab.cli.screen import screen
+from kinlab.cli.screen import screen, wrote
 from kinlab.host.language import _
 
 if TYPE_CHECKING:
+    from kinlab.analysis.isotropy.configurations import IsotropySearch
     from kinlab.model.robot import Robot
 
 TASK = Annotated[
@@ -27,13 +27,6 @@ PICTURE = Annotated[
     Path | None, typer.Option("--output", "-o", help="Write a picture (.png, .svg, .pdf).")
 ]
 SEED = Annotated[int, typer.Option("--seed", help="Seed of the search.")]
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the commands of this file."""
-    app.command("singular")(singular)
-    app.command("isotropy")(isotropy)
-    app.command("workspace")(workspace)
 
 
 def singular(
@@ -69,18 +62,14 @@ def singular(
     ).format(
         starts=effort.seeds, converged=effort.converged, last=effort.last_new, seed=effort.seed
     )
-    console.print(
-        f"{told}\n{search.evidence}",
-        style="dim",
-        highlight=False,
-    )
+    console.dim(f"{told}\n{search.evidence}")
     if state is not None:
         near = nearest_singularity(robot, state, chosen, seed=seed)
         console.print(tables.nearest(near), highlight=False)
-        console.print(str(near.evidence), style="dim", highlight=False)
+        console.dim(near.evidence)
     if output is not None:
-        pictures.singular(robot, chosen, slice_, seed, output)
-        console.print(_("wrote {file}").format(file=output), highlight=False)
+        _draw_curves(robot, chosen, slice_, seed, output)
+        wrote(output)
 
 
 def isotropy(
@@ -110,8 +99,8 @@ def isotropy(
     console.print(tables.headline(robot, search.task, search.suggested), highlight=False)
     tables.print_isotropy(console, robot, search)
     if output is not None:
-        pictures.isotropy(robot, search, output)
-        console.print(_("wrote {file}").format(file=output), highlight=False)
+        _draw_isotropy(robot, search, output)
+        wrote(output)
 
 
 def workspace(
@@ -168,13 +157,17 @@ def workspace(
     if not len(chart.values):
         return
     console.print(tables.workspace_table(chart))
-    console.print(str(chart.evidence), style="dim", highlight=False)
+    console.dim(chart.evidence)
     if save is not None:
         chart.save(save)
-        console.print(_("wrote {file}").format(file=save), highlight=False)
+        wrote(save)
     if output is not None:
-        pictures.workspace(robot, chart, plane, cloud, output)
-        console.print(_("wrote {file}").format(file=output), highlight=False)
+        from kinlab.plots import maps
+        from kinlab.plots.canvas import save as save_picture
+
+        drawn = maps.workspace_cloud(chart) if cloud else maps.workspace(robot, chart, plane=plane)
+        save_picture(drawn, output)
+        wrote(output)
 
 
 def _solutions(robot: Robot, output: Path | None) -> None:
@@ -196,10 +189,43 @@ def _solutions(robot: Robot, output: Path | None) -> None:
             x, y = chart.labels
             shown = told.format(x=x, one=f"{one:.6g}", y=y, two=f"{two:.6g}")
             console.print(shown, highlight=False)
-    console.print(str(chart.evidence), style="dim", highlight=False)
+    console.dim(chart.evidence)
     if output is not None:
-        pictures.solutions(chart, output)
-        console.print(_("wrote {file}").format(file=output), highlight=False)
+        from kinlab.plots import counts
+        from kinlab.plots.canvas import save
+
+        save(counts.solutions(chart), output)
+        wrote(output)
+
+
+def _draw_curves(robot: Robot, task: Any, joints: str | None, seed: int, path: Path) -> None:
+    """Singular curves in a slice of joint space."""
+    from kinlab.errors import OptionError
+    from kinlab.plots.canvas import save
+    from kinlab.plots.curves import singular_loci
+
+    chosen = None
+    if joints is not None:
+        try:
+            chosen = [int(part) - 1 for part in joints.split(",")]
+        except ValueError:
+            raise OptionError(f"--slice {joints!r}; give joint numbers, as 2,3") from None
+    save(singular_loci(robot, joints=chosen, task=task, seed=seed), path)
+
+
+def _draw_isotropy(robot: Robot, search: IsotropySearch, path: Path) -> None:
+    """The best conditioned pose with its ellipses, or where a spatial arm is well conditioned."""
+    from kinlab.analysis.structure.task_space import TaskSpace, mask_of
+    from kinlab.plots.arms import ellipses
+    from kinlab.plots.canvas import save
+    from kinlab.plots.maps import workspace_map
+    from kinlab.sweeps.workspace import sample_workspace, stays_in_plane
+
+    if stays_in_plane(TaskSpace(robot, (0, 1), "xy")):
+        save(ellipses(robot, search.best_q), path)
+        return
+    task, length = mask_of(search.rows), search.best_length or 1.0
+    save(workspace_map(sample_workspace(robot, task, samples=20_000, length=length)), path)
 
 
 def _task(text: str) -> Any:
@@ -226,3 +252,6 @@ def _numbers(text: str, count: int, option: str) -> list[float]:
     if len(values) != count:
         raise OptionError(f"{option} has {len(values)} numbers; the robot has {count} joints")
     return values
+
+
+COMMANDS = {"singular": singular, "isotropy": isotropy, "workspace": workspace}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kinlab.cli.screen import styled
+from kinlab.cli.screen import plain_table, styled
 from kinlab.host.language import _
 
 if TYPE_CHECKING:
@@ -36,17 +36,8 @@ def print_determinant(console: Any, robot: Robot, task: Any) -> None:
 
 
 def families(search: SingularitySearch) -> Any:
-    from rich.table import Table
-
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in (
-        _("class"),
-        _("condition"),
-        _("rank"),
-        _("lost direction (at one q)"),
-        _("joints that cancel"),
-    ):
-        table.add_column(title, overflow="fold")
+    heads = _("class"), _("condition"), _("rank"), _("lost direction (at one q)")
+    table = plain_table(*heads, _("joints that cancel"))
     for family in search.families:
         if family.pinned:
             pairs = zip(family.deciding, family.pinned, strict=True)
@@ -87,8 +78,6 @@ def nearest(near: NearestSingularity) -> str:
 def print_designs(
     console: Any, robot: Robot, free: str, task: Any, length: float | str, seeds: int, seed: int
 ) -> Robot | None:
-    from rich.table import Table
-
     from kinlab.analysis.isotropy.design import design_isotropic
     from kinlab.model.robot import Robot
 
@@ -99,9 +88,8 @@ def print_designs(
         best = f"{found.best_condition:.6g}"
         console.print(told.format(best=best, starts=found.seeds), highlight=False)
         return None
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in [*names, _("condition - 1"), _("family")]:
-        table.add_column(title, justify="right")
+    heads = [*names, _("condition - 1"), _("family")]
+    table = plain_table(*heads, right=tuple(range(len(heads))))
     for design in found:
         numbers = [f"{value:.9g}" for value in design.values.values()]
         table.add_row(
@@ -116,8 +104,6 @@ def print_designs(
 
 
 def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
-    from rich.table import Table
-
     sizes = {"given": _("given"), "optimal": _("solved for"), "none needed": _("none needed")}
     size = sizes[search.length]
     if not search.found:
@@ -134,15 +120,10 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
         console.print(told, highlight=False)
         shares = {"low": f"{low:.6g}", "middle": f"{middle:.6g}", "high": f"{high:.6g}"}
         told = _("local minima: 5 % {low}, 50 % {middle}, 95 % {high}").format(**shares)
-        console.print(
-            f"{told}\n{search.evidence}",
-            style="dim",
-            highlight=False,
-        )
+        console.dim(f"{told}\n{search.evidence}")
         return
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in (_("q (deg or m)"), _("condition - 1"), _("length (m)"), _("free joints")):
-        table.add_column(title)
+    heads = _("q (deg or m)"), _("condition - 1"), _("length (m)"), _("free joints")
+    table = plain_table(*heads)
     for found in search:
         length = "-" if found.length is None else f"{found.length:.6g}"
         table.add_row(
@@ -153,11 +134,8 @@ def print_isotropy(console: Any, robot: Robot, search: IsotropySearch) -> None:
         )
     console.print(table)
     told = _("characteristic length: {size}; {converged} of {starts} starts (seed {seed})")
-    console.print(
-        told.format(size=size, converged=search.converged, starts=search.seeds, seed=search.seed),
-        style="dim",
-        highlight=False,
-    )
+    numbers = {"converged": search.converged, "starts": search.seeds, "seed": search.seed}
+    console.dim(told.format(size=size, **numbers))
 
 
 def _degrees(robot: Robot, q: Any) -> str:
@@ -172,11 +150,8 @@ def _degrees(robot: Robot, q: Any) -> str:
 
 def workspace_table(chart: WorkspaceMap) -> Any:
     import numpy as np
-    from rich.table import Table
 
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for title in ("", _("from"), _("to")):
-        table.add_column(title, justify="right" if title else "left")
+    table = plain_table("", _("from"), _("to"), right=(1, 2))
     for name, column in zip("xyz", chart.points.T, strict=True):
         table.add_row(f"{name} (m)", f"{column.min():.4f}", f"{column.max():.4f}")
     radius = np.linalg.norm(chart.points[:, :2], axis=1)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from kinlab.check.together import ENOUGH, Helpers
 from kinlab.cli.robots import TOOL
-from kinlab.cli.screen import Screen, complain, echo, screen, styled, visible
+from kinlab.cli.screen import Screen, complain, echo, plain_table, screen, styled, visible, wrote
 from kinlab.errors import KinlabError, OptionError
 from kinlab.host.language import N_, _
 from kinlab.host.progress import progress
@@ -72,11 +72,6 @@ _COLUMNS = (
     N_("printed"),
     N_("verdict"),
 )
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("check")(check)
 
 
 def check(
@@ -143,7 +138,7 @@ def check(
         echo(line, err=json)
     for file in report or ():
         write_report(file, found.rows, found.judged, found.unread, compact=compact)
-        echo(_("wrote {file}").format(file=file), err=json)
+        wrote(file, err=json)
     for missed in found.unread:
         told = _("not judged: {what}: {reason}").format(what=missed.what, reason=missed.reason)
         complain(KinlabError(told))
@@ -219,16 +214,16 @@ def _formula_files(what: list[str], samples: int, seed: int, found: _Found) -> l
     rest = []
     for path in what:
         try:
-            document = formula_document(path)
+            lines = formula_document(path)
         except KinlabError as problem:
             found.unread.append(Unread(path, problem))
             continue
-        if document is None:
+        if lines is None:
             rest.append(path)
             continue
         from kinlab.doctor.report import of_document
 
-        judged, unread = of_document(document, path, samples, seed)
+        judged, unread = of_document(lines.document, path, samples, seed, lines.problems)
         found.judged += judged
         found.unread += unread
     return rest
@@ -296,18 +291,15 @@ def _print_all(found: _Found, each: bool) -> None:
 
 
 def _print_table(done: Sequence[Row], each: bool) -> None:
-    from rich.table import Table
-
     from kinlab.check.report.summary import Group, grouped, size
 
     console = screen()
     if not console.is_terminal:
         console = screen(width=160)
     groups = [Group(row.formula, (row,)) for row in done] if each else grouped(done)
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for name in _COLUMNS:
-        justify: Literal["left", "right"] = "right" if name in ("error", "printed") else "left"
-        table.add_column(_(name), justify=justify, no_wrap=name not in ("what", "verdict"))
+    table = plain_table(*map(_, _COLUMNS), right=(3, 4))
+    for k in (0, 2, 3, 4):
+        table.columns[k].no_wrap = True
     for group in groups:
         style = "" if group.ok else "bold red"
         shown = group.ok and group.printed_error is not None
@@ -346,7 +338,7 @@ def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
         before, after = size(found.error_before), size(found.error_after)
         told = _("relative error before {before}, after {after}")
         line("  " + told.format(before=before, after=after))
-        for name, text in found.causes[0].corrected.items():
+        for name, text in found.causes[0].shown.items():
             line("  " + _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}"))
     for text in found.others:
         line("  " + _("or: {slip}").format(slip=text))
@@ -370,13 +362,12 @@ def _print_closing(console: Screen, done: Sequence[Row], formulas: int) -> None:
 
 
 def _list_quantities() -> None:
-    from rich.table import Table
-
     from kinlab.check.quantities.registry import quantities
 
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for name in (_("quantity"), _("arguments"), _("about")):
-        table.add_column(name)
+    table = plain_table(_("quantity"), _("arguments"), _("about"))
     for one in quantities().values():
         table.add_row(one.name, ", ".join(one.arguments), _(one.about))
     screen().print(table)
+
+
+COMMANDS = {"check": check}

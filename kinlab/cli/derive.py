@@ -8,19 +8,13 @@ from typing import Annotated
 import typer
 
 from kinlab.cli.robots import TOOL
-from kinlab.cli.screen import echo
-from kinlab.host.language import _
+from kinlab.cli.screen import echo, wrote
 
 ROBOT = Annotated[str, typer.Argument(help="A name from `kinlab list`, or a .toml/.csv file.")]
 WHAT = Annotated[str, typer.Option("--what", help="fk, J, det, M, C, g, tau, D, T or V.")]
 FORMAT = Annotated[str, typer.Option("--format", help="text, latex or python.")]
 NUMBERS = Annotated[bool, typer.Option("--numbers", help="Keep the table's numbers.")]
 OUTPUT = Annotated[Path | None, typer.Option("--output", "-o", help="Write to this file.")]
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("derive")(derive)
 
 
 def derive(
@@ -40,4 +34,7 @@ def derive(
         echo(text)
     else:
         write_text(output, text + "\n")
-        echo(_("wrote {file}").format(file=output))
+        wrote(output)
+
+
+COMMANDS = {"derive": derive}

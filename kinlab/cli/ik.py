@@ -10,13 +10,8 @@ from typing import Annotated
 import typer
 
 from kinlab.cli.robots import NAME, TOOL
-from kinlab.cli.screen import echo
+from kinlab.cli.screen import echo, wrote
 from kinlab.host.language import _
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("ik")(ik)
 
 
 def ik(
@@ -107,7 +102,7 @@ def ik(
         from kinlab.plots.searches import ik_history
 
         save(ik_history({method: answer.history}, f"{robot.name}: {answer.status}"), history)
-        echo(_("wrote {file}").format(file=history))
+        wrote(history)
     broken = [
         _("{joint} ({low} to {high})").format(joint=joint, low=f"{low:g}", high=f"{high:g}")
         for joint, value, low, high in zip(
@@ -165,3 +160,6 @@ def _announce_compilation() -> None:
         logger.removeHandler(before)  # its stderr may be closed by now
     logger.addHandler(handler)
     logger.setLevel(logging.INFO)
+
+
+COMMANDS = {"ik": ik}

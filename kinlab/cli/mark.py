@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from kinlab.cli.screen import echo, visible
+from kinlab.cli.screen import echo, visible, wrote
 from kinlab.errors import OptionError
 from kinlab.host.language import _, ngettext
 from kinlab.host.progress import progress
@@ -28,11 +28,6 @@ PYTHON = Annotated[
     bool, typer.Option("--run-python", help="Run .py submissions, each with limits of its own.")
 ]
 WORKERS = Annotated[int | None, typer.Option(help="Processes; as many as processors without it.")]
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("mark")(mark)
 
 
 def mark(
@@ -56,10 +51,10 @@ def mark(
     read = read_sheet(sheet)
     if handout is not None:
         count = write_handouts(read, students_of(handout), output)
-        wrote = ngettext(
+        told = ngettext(
             "wrote {count} sheet into {folder}", "wrote {count} sheets into {folder}", count
         )
-        echo(wrote.format(count=count, folder=output))
+        echo(told.format(count=count, folder=output))
         return
     if submissions is None:
         raise OptionError("mark: submissions are missing; name their folder, or use --handout")
@@ -82,4 +77,7 @@ def mark(
     for (question, kind), count in marks.slips().most_common(10):
         said = _("  {question}: {kind}, {count} of {all}")
         echo(said.format(question=question, kind=_(kind), count=count, all=len(marks)))
-    echo(_("wrote {file}").format(file=output))
+    wrote(output)
+
+
+COMMANDS = {"mark": mark}

@@ -8,16 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from kinlab.cli.robots import TOOL
-from kinlab.cli.screen import echo
+from kinlab.cli.screen import echo, wrote
 from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.motion import Motion
-
-
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("motion")(motion)
 
 
 def motion(
@@ -99,4 +94,7 @@ def motion(
         echo(str(size_servos(robot, planned)))
     if output is not None:
         planned.write(output)
-        echo(_("wrote {file}").format(file=output))
+        wrote(output)
+
+
+COMMANDS = {"motion": motion}

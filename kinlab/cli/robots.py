@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import echo, screen, styled
+from kinlab.cli.screen import echo, fine_table, plain_table, screen, styled, wrote
 from kinlab.host.language import N_, _
 
 if TYPE_CHECKING:
@@ -38,26 +38,14 @@ _JOINT_COLUMNS = (
 _KINDS = (N_("revolute"), N_("prismatic"))
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands of this file."""
-    app.command("list")(list_robots)
-    app.command("info")(info)
-    app.command("urdf")(urdf)
-    app.command("dh")(dh)
-
-
 def list_robots() -> None:
     """List the robots that can be loaded by name."""
-    from rich.table import Table
-
     from kinlab.errors import KinlabError
     from kinlab.model.library import DATA_PREFIX, example_robots, load, shipped
 
     width = max(len(name) for name in [*shipped(), *example_robots()])
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    table.add_column(_("name"), no_wrap=True, min_width=width)
-    table.add_column(_("DoF"), justify="right", min_width=3)
-    table.add_column(_("source"), no_wrap=True, overflow="ellipsis")
+    table = plain_table(_("name"), _("DoF"), _("source"), right=(1,))
+    table.columns[0].min_width, table.columns[1].min_width = width, 3
     for name in shipped():
         robot = load(name)
         table.add_row(name, str(robot.n), robot.source.split("; ")[0])
@@ -101,7 +89,7 @@ def info(name: NAME, tool: TOOL = None) -> None:
     table = as_table(robot)
     console.print(_rows(table, extracted=robot.table is None))
     if robot.table is None:
-        console.print(table.source, style="dim", highlight=False)
+        console.dim(table.source)
     frames = [str(frame.name) for frame in robot.model.frames][1:]
     told = _("frames: {names}").format(names=", ".join(dict.fromkeys(frames)))
     console.print(told, highlight=False, soft_wrap=False)
@@ -139,7 +127,7 @@ def _give(text: str, output: Path | None) -> None:
         echo(text, nl=False)
     else:
         write_text(output, text)
-        echo(_("wrote {file}").format(file=output))
+        wrote(output)
 
 
 def _missing_meshes(robot: Robot) -> list[str]:
@@ -151,14 +139,7 @@ def _missing_meshes(robot: Robot) -> list[str]:
 
 
 def _joints(robot: Robot) -> Table:
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
-    table = Table(title=_("joints"), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in _JOINT_COLUMNS:
-        left = column in ("joint", "kind")
-        justify: Literal["left", "right"] = "left" if left else "right"
-        table.add_column(_(column), justify=justify, no_wrap=column != "joint")
+    table = fine_table(*map(_, _JOINT_COLUMNS), left=(0, 1), title=_("joints"))
     model = robot.model
     for j, name in enumerate(robot.joint_names, 1):
         k = model.joints[j].idx_v
@@ -178,13 +159,8 @@ def _joints(robot: Robot) -> Table:
 
 
 def _friction(robot: Robot) -> Table:
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
-    table = Table(title=_("joint friction"), title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    table.add_column(_("joint"))
-    for column in (_("viscous [N m s or N s/m]"), _("Coulomb [N m or N]")):
-        table.add_column(column, justify="right")
+    heads = _("joint"), _("viscous [N m s or N s/m]"), _("Coulomb [N m or N]")
+    table = fine_table(*heads, left=(0,), title=_("joint friction"))
     model = robot.model
     for name, *losses in zip(robot.joint_names, model.damping, model.friction, strict=True):
         table.add_row(name, *(f"{loss:.4g}" for loss in losses))
@@ -192,9 +168,6 @@ def _friction(robot: Robot) -> Table:
 
 
 def _rows(dh_table: DHTable, *, extracted: bool) -> Table:
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
-
     from kinlab.model.dh import row_words
 
     columns, rows = row_words(dh_table)
@@ -202,9 +175,10 @@ def _rows(dh_table: DHTable, *, extracted: bool) -> Table:
     if extracted:
         told = _("DH table, {convention} convention, extracted")
     title = told.format(convention=_(str(dh_table.convention)))
-    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
-    for column in columns:
-        table.add_column(column, justify="right")
+    table = fine_table(*columns, left=(), title=title)
     for row in rows:
         table.add_row(*row)
     return table
+
+
+COMMANDS = {"list": list_robots, "info": info, "urdf": urdf, "dh": dh}

@@ -10,17 +10,17 @@ from __future__ import annotations
 import re
 import sys
 import unicodedata
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
+from rich.box import SIMPLE_HEAD
 from rich.cells import cell_len
 from rich.console import Console
 from rich.measure import Measurement
 from rich.table import Column, Table
 from rich.text import Text
 
-if TYPE_CHECKING:
-    from rich.table import Table
+from kinlab.host.language import _
 
 LONGEST = 900
 """Characters of an error message that are shown."""
@@ -53,6 +53,10 @@ class Screen(Console):
             if isinstance(one, Table):
                 _fit(one, self)
         super().print(*objects, **options)
+
+    def dim(self, text: object) -> None:
+        """What an answer rests on, dim below it."""
+        self.print(str(text), style="dim", highlight=False)
 
     def render_str(self, text: str, **options: Any) -> Text:
         """Every piece of text that is printed, and every cell of a table, passes here."""
@@ -147,12 +151,22 @@ def complain(problem: BaseException | str) -> None:
     print(f"kinlab: {text}", file=sys.stderr)
 
 
-def fine_table(*columns: str, left: tuple[int, ...]) -> Table:
-    """A table of numbers; the columns of ``left`` are text."""
-    from rich.box import SIMPLE_HEAD
-    from rich.table import Table
+def wrote(file: object, *, err: bool = False) -> None:
+    """Says that a file was written."""
+    echo(_("wrote {file}").format(file=file), err=err)
 
-    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+
+def fine_table(*columns: str, left: tuple[int, ...], title: str | None = None) -> Table:
+    """A table of numbers; the columns of ``left`` are text."""
+    table = Table(title=title, title_justify="left", box=SIMPLE_HEAD, pad_edge=False)
     for k, column in enumerate(columns):
         table.add_column(column, justify="left" if k in left else "right", no_wrap=k in left)
+    return table
+
+
+def plain_table(*columns: str, right: tuple[int, ...] = ()) -> Table:
+    """A table of words without lines; the columns of ``right`` are numbers."""
+    table = Table(box=None, header_style="bold", pad_edge=False)
+    for k, column in enumerate(columns):
+        table.add_column(column, justify="right" if k in right else "left")
     return table

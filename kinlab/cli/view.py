@@ -24,11 +24,6 @@ NAME = Annotated[
 ]
 
 
-def register(app: typer.Typer) -> None:
-    """Adds the command of this file."""
-    app.command("view")(view)
-
-
 def view(
     name: NAME,
     tool: TOOL = None,
@@ -169,3 +164,6 @@ def _serve(page: Page, name: str, host: str, port: int, browser: bool) -> None:
         echo(_("no browser found here; open the address in yours"))
     server.run()
     echo(_("viewer closed"))
+
+
+COMMANDS = {"view": view}

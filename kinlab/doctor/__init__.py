@@ -13,16 +13,20 @@ module              what it holds
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
+``meanings``        What a number in a formula may stand for: the robot's own, products and sums
+                    of these, constants
 ``pen``             Slips of the pen in a text, found and mended in the line itself
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
-``report``          Diagnoses for a report: with the formulas typeset and the differences marked
+``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,
+                    typeset and marked
+``rounding``        Rounded numbers: what a written number may stand for, and whether that explains
+                    a difference
 ``search``          Finds the one or two edits that turn one formula into another, by their effect
                     on values
 ``terms``           Slips within single entries: the derived formula beside a user's text or
                     function
-``verdicts``        Right in another way: with rounded numbers, with numbers for names, or another
-                    valid formula
+``verdicts``        Right in another way: with numbers for names, or another valid formula
 ``written``         A formula as its writer wrote it: names, literals with their digits, and
                     values at any numbers
 ``confusions/``     What people take differently: a known confusion, and what the engine would say

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import need_function, relative_errors, some_rows
+from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import terms, verdicts
+from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
@@ -29,11 +29,10 @@ from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.numbers import other_numbers
 from kinlab.doctor.confusions.parts import proved
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.terms import AnswerEntry, Slip, entries, split_name
+from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.verdicts import Excuse
 from kinlab.doctor.written import Written
 from kinlab.errors import KinlabError, OptionError
-from kinlab.formulas.record import function_name, state_by_state
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -60,36 +59,6 @@ _LIST = 3
 _WHOLE_TERMS = {"extra term", "missing term"}
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
-
-
-def diagnose(
-    robot: Any, quantity: str, function: Callable[..., Any], samples: int = 200, seed: int = 0
-) -> Diagnosis:
-    """Says whether a hand-derived function is what it claims to be, and if not, what is wrong.
-
-    Args:
-        robot: a Robot, DHTable, name or path.
-        quantity: what the function claims to be, such as ``"inverse_dynamics"``; an index picks
-            entries: ``"inverse_dynamics[0]"``.
-        function: takes one state, the quantity's arguments in order: ``f(q, v, a)``.
-        samples: how many random states must be explained.
-        seed: the same seed gives the same states.
-
-    Returns:
-        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
-
-    Raises:
-        NameUnknownError: no such robot or quantity.
-        OptionError: samples below 10.
-        FormulaError: the function failed.
-    """
-    need_function(function)
-    plain, index = split_name(quantity)
-    case, engine = prepare(robot, plain, index, samples, seed)
-    stacked = state_by_state(function)
-    hand = np.asarray(stacked(None, *case.arguments.values()))
-    case = replace(case, again=lambda states: np.asarray(stacked(None, *states.values())))
-    return examine(case, hand, engine, quantity, function_name(function), {})
 
 
 def examine(
@@ -160,7 +129,7 @@ def examine(
         partial = (meant,)
     ranked = _ranked(causes)
     right_parts = proved(case, engine) if same and not ranked else ()
-    close = same and not ranked and not written and worst <= verdicts.CLOSE
+    close = same and not ranked and not written and worst <= verdicts.NEAR
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
@@ -308,8 +277,8 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
     odd = verdicts.unusual(case, engine, 0.0 if written else _LOOSE)
     if odd is not None:
         return odd
-    for found in verdicts.roundings(case, engine, not written):
-        return found
+    for said_of_all in rounding.roundings(case, engine, not written):
+        return Excuse("rounded", said_of_all)
     if not written:
         return verdicts.of_coefficients(case, engine)
     off = [entry for entry in entries(case, engine) if not entry.agrees]
@@ -320,7 +289,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
         text = written.get(entry.label)
         if text is not None:
             at = verdicts.numbers_at(case)
-            changed = verdicts.stand_ins(text, at, entry.engine, entry.scale)
+            changed = rounding.stand_ins(text, at, entry.engine, entry.scale)
             if changed is None and derived is not None:
                 said = verdicts.of_data(text, entry, derived, case)
                 if said is None:
@@ -329,7 +298,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
                 continue
             if changed is None:
                 return None
-            remarks += [*text.rounded, *verdicts.rounding_remarks(changed, at)]
+            remarks += [*text.rounded, *rounding.rounding_remarks(changed, at)]
             continue
         return None
     return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
@@ -341,7 +310,7 @@ def prepare(
     """The case of a comparison, without an answer yet, and what the engine says.
 
     Raises:
-        NameUnknownError, OptionError: as :func:`diagnose`.
+        NameUnknownError, OptionError: as :func:`kinlab.diagnose`.
     """
     samples, seed = whole(samples, "samples", 10), seed_of(seed)
     found = find_quantity(plain)
@@ -492,6 +461,7 @@ def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
         max(s.error for s in slips),
         sum(s.cost for s in slips),
         {s.entry: s.corrected for s in slips if s.corrected},
+        {s.entry: s.typed for s in slips if s.typed},
     )
 
 

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,10 +18,12 @@ from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.written import Written, literal
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
-from kinlab.formulas import tree
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse
+from kinlab.formulas import tree, typed
+from kinlab.formulas.lines import Lines, read_lines
+from kinlab.formulas.retyped import Typing
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse, tidied
 from kinlab.formulas.tree import Node
-from kinlab.host.files import read_text, read_toml
+from kinlab.host.files import read_text
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.library import load
@@ -106,20 +107,17 @@ Answers = tuple[Case, Array, list[str], dict[str, Written], dict[str, Array]]
 """A case, the engine's answers, every place there is, and the formulas with their values."""
 
 
-def formula_document(path: str | Path) -> dict[str, Any] | None:
-    """The TOML document of a file of formulas (it names a robot); None of any other file.
+def formula_document(path: str | Path) -> Lines | None:
+    """What a file of formulas holds (it names a robot); None of any other file.
 
     Raises:
         FileError: the file cannot be read.
     """
     if Path(path).suffix.lower() != ".toml":
         return None
-    try:
-        document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), ExpressionError)
-    except ExpressionError:
-        return None
-    holds = "links" not in document and ("robot" in document or "formulas" in document)
-    return document if holds else None
+    lines = read_lines(read_text(path, limit=_FILE_LIMIT), str(path))
+    known = {*lines.document, *(key for key, _problem in lines.problems)}
+    return lines if "links" not in known and known & {"robot", "formulas", "latex"} else None
 
 
 def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
@@ -133,8 +131,10 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         FileError, ExpressionError: the file, an expression or a name cannot be read.
         NameUnknownError: no such robot.
     """
-    document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), FileError)
-    file = formula_file(document, str(path))
+    lines = read_lines(read_text(path, limit=_FILE_LIMIT), str(path))
+    for _key, problem in lines.problems:
+        raise problem
+    file = formula_file(lines.document, str(path))
     return examine_formulas(file, robot_of(file), samples, seed)
 
 
@@ -180,13 +180,14 @@ def _by_quantity(
 
 
 def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
-    """The file with ``g`` for each decimal that is g rounded, as 9.8, and what is to be said of it.
+    """The file with a name for g for each decimal that is g rounded, and what is to be said of it.
 
     A slip is told beside a rounded number only where the number is read as what it stands for.
     """
     words = vocabulary(robot.table).values if robot.table is not None else {}
     size = words.get("g", 0.0)
     said: dict[str, str] = {}
+    numbers: dict[str, str] = {}
 
     def named(found: re.Match[str]) -> str:
         if not size or not _stands_for(found[0], size):
@@ -194,7 +195,9 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
         if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
             told = _("{written} stands for {meant}")
             said[found[0]] = told.format(written=found[0], meant=f"g = {size:.10g}")
-        return "g"
+        name = f"g_{found[0].replace('.', '_')}"
+        numbers[name] = found[0]
+        return name
 
     texts = {entry: _DECIMAL.sub(named, text) for entry, text in file.texts.items()}
     if not said:
@@ -203,7 +206,17 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
         entry: formula if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
         for entry, formula in file.formulas.items()
     }
-    return replace(file, texts=texts, formulas=formulas), said
+    return (
+        replace(
+            file,
+            texts=texts,
+            formulas=formulas,
+            numbers=numbers,
+            symbols=file.symbols | dict.fromkeys(numbers, tree.sym("g")),
+            symbol_texts=file.symbol_texts | dict.fromkeys(numbers, "g"),
+        ),
+        said,
+    )
 
 
 def _read_better(
@@ -443,7 +456,7 @@ def _stands_for(digits: str, value: float) -> bool:
     """Whether a number is another one, or that one rounded to its digits."""
     one = literal(digits.lstrip("-"))
     gap = abs((-one.value if digits.startswith("-") else one.value) - value)
-    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.half)
+    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.reach)
 
 
 def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:
@@ -467,7 +480,24 @@ def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written
                 )
     inside = tree.names(file.formulas[entry])
     used = [note for name, note in rounded.items() if name in inside]
-    return Written(entry, file.texts[entry], node, texts, known, tuple(used))
+    written = file.texts[entry]
+    return Written(
+        entry, written, node, texts, known, tuple(used), file.numbers, typing_of(entry, file)
+    )
+
+
+def typing_of(entry: str, file: FormulaFile) -> Typing | None:
+    """An entry as it was typed; None where that is its plain text."""
+    given = file.as_typed[entry]
+    core, dollars = typed.bare(given), typed.is_latex(given)
+
+    def reads(line: str) -> str:
+        return typed.plain_formula(f"${line}$" if dollars else line, entry, file.writing)
+
+    plain = tidied(reads(core))
+    if tidied(core) == plain:
+        return None
+    return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
 
 
 def _entry_of(label: str, titles: dict[str, str]) -> str:

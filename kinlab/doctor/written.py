@@ -19,12 +19,13 @@ from kinlab.arrays import Array
 from kinlab.formulas import tree
 from kinlab.formulas.arithmetic import read
 from kinlab.formulas.evaluate import combined
+from kinlab.formulas.retyped import Typing
 from kinlab.formulas.text import canonical
 from kinlab.formulas.tree import Node
 
 _DECIMAL = re.compile(r"(\d*)\.?(\d*)(?:[eE]([+-]?\d+))?")
-_WEIGHT, _PLACES = (9.7, 9.9), 0.012
-"""Values of g in the textbooks (9.8, 9.80665, 9.807, 9.81, 9.82), and how far they are apart."""
+_WEIGHTS, _STANDARD, _PLACES = (9.77, 9.84), 9.80665, 0.012
+"""Values of g to three digits, the standard one, and how far the textbooks' are apart."""
 _LEAST_WHOLE = 10
 """Whole numbers below this are exact: 2 is two, but 10 may be a rounded 9.81."""
 
@@ -57,6 +58,13 @@ class Literal:
         shown = "".join(found.group(1, 2)) if found else self.text
         return len(shown.lstrip("0"))
 
+    @property
+    def reach(self) -> float:
+        """How far off what it stands for may be, where that is g: 9.80665 is 9.81 elsewhere."""
+        plain = self.digits < 4 and _WEIGHTS[0] < self.value < _WEIGHTS[1]
+        weight = plain or abs(self.value - _STANDARD) <= self.half
+        return max(self.half, _PLACES) if weight and not self.whole else self.half
+
 
 def literal(text: str) -> Literal:
     """A number with its digits: ``"9.8"`` may be anything from 9.75 to 9.85."""
@@ -66,8 +74,7 @@ def literal(text: str) -> Literal:
         return Literal(text, value, 0.0)
     if "." not in text and found.group(3) is None:
         return Literal(text, value, 0.5 if value >= _LEAST_WHOLE else 0.0)
-    half = 0.5 * 10.0 ** (int(found.group(3) or 0) - len(found.group(2)))
-    return Literal(text, value, max(half, _PLACES * (_WEIGHT[0] < value < _WEIGHT[1])))
+    return Literal(text, value, 0.5 * 10.0 ** (int(found.group(3) or 0) - len(found.group(2))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +88,8 @@ class Written:
         symbols: what the writer's own names stand for: text over other names, or digits.
         known: the writer's names that stand for a number of the robot: ``L`` is ``l1``.
         rounded: what is to be said of names whose number is one of the robot's, rounded.
+        numbers: names that stand in the text for a number that was written.
+        typing: how it was typed, where that is not the text.
     """
 
     entry: str
@@ -89,6 +98,17 @@ class Written:
     symbols: Mapping[str, str] = field(default_factory=dict)
     known: Mapping[str, Node] = field(default_factory=dict)
     rounded: tuple[str, ...] = ()
+    numbers: Mapping[str, str] = field(default_factory=dict)
+    typing: Typing | None = None
+
+    def told(self, piece: str) -> str:
+        """A piece of the text, or of what comes instead, as the writer types it."""
+        piece = self.restored(piece)
+        return self.typing.piece(piece) if self.typing is not None else piece
+
+    def restored(self, text: str) -> str:
+        """The text with the numbers that were written."""
+        return re.sub(r"\w+", lambda m: self.numbers.get(m[0], m[0]), text)
 
     @cached_property
     def _trees(self) -> dict[str, ast.expr]:
@@ -109,6 +129,33 @@ class Written:
                 one = literal(shown)
                 found.append(Literal(shown, one.value, 0.0, True) if exact else one)
         return tuple(found)
+
+    def in_one_term(self, one: int, two: int) -> bool:
+        """Whether two literals are factors of one term, so that an error could lie in either."""
+        return frozenset((one, two)) in self._factors
+
+    @cached_property
+    def _factors(self) -> set[frozenset[int]]:
+        found: set[frozenset[int]] = set()
+        start = dict(zip(self._used, self._starts, strict=True))
+        inside = {
+            id(constant): start[place] + k
+            for place in self._used
+            for k, (constant, _exact) in enumerate(_constants(self._trees[place]))
+        }
+
+        def walk(node: ast.expr) -> list[int]:
+            if isinstance(node, ast.Constant):
+                return [inside[id(node)]]
+            if isinstance(node, ast.Name):
+                return walk(self._trees[node.id]) if node.id in start else []
+            parts = [walk(child) for child in operands(node)]
+            if isinstance(node, ast.BinOp) and not isinstance(node.op, (ast.Add, ast.Sub)):
+                found.update(frozenset((a, b)) for a in parts[0] for b in parts[1])
+            return [k for part in parts for k in part]
+
+        walk(self._trees[""])
+        return found
 
     @cached_property
     def _used(self) -> list[str]:
@@ -189,16 +236,22 @@ def _called(trees: Iterable[ast.expr]) -> set[str]:
     return {name.id for name in calls if isinstance(name, ast.Name)}
 
 
+def operands(node: ast.expr) -> list[ast.expr]:
+    """What stands within an operator, a sign or a call."""
+    match node:
+        case ast.BinOp(left=left, right=right):
+            return [left, right]
+        case ast.UnaryOp(operand=operand):
+            return [operand]
+        case ast.Call(args=args):
+            return list(args)
+    return []
+
+
 def _constants(node: ast.expr, exact: bool = False) -> Iterator[tuple[ast.Constant, bool]]:
     """The numbers in the order in which they are read, and whether each is an exponent."""
-    match node:
-        case ast.Constant():
-            yield node, exact
-        case ast.UnaryOp(operand=operand):
-            yield from _constants(operand, exact)
-        case ast.BinOp(left=left, op=op, right=right):
-            yield from _constants(left, exact)
-            yield from _constants(right, exact or isinstance(op, ast.Pow))
-        case ast.Call(args=args):
-            for part in args:
-                yield from _constants(part, exact)
+    if isinstance(node, ast.Constant):
+        yield node, exact
+    for k, part in enumerate(operands(node)):
+        power = k == 1 and isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
+        yield from _constants(part, exact or power)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, number
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors
+from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both
 from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.engine.dynamics import inverse_dynamics, mass_matrix
@@ -160,8 +160,7 @@ def size_servos(
     if share > 1.0:
         raise OptionError(f"efficiency is {share:g}; it must lie in (0, 1]")
     ratio = None if gear_ratio is None else number(gear_ratio, "gear_ratio", above=0.0)
-    if gears is not None and ratio is not None:
-        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
+    refuse_both(gears, ratio)
     tried, boxes = motors_of(_named(motors)), None if gears is None else gears_of(gears)
     demand, resolution = demand_of(robot, motion, wrench)
     armature = np.array(robot.model.armature)
@@ -171,9 +170,7 @@ def size_servos(
         axis = demand.axis(joint)
         duty = Duty.of_cycle(axis, float(inertia[joint]), share)
         try:
-            fits.append(
-                fit_motors(duty, tried, ratio) if boxes is None else fit_drives(duty, tried, boxes)
-            )
+            fits.append(fit_all(duty, tried, boxes, ratio))
         except MotorError as problem:
             raise MotorError(f"{robot.joint_names[joint]}: {problem}") from None
     return ArmSizing(robot.name, robot.joint_names, demand, inertia, tuple(fits), resolution)

@@ -14,7 +14,7 @@ from kinlab.arrays import Array
 from kinlab.drives.demand import Demand, cubic_mean, mean_size, root_mean_square
 from kinlab.drives.gears import Drive, Gearbox, ideal_gear
 from kinlab.drives.motors import Motor
-from kinlab.errors import MotorError
+from kinlab.errors import MotorError, OptionError
 from kinlab.tolerances import TOLERANCES
 
 PeakTorque = Callable[[Sequence[Drive]], Array]
@@ -241,6 +241,28 @@ def fit_drives(
         for drive, peak in zip(drives, peaks, strict=True)
     ]
     return _ranked(fits)
+
+
+def fit_all(
+    duty: Duty,
+    motors: Sequence[Motor],
+    gears: Sequence[Gearbox] | None,
+    gear_ratio: float | None = None,
+) -> tuple[MotorFit, ...]:
+    """:func:`fit_drives` where there are gearboxes, else :func:`fit_motors`."""
+    if gears is None:
+        return fit_motors(duty, motors, gear_ratio)
+    return fit_drives(duty, motors, gears)
+
+
+def refuse_both(gears: object, gear_ratio: object) -> None:
+    """Refuses gearboxes together with a ratio.
+
+    Raises:
+        OptionError: both are given.
+    """
+    if gears is not None and gear_ratio is not None:
+        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
 
 
 def _require(motors: Sequence[Motor]) -> None:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from kinlab.drives.motors import Motor
-from kinlab.drives.records import check_figures, check_order, read_records
-from kinlab.errors import MotorError, NameUnknownError, OptionError, near
+from kinlab.drives.records import check_figures, check_order, read_records, several
+from kinlab.errors import MotorError, NameUnknownError, near
 
 
 @dataclass(frozen=True)
@@ -130,15 +130,7 @@ def gears_of(gears: str | Path | Gearbox | Sequence[Gearbox]) -> list[Gearbox]:
         FileError, MotorError: as :func:`read_gears`.
         OptionError: anything else, or an empty list.
     """
-    if isinstance(gears, Gearbox):
-        return [gears]
-    if isinstance(gears, (str, Path)):
-        return list(read_gears(gears).values())
-    given = list(gears) if isinstance(gears, Sequence) else []
-    found = [one for one in given if isinstance(one, Gearbox)]
-    if not found or len(found) < len(given):
-        raise OptionError("gears: give a .toml or .csv file, a Gearbox, or a list of Gearboxes")
-    return found
+    return several(gears, Gearbox, "gears", read_gears)
 
 
 def find_gear(gear: str | Gearbox, among: Sequence[Gearbox]) -> Gearbox:

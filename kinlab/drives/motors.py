@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from kinlab.drives.records import check_figures, check_order, read_records
-from kinlab.errors import MotorError, NameUnknownError, OptionError, near
+from kinlab.drives.records import check_figures, check_order, read_records, several
+from kinlab.errors import MotorError, NameUnknownError, near
 from kinlab.model.library import robots_dir
 
 _HANG_TOGETHER = 2.0
@@ -119,12 +119,4 @@ def motors_of(motors: str | Path | Motor | Sequence[Motor] | None) -> list[Motor
     """
     if motors is None:
         return list(catalogue().values())
-    if isinstance(motors, Motor):
-        return [motors]
-    if isinstance(motors, (str, Path)):
-        return list(read_motors(motors).values())
-    given = list(motors) if isinstance(motors, Sequence) else []
-    found = [one for one in given if isinstance(one, Motor)]
-    if not found or len(found) < len(given):
-        raise OptionError("motors: give a .toml or .csv file, a Motor, or a list of Motors")
-    return found
+    return several(motors, Motor, "motors", read_motors)

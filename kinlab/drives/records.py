@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
-from kinlab.errors import ExpressionError, KinlabError, MotorError, near
+from kinlab.errors import ExpressionError, KinlabError, MotorError, OptionError, near
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml
 
@@ -49,12 +49,9 @@ def check_figures(record: Record, kind: str, may_be_zero: tuple[str, ...] = ()) 
                 raise MotorError(f"{kind} {record.name!r}: {figure} is {value!r}; it must be text")
         elif value is not None:
             sound = isinstance(value, (int, float)) and not isinstance(value, bool)
-            least = "zero or a positive" if figure in may_be_zero else "a positive"
-            if not sound or not np.isfinite(value) or value < 0:
-                raise MotorError(
-                    f"{kind} {record.name!r}: {figure} is {value!r}; it must be {least} number"
-                )
-            if value == 0 and figure not in may_be_zero:
+            zero = figure in may_be_zero
+            least = "zero or a positive" if zero else "a positive"
+            if not sound or not np.isfinite(value) or value < 0 or (value == 0 and not zero):
                 raise MotorError(
                     f"{kind} {record.name!r}: {figure} is {value!r}; it must be {least} number"
                 )
@@ -110,11 +107,43 @@ def read_records(
     return out
 
 
+def require_known(
+    data: Iterable[str], keys: Iterable[str], place: str, error: type[KinlabError]
+) -> None:
+    """Refuses a key that is none, with the nearest ones.
+
+    Raises:
+        KinlabError: (the class given) naming the key.
+    """
+    known = list(keys)
+    for key in data:
+        if key not in known:
+            raise error(f"{place}: key {key!r} is unknown; {near(key, known)}")
+
+
+def several(
+    given: Any, kind: type[T], what: str, read: Callable[[str | Path], Mapping[str, T]]
+) -> list[T]:
+    """Reads records in any of the forms that sizing takes: a file, one, or several.
+
+    Raises:
+        OptionError: anything else, or an empty list. KinlabError: as ``read``.
+    """
+    if isinstance(given, (str, Path)):
+        return list(read(given).values())
+    rows = [given] if isinstance(given, kind) else given
+    rows = list(rows) if isinstance(rows, Sequence) else []
+    if not rows or not all(isinstance(one, kind) for one in rows):
+        plural = "Gearboxes" if what == "gears" else "Motors"
+        raise OptionError(
+            f"{what}: give a .toml or .csv file, a {kind.__name__}, or a list of {plural}"
+        )
+    return rows
+
+
 def _toml_rows(text: str, path: str, table: str) -> list[Mapping[str, Any]]:
     data = read_toml(text, path, MotorError)
-    for key in data:
-        if key not in TABLES:
-            raise MotorError(f"{path}: key {key!r} is unknown; {near(key, TABLES)}")
+    require_known(data, TABLES, path, MotorError)
     rows = data.get(table, [])
     if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
         raise MotorError(f"{path}: no [[{table}]] in it")
@@ -152,10 +181,8 @@ def csv_rows(
 
 
 def _record(row: Mapping[str, Any], place: str, record: type[T], needed: tuple[str, ...]) -> T:
-    keys = tuple(f.name for f in fields(record))  # type: ignore[arg-type]
-    for key in row:
-        if key not in keys:
-            raise MotorError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    keys = [f.name for f in fields(record)]  # type: ignore[arg-type]
+    require_known(row, keys, place, MotorError)
     if not isinstance(row.get("name"), str) or not row["name"].strip():
         raise MotorError(f"{place}: name is missing")
     for key in needed:

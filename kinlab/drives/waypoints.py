@@ -18,8 +18,8 @@ import numpy as np
 from kinlab.arrays import Array, number, real_array, shown
 from kinlab.drives.cycles import LIFT, TRAVEL, Path, superpose
 from kinlab.drives.laws import quintic_time
-from kinlab.drives.records import csv_rows
-from kinlab.errors import ExpressionError, OptionError, near
+from kinlab.drives.records import csv_rows, require_known
+from kinlab.errors import ExpressionError, OptionError
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml
 
@@ -171,8 +171,8 @@ class Cycle:
 
     def _run(self, moves: Sequence[tuple[Waypoint, Waypoint]]) -> Path:
         """From stop to stop, from time 0, at its limits."""
-        ways = np.array([np.subtract(end.at, start.at) for start, end in moves], dtype=float)
-        lengths = np.linalg.norm(ways, axis=1)
+        vectors = np.array([np.subtract(end.at, start.at) for start, end in moves], dtype=float)
+        lengths = np.linalg.norm(vectors, axis=1)
         fast = np.array([self.v_max if end.speed is None else end.speed for _, end in moves])
         hard = np.array(
             [self.a_max if end.acceleration is None else end.acceleration for _, end in moves]
@@ -184,14 +184,14 @@ class Cycle:
         t = _nodes(np.concatenate([begins, begins + spans]))
         start = np.array(moves[0][0].at, dtype=float)
         fine = np.interp(np.arange(_FINER * (len(t) - 1) + 1) / _FINER, np.arange(len(t)), t)
-        dense = superpose(start, ways, begins, spans, fine)  # its peaks are those of the motion
+        dense = superpose(start, vectors, begins, spans, fine)  # its peaks are those of the motion
         at_work = (fine[:, None] >= begins) & (fine[:, None] <= begins + spans)
         v_limit = np.where(at_work, fast, 0.0).max(axis=1)
         a_limit = np.where(at_work, hard, 0.0).max(axis=1)
         speed = np.max(np.linalg.norm(dense.v, axis=1) / v_limit)
-        push = np.max(np.linalg.norm(dense.a, axis=1) / a_limit)
-        slower = float(max(speed, np.sqrt(push)))
-        return superpose(start, ways, begins, spans, t).stretched(slower)
+        excess = np.max(np.linalg.norm(dense.a, axis=1) / a_limit)
+        slower = float(max(speed, np.sqrt(excess)))
+        return superpose(start, vectors, begins, spans, t).stretched(slower)
 
 
 def _nodes(kinks: Array) -> Array:
@@ -257,10 +257,7 @@ def read_cycle(path: str | File, v_max: float | None = None, a_max: float | None
         }
     else:
         data = read_toml(text, place, OptionError)
-    keys = tuple(f.name for f in fields(Cycle))
-    for key in data:
-        if key not in keys:
-            raise OptionError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    require_known(data, (f.name for f in fields(Cycle)), place, OptionError)
     rows = data.get("points")
     if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
         raise OptionError(f"{place}: no [[points]] in it")
@@ -287,9 +284,7 @@ def _from_csv(row: Mapping[str, Any], place: str) -> dict[str, Any]:
 
 def _waypoint(row: Mapping[str, Any], place: str) -> Waypoint:
     keys = tuple(f.name for f in fields(Waypoint))
-    for key in row:
-        if key not in keys:
-            raise OptionError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    require_known(row, keys, place, OptionError)
     at = row.get("at")
     if not isinstance(at, list) or len(at) not in (2, 3):
         raise OptionError(f"{place}: at is {shown(at)}; write at = [x, y], m")

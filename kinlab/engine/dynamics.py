@@ -8,8 +8,9 @@ long stacks.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import isfinite
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -20,6 +21,18 @@ from kinlab.engine.kinematics import each_call, each_state, statics
 from kinlab.engine.states import finite_answer, joint_vector, joint_vectors, plain
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, require_inertia, scratch
+
+
+class Roads(NamedTuple):
+    """What works stacks of states out: inverse and forward dynamics, and J^T F."""
+
+    inverse: Callable[..., Array]
+    forward: Callable[..., Array]
+    statics: Callable[..., Array]
+
+
+ROADS = Roads(each_call, each_call, statics)
+"""Pinocchio, one state after the other."""
 
 
 def mass_matrix(robot: ArmLike, q: ArrayLike) -> Array:
@@ -117,6 +130,7 @@ def inverse_dynamics(
     a: ArrayLike,
     wrench: ArrayLike | None = None,
     friction: bool = False,
+    _roads: Roads = ROADS,
 ) -> Array:
     """Joint torques of a motion, by recursive Newton-Euler (note 000, 000.ne).
 
@@ -149,15 +163,13 @@ def inverse_dynamics(
     if type(robot) is not Robot:
         robot = as_robot(robot)
     require_inertia(robot)
-    tau = plain_inverse(robot, q, v, a) if wrench is None and friction is False else None
-    if tau is not None:
-        return tau
+    if wrench is None and friction is False and plain(robot, q, v, a):
+        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
+        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
+            return tau
     q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-    tau = _inverse(robot, q, v, a) if q.ndim == 1 else each_call(robot, pin.rnea, q, v, a)
-    if wrench is not None:
-        tau = tau + statics(robot, q, wrench)
-    if truth(friction, "friction"):
-        tau = tau + friction_torques(robot, v)
+    tau = _inverse(robot, q, v, a) if q.ndim == 1 else _roads.inverse(robot, pin.rnea, q, v, a)
+    tau = _with_loads(robot, tau, 1.0, q, v, wrench, friction, _roads)
     return finite_answer(robot, tau, "inverse_dynamics")
 
 
@@ -168,6 +180,7 @@ def forward_dynamics(
     tau: ArrayLike,
     wrench: ArrayLike | None = None,
     friction: bool = False,
+    _roads: Roads = ROADS,
 ) -> Array:
     """Joint accelerations under joint torques, by the articulated-body algorithm.
 
@@ -189,34 +202,32 @@ def forward_dynamics(
     if type(robot) is not Robot:
         robot = as_robot(robot)
     require_inertia(robot)
-    a = plain_forward(robot, q, v, tau) if wrench is None and friction is False else None
-    if a is not None:
-        return a
-    q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
-    if wrench is not None:
-        tau = tau - statics(robot, q, wrench)
-    if truth(friction, "friction"):
-        tau = tau - friction_torques(robot, v)
-    a = _forward(robot, q, v, tau) if q.ndim == 1 else each_call(robot, pin.aba, q, v, tau)
-    return finite_answer(robot, a, "forward_dynamics")
-
-
-def plain_inverse(robot: Robot, q: Any, v: Any, a: Any) -> Array | None:
-    """:func:`inverse_dynamics` of one state in sound float64 arrays; None where they are not."""
-    if plain(robot, q, v, a):
-        tau: Array = pin.rnea(robot.model, scratch(robot), q, v, a)
-        if isfinite(sum(tau.tolist())):  # one sum sees NaN or infinity in any of q, v, a
-            return tau
-    return None
-
-
-def plain_forward(robot: Robot, q: Any, v: Any, tau: Any) -> Array | None:
-    """:func:`forward_dynamics` of one state in sound float64 arrays; None where they are not."""
-    if plain(robot, q, v, tau):
+    if wrench is None and friction is False and plain(robot, q, v, tau):
         a: Array = pin.aba(robot.model, scratch(robot), q, v, tau)
         if isfinite(sum(a.tolist())):
             return a
-    return None
+    q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
+    tau = _with_loads(robot, tau, -1.0, q, v, wrench, friction, _roads)
+    a = _forward(robot, q, v, tau) if q.ndim == 1 else _roads.forward(robot, pin.aba, q, v, tau)
+    return finite_answer(robot, a, "forward_dynamics")
+
+
+def _with_loads(
+    robot: Robot,
+    tau: Array,
+    sign: float,
+    q: Array,
+    v: Array,
+    wrench: ArrayLike | None,
+    friction: bool,
+    roads: Roads,
+) -> Array:
+    """tau with the torques of a wrench at the tool and of the joints' friction, times a sign."""
+    if wrench is not None:
+        tau = tau + sign * roads.statics(robot, q, wrench)
+    if truth(friction, "friction"):
+        tau = tau + sign * friction_torques(robot, v)
+    return tau
 
 
 def kinetic_energy(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array | float:

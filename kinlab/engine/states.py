@@ -55,13 +55,12 @@ def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
     Raises:
         StateError: wrong length, not real numbers, NaN or infinity.
     """
-    if (
-        type(value) is np.ndarray
-        and value.dtype is _FLOAT
-        and value.shape == robot.shape
-        and -LARGEST < sum(value.tolist()) < LARGEST  # a tenth of np.isfinite(value).all()
-    ):
-        return value
+    if type(value) is np.ndarray and value.dtype is _FLOAT:
+        if value.shape == robot.shape:
+            if -LARGEST < sum(value.tolist()) < LARGEST:  # a tenth of np.isfinite(value).all()
+                return value
+        elif value.ndim == 2 and value.shape[1] == robot.n and np.vdot(value, value) <= LARGEST:
+            return _packed(value)
     array = real_array(value, f"robot {robot.name!r}: {name}")
     if array.ndim not in (1, 2) or array.shape[-1] != robot.n:
         raise StateError(

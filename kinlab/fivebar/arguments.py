@@ -30,8 +30,7 @@ def restore_shape(result: Array, ok: Mask, *, single: bool, masked: bool) -> Arr
     if masked:
         hidden = ~ok.reshape((-1,) + (1,) * (result.ndim - 1))
         result = np.ma.masked_array(result, np.broadcast_to(hidden, result.shape).copy())
-    answer: Array = result[0] if single else result
-    return answer
+    return result[0] if single else result
 
 
 def read_points(value: ArrayLike, what: str) -> tuple[Array, bool]:
@@ -76,6 +75,17 @@ def read_mode(mode: Mode) -> Array:
     return signs.astype(np.float64)
 
 
+def read_assembly(assembly: int) -> int:
+    """Reads an assembly mode, the sign of w_1 x w_2.
+
+    Raises:
+        OptionError: not +1 or -1.
+    """
+    if not isinstance(assembly, (int, np.integer)) or assembly not in (1, -1) or assembly is True:
+        raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
+    return int(assembly)
+
+
 def read_signs(mode: str) -> tuple[int, int]:
     """Reads ``-+`` and the like.
 
@@ -101,8 +111,7 @@ def read_on_unreachable(choice: str) -> bool:
 
 def cross(a: Array, b: Array) -> Array:
     """k · (a x b) of plane vectors along the last axis."""
-    result: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return result
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
 def perpendicular(a: Array) -> Array:

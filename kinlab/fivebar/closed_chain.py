@@ -10,9 +10,9 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shaped, shown
+from kinlab.arrays import Array, shaped
 from kinlab.errors import OptionError, SingularError, UnreachableError
-from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_mode
+from kinlab.fivebar.arguments import HANGING, JOINTS, Mode, read_assembly, read_mode
 from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def _newton(
     """Newton until the residual is ``goal``; None if it leaves the branch or does not get there."""
     before = np.inf
     for _ in range(_STEPS):
-        value, slope = residual(x)
+        value, derivative = residual(x)
         left = float(np.linalg.norm(value - goal))
         if left <= 1e-3 * tolerance:
             return x
@@ -68,7 +68,7 @@ def _newton(
             return x if left <= tolerance else None
         before = left
         try:
-            x = x - np.linalg.solve(slope, value - goal)
+            x = x - np.linalg.solve(derivative, value - goal)
         except np.linalg.LinAlgError:  # singular to the last bit
             return None
         if not inside(x):
@@ -126,12 +126,7 @@ class ClosedChain:
             UnreachableError: the rods cannot meet there; the message holds the gap that is left.
             OptionError: another assembly, or a guess of the other sign.
         """
-        if (
-            not isinstance(assembly, (int, np.integer))
-            or assembly not in (1, -1)
-            or assembly is True
-        ):
-            raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
+        read_assembly(assembly)
         name, data = self.linkage.name, self.model.createData()
         angles = shaped(theta, (2,), f"{name}: theta")
         q = np.zeros(4)
@@ -388,11 +383,11 @@ def build(linkage: FiveBar) -> ClosedChain:
         crank = model.addJoint(0, pin.JointModelRZ(), base, JOINTS[2 * leg])
         rod = model.addJoint(crank, pin.JointModelRZ(), elbow, JOINTS[2 * leg + 1])
         for joint, part in ((crank, "crank"), (rod, "rod")):
-            mass, com, spin = (
+            mass, com, inertia = (
                 float(getattr(linkage, f"{part}_{what}")[leg])
                 for what in ("mass", "com", "inertia")
             )
-            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
+            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), inertia * np.eye(3))
             model.appendBodyToJoint(joint, body, pin.SE3.Identity())
         model.armature[model.joints[crank].idx_v] = linkage.reflected_inertia[leg]
         ends.append((rod, pin.SE3(np.eye(3), np.array([l2[leg], 0.0, 0.0]))))

@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors
+from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both
 from kinlab.drives.gears import Gearbox, gears_of
 from kinlab.drives.motors import Motor, motors_of
 from kinlab.drives.waypoints import Cycle
@@ -96,8 +96,7 @@ def size_cycle(
             says where and when, and how far it must be moved.
         InertiaError: bars without mass, and ``massless`` not said. MotorError: a figure is missing.
     """
-    if gears is not None and gear_ratio is not None:
-        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
+    refuse_both(gears, gear_ratio)
     require_masses(linkage, massless)
     return _sized(
         linkage, cycle, _slower(cycle, time), motors_of(motors), gears, gear_ratio, mode, efficiency
@@ -192,11 +191,7 @@ def _sized(
         raise type(problem)(f"{problem}; {_shift(bare, path, mode)}") from None
     inertia = _load_inertia(bare, path, mode)
     duty = Duty.of_cycle(demand, inertia, efficiency)
-    fits = (
-        fit_motors(duty, motors, gear_ratio)
-        if gears is None
-        else fit_drives(duty, motors, gears_of(gears))
-    )
+    fits = fit_all(duty, motors, None if gears is None else gears_of(gears), gear_ratio)
     signs = int(mode[0]), int(mode[1])
     return CycleSizing(cycle, signs, slower, path, demand, inertia, fits)
 
@@ -219,7 +214,7 @@ def _shift(linkage: FiveBar, path: Path, mode: Mode) -> str:
     few = slice(None, None, max(1, len(path.t) // 200))
     points, still = path.points[few], np.zeros_like(path.points[few])
     angles = np.linspace(-np.pi, np.pi, 48, endpoint=False)
-    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
     def works(shift: Array) -> bool:
         try:
@@ -230,7 +225,7 @@ def _shift(linkage: FiveBar, path: Path, mode: Mode) -> str:
 
     size = float(np.sum(linkage.l1) + np.sum(linkage.l2))
     for distance in np.geomspace(1e-3, 1.0, 40) * size:
-        for way in ways:
+        for way in directions:
             if works(distance * way):
                 x, y = (round(float(value), 9) + 0.0 for value in distance * way)
                 return f"moved as a whole by ({x:.3g}, {y:.3g}) m it can be done"

@@ -49,19 +49,18 @@ class RodModel:
 def exact_rods(linkage: FiveBar) -> RodModel:
     """alpha_B = m(1-rho)² + I/l2², alpha_C = m rho² + I/l2², kappa = m rho(1-rho) - I/l2²."""
     mass, rho = linkage.rod_mass, _fraction(linkage)
-    spin = linkage.rod_inertia / linkage.l2**2
+    inertia = linkage.rod_inertia / linkage.l2**2
     return RodModel(
-        elbow=mass * (1.0 - rho) ** 2 + spin,
-        coupling=mass * rho * (1.0 - rho) - spin,
-        tool=mass * rho**2 + spin,
+        elbow=mass * (1.0 - rho) ** 2 + inertia,
+        coupling=mass * rho * (1.0 - rho) - inertia,
+        tool=mass * rho**2 + inertia,
         elbow_weight=mass * (1.0 - rho),
         tool_weight=mass * rho,
     )
 
 
 def _fraction(linkage: FiveBar) -> Array:
-    rho: Array = linkage.rod_com / linkage.l2
-    return rho
+    return linkage.rod_com / linkage.l2
 
 
 def _two_masses(linkage: FiveBar, at_tool: ArrayLike) -> RodModel:
@@ -97,9 +96,8 @@ def rod_model(linkage: FiveBar, model: str) -> RodModel:
     return ROD_MODELS[model](linkage)
 
 
-# -------- Dynamics of a five-bar in closed form, with rods of mass
-# What the rods' mass does is one row of coefficients, :mod:`kinlab.fivebar.dynamics`; the formulas
-# are the same for all of them.
+# -------- Torque, mass matrix and acceleration
+# The formulas are the same for all rod models.
 #
 # Sources: note 003 (003.vw, 003.G, 003.P); Huang et al. 2005, doi 10.1115/1.1898343, whose rods
 # have no mass; the exact form is derived by virtual work and tested against a Lagrangian.
@@ -108,18 +106,18 @@ def rod_model(linkage: FiveBar, model: str) -> RodModel:
 def crank_inertia(linkage: FiveBar, rods: RodModel) -> Array:
     """I_A* = I_1 + m_1 c_1² + j² I_M + alpha_B l1², about the base pins, (2,), kg m²."""
     own = linkage.crank_inertia + linkage.crank_mass * np.square(linkage.crank_com)
-    total: Array = own + linkage.reflected_inertia + rods.elbow * np.square(linkage.l1)
-    return total
+    return own + linkage.reflected_inertia + rods.elbow * np.square(linkage.l1)
+
+
+def _bars(linkage: FiveBar, *, mass: bool) -> list[str]:
+    """The kinds of bars without inertia, with mass or without it."""
+    kinds = [bar for bar in ("crank", "rod") if not np.any(getattr(linkage, f"{bar}_inertia"))]
+    return [bar for bar in kinds if np.any(getattr(linkage, f"{bar}_mass")) == mass]
 
 
 def bars_as_points(linkage: FiveBar) -> str:
     """Says which bars have mass and no inertia about their centres, or nothing."""
-    points = [
-        bar
-        for bar in ("crank", "rod")
-        if np.any(getattr(linkage, f"{bar}_mass"))
-        and not np.any(getattr(linkage, f"{bar}_inertia"))
-    ]
+    points = _bars(linkage, mass=True)
     if not points:
         return ""
     bars = " and ".join(f"{bar}s" for bar in points)
@@ -128,12 +126,7 @@ def bars_as_points(linkage: FiveBar) -> str:
 
 def bars_without_mass(linkage: FiveBar) -> str:
     """Says which bars have neither mass nor inertia, or nothing where all have one."""
-    bare = [
-        bar
-        for bar in ("crank", "rod")
-        if not np.any(getattr(linkage, f"{bar}_mass"))
-        and not np.any(getattr(linkage, f"{bar}_inertia"))
-    ]
+    bare = _bars(linkage, mass=False)
     if not bare:
         return ""
     keys = ", ".join(f"{bar}_mass, {bar}_inertia" for bar in bare)
@@ -207,8 +200,7 @@ def crank_gravity(linkage: FiveBar, pose: Pose, rods: RodModel) -> Array:
     """tau_Ag: what holds the weight of the cranks and of the rods' share at the elbows, (N, 2)."""
     moment = linkage.crank_mass * linkage.crank_com
     moment = moment + rods.elbow_weight * linkage.l1
-    held: Array = -moment * (perpendicular(pose.u) @ linkage.gravity)
-    return held
+    return -moment * (perpendicular(pose.u) @ linkage.gravity)
 
 
 def tool_force(linkage: FiveBar, pose: Pose, force: Array) -> Array:
@@ -220,15 +212,13 @@ def tool_force(linkage: FiveBar, pose: Pose, force: Array) -> Array:
     first = (force[:, 0] * w2[:, 1] - force[:, 1] * w2[:, 0]) / pose.rods
     second = (w1[:, 0] * force[:, 1] - w1[:, 1] * force[:, 0]) / pose.rods
     along = np.stack([first, second], axis=1)
-    tau: Array = linkage.l1 * pose.sine * along
-    return tau
+    return linkage.l1 * pose.sine * along
 
 
 def velocity_matrix(linkage: FiveBar, pose: Pose) -> Array:
     """J^-1 of v = J^-1 theta_dot for solved poses, (N, 2, 2)."""
     columns = np.stack([-perpendicular(pose.w[:, 1]), perpendicular(pose.w[:, 0])], axis=2)
-    inverse: Array = columns * (linkage.l1 * pose.sine)[:, None, :] / pose.rods[:, None, None]
-    return inverse
+    return columns * (linkage.l1 * pose.sine)[:, None, :] / pose.rods[:, None, None]
 
 
 def mass_matrix(
@@ -372,8 +362,8 @@ def forward_dynamics(
     return pose.restore(np.asarray(np.linalg.solve(mass, force[..., None])[..., 0], np.float64))
 
 
-# -------- Energy and power of a five-bar in closed form
-# Source: note 003 (003.P) for the power; the energies are those of :mod:`kinlab.fivebar.dynamics`.
+# -------- Energy and power
+# Source: note 003 (003.P) for the power.
 
 
 def kinetic_energy(

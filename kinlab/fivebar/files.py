@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import tomli_w
 
+from kinlab.drives.records import require_known
 from kinlab.errors import ExpressionError, FileError, MechanismError, NameUnknownError, near
 from kinlab.formulas.numbers import parse_number
 from kinlab.host.files import read_text, read_toml, write_text
@@ -68,9 +69,7 @@ def loads(text: str, name: str, keys: Collection[str]) -> dict[str, Any]:
     """As :func:`read`, from TOML text."""
     data = read_toml(text, f"five-bar {name!r}", MechanismError)
     place = f"five-bar {data.get('name', name)!r}"
-    for key in data:
-        if key not in keys:
-            raise MechanismError(f"{place}: key {key!r} is unknown; {near(key, keys)}")
+    require_known(data, keys, place, MechanismError)
     for key in ("l1", "l2", "e"):
         if key not in data:
             raise MechanismError(f"{place}: key {key!r} is missing")

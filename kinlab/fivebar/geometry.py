@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, shown
+from kinlab.arrays import Array
 from kinlab.errors import OptionError, SingularError, StateError, UnreachableError
 from kinlab.fivebar.arguments import (
     HANGING,
@@ -24,6 +24,7 @@ from kinlab.fivebar.arguments import (
     Mode,
     OnUnreachable,
     cross,
+    read_assembly,
     read_mode,
     read_on_unreachable,
     read_points,
@@ -274,15 +275,14 @@ def fk(
         StateError: theta of another shape, or not finite.
         OptionError: an assembly other than +1 and -1.
     """
-    if not isinstance(assembly, (int, np.integer)) or assembly not in (1, -1) or assembly is True:
-        raise OptionError(f"assembly {shown(assembly)} does not exist; choose +1 or -1")
+    sign = float(read_assembly(assembly))
     masked = read_on_unreachable(on_unreachable)
     angles, single = read_points(theta, f"{linkage.name}: theta")
     xy = np.empty_like(angles)
     ok = np.empty(len(angles), dtype=np.bool_)
 
     def block(rows: slice) -> None:
-        xy[rows], ok[rows] = _rod_intersection(linkage, angles[rows], float(assembly))
+        xy[rows], ok[rows] = _rod_intersection(linkage, angles[rows], sign)
 
     _in_blocks(len(angles), block)
     if not masked and not ok.all():

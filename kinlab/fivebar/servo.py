@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import LIFT, TRAVEL, Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_drives, fit_motors, stretch_to_motor
+from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both, stretch_to_motor
 from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.drives.waypoints import Cycle, adept
@@ -335,8 +335,7 @@ def size_servo(
     Warns:
         KinlabWarning: cranks or rods have no mass, and are meant to.
     """
-    if gears is not None and gear_ratio is not None:
-        raise OptionError("give gears or gear_ratio, not both: a gearbox has its ratio")
+    refuse_both(gears, gear_ratio)
     box = read_rectangle(workspace, linkage.name)
     v_max, a_max = (
         number(value, f"{linkage.name}: {name}")
@@ -401,11 +400,7 @@ def size_servo(
     among = motors_of(motors)
     if motor is not None:
         among = [find_motor(motor, None if motors is None else {m.name: m for m in among})]
-    fits = (
-        fit_motors(duty, among, gear_ratio)
-        if gears is None
-        else fit_drives(duty, among, gears_of(gears))
-    )
+    fits = fit_all(duty, among, None if gears is None else gears_of(gears), gear_ratio)
     arm = crank_inertia(bare, none)
     return ServoSizing(
         workspace=box,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -63,47 +64,57 @@ class Request(NamedTuple):
 
     Attributes:
         targets: (N, 4, 4). tolerances: metres, radians. seed: of the starts.
-        searches: how many at most. start: q0, (n,) or (N, n), or ``None``.
-        iterations: of one search, or ``None``. remarks: what was done to the input.
+        searches: how many at most. iterations: of one search, or ``None``.
+        start: q0, (n,) or (N, n), or ``None``. remarks: what was done to the input.
     """
 
     targets: Array
     tolerances: tuple[float, float]
     seed: int
     searches: int
-    start: Array | None
     iterations: int | None
+    start: Array | None
     remarks: tuple[str, ...]
 
 
 def read_request(
-    robot: Robot,
-    poses: ArrayLike,
-    many: bool,
-    q0: ArrayLike | None,
-    tol_position: Any,
-    tol_rotation: Any,
-    seed: Any,
-    restarts: Any,
-    max_iterations: Any,
+    robot: Robot, poses: ArrayLike, many: bool, q0: ArrayLike | None, *options: Any
 ) -> Request:
     """Reads and checks the arguments that :func:`kinlab.ik` and ``ik_batch`` share.
+
+    Args:
+        robot: the robot.
+        poses: one target, or where ``many`` is true a stack of them.
+        many: see there.
+        q0: as in those, or ``None``.
+        options: tol_position, tol_rotation, seed, restarts, max_iterations.
 
     Raises:
         StateError, OptionError, StructureError: as those.
     """
     targets = read_targets(robot, poses) if many else read_target(robot, poses)[np.newaxis]
-    tolerances = (
-        number(tol_position, "tol_position", above=0.0),
-        number(tol_rotation, "tol_rotation", above=0.0),
-    )
-    searches, drawn = 1 + whole(restarts, "restarts", 0), seed_of(seed)
+    try:
+        read = _read_options(*options)
+    except TypeError:  # no key: an array of one number
+        read = _read_options.__wrapped__(*options)
     start: Array | None = None
     remarks: list[str] = []
     if q0 is not None:
         start, remarks = read_guess(robot, q0, len(targets) if many else None)
-    iterations = None if max_iterations is None else whole(max_iterations, "max_iterations", 1)
-    return Request(targets, tolerances, drawn, searches, start, iterations, tuple(remarks))
+    return Request(targets, *read, start, tuple(remarks))
+
+
+@lru_cache(maxsize=64, typed=True)
+def _read_options(
+    position: Any, rotation: Any, seed: Any, restarts: Any, iterations: Any
+) -> tuple[tuple[float, float], int, int, int | None]:
+    """What of a request is plain numbers; kept, since call after call gives the same ones."""
+    tolerances = (
+        number(position, "tol_position", above=0.0),
+        number(rotation, "tol_rotation", above=0.0),
+    )
+    most = None if iterations is None else whole(iterations, "max_iterations", 1)
+    return tolerances, seed_of(seed), 1 + whole(restarts, "restarts", 0), most
 
 
 def read_target(robot: Robot, pose: ArrayLike) -> Array:

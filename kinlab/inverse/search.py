@@ -117,7 +117,7 @@ def ik(
     asked = read_request(
         robot, T, False, q0, tol_position, tol_rotation, seed, restarts, max_iterations
     )
-    history = truth(history, "history")
+    history = history is not False and truth(history, "history")
     if branch is not None:
         if not isinstance(task, str) or task not in ("pose", "auto") or history:
             raise OptionError("branch takes the whole pose: leave task and history out with it")
@@ -386,17 +386,15 @@ def _on_branch(robot: Robot, asked: Request, branch: str) -> IKResult:
     rows = matching(branch, found.names, f"robot {robot.name!r}")
     near = np.clip(0.0, robot.lower, robot.upper) if asked.start is None else asked.start
     slides = ~np.any(jacobian(robot, near)[3:], axis=0)
-    best: Any = None
+    ways = []
     for row in rows:
         q = found.q[row].copy()
         # the whole turn of each angle that lies nearest to q0, as far as the limits allow
         turned = q + 2.0 * np.pi * np.round((near - q) / (2.0 * np.pi))
         allowed = ~slides & (turned >= robot.lower) & (turned <= robot.upper)
         q[allowed] = turned[allowed]
-        key = (not found.within_limits[row], float(np.abs(q - near).max()), row)
-        if best is None or key < best[0]:
-            best = (key, q)
-    (outside, _, row), q = best
+        ways.append((not found.within_limits[row], float(np.abs(q - near).max()), row, q))
+    outside, _, row, q = min(ways, key=lambda way: way[:3])
     position, rotation = float(found.position_error[row]), float(found.rotation_error[row])
     status = IKStatus.OUTSIDE_LIMITS if outside else IKStatus.CONVERGED
     if position > asked.tolerances[0] or rotation > asked.tolerances[1]:

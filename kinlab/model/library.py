@@ -200,8 +200,6 @@ def as_robot(arm: ArmLike) -> Robot:
         StructureError: none of these, or a model that is no chain.
         KinlabError: as :func:`load`.
     """
-    if type(arm) is Robot:
-        return arm
     if isinstance(arm, Robot):
         return arm
     if isinstance(arm, (str, Path)):

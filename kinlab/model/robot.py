@@ -16,13 +16,14 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array, frozen, set_fields, shown
-from kinlab.errors import InertiaError, NameUnknownError, StructureError, already_said, near
+from kinlab.errors import InertiaError, NameUnknownError, StructureError, near
 from kinlab.host.introductions import Answer, Introduction, brief, counted, vector
 from kinlab.model import urdf_read
 from kinlab.model.dh import DHTable
 from kinlab.model.link import inertia_flaw
+from kinlab.model.urdf_engine import build
 from kinlab.model.urdf_records import read_tree
-from kinlab.model.urdf_write import written
+from kinlab.model.urdf_write import records, text_of
 from kinlab.tolerances import TOLERANCES
 
 
@@ -142,10 +143,11 @@ class Robot(Answer):
         Returns:
             The robot; its tool frame is DH frame n times ``table.tool``.
         """
-        text = written(table)
-        with already_said():  # by the table
-            chain = urdf_read.read(text, f"table {table.name!r}", table.tool_name)
-        return Robot(table.name, chain.model, chain.tool, text, table, None, table.source)
+        tree = records(table)
+        text = text_of(table, tree)
+        model = build(text, tree, list(table.joint_names), f"table {table.name!r}")
+        tool = int(model.getFrameId(table.tool_name, pin.FrameType.BODY))
+        return Robot(table.name, model, tool, text, table, None, table.source)
 
     @staticmethod
     def from_urdf(path_or_xml: str | Path, tool: str | None = None) -> Robot:

@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from kinlab.errors import NameUnknownError, StructureError, UrdfError, near
 from kinlab.host.files import read_text
-from kinlab.model.urdf_engine import build
+from kinlab.model.urdf_engine import build, document
 from kinlab.model.urdf_records import MOVING, JointRecord, UrdfTree, check_moved_inertias, read_tree
 
 # -------- URDF text: where it comes from, XML that fetches and expands nothing, and its
@@ -134,12 +134,15 @@ def read(text: str, file: str | None, tool: str | None) -> URDFChain:
     Raises:
         UrdfError, StructureError, NameUnknownError: as :meth:`kinlab.model.robot.Robot.from_urdf`.
     """
+    from lxml import etree
+
     root = parse(text, file or "urdf")
     place = file or f"urdf {root.get('name')!r}"
     tree = read_tree(root, place)
     chain, tip = _chain(tree, tool, place)
     check_moved_inertias(tree, set(tree.links_behind(tree.joints[chain[0]].child)), place)
-    model = build(tree, chain, place)
+    text = etree.tostring(document(tree, chain), encoding="unicode")
+    model = build(text, tree, chain, place)
     return URDFChain(tree.name, model, int(model.getFrameId(tip, pin.FrameType.BODY)))
 
 

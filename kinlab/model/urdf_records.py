@@ -9,7 +9,8 @@ from __future__ import annotations
 import difflib
 import math
 from collections import defaultdict
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +24,7 @@ from kinlab.model.strict_numbers import strict_numbers
 MOVING = ("revolute", "continuous", "prismatic")
 _MULTI = ("floating", "planar", "spherical")
 _KNOWN = (*MOVING, *_MULTI, "fixed")
-_TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+TENSOR = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 WIDE_TURN = 2.0 * math.pi
 """Limit given to a continuous joint, either way, so that it is an ordinary revolute one."""
 
@@ -54,7 +55,7 @@ _STRICT = {
     "origin": ("xyz", "rpy"),
     "axis": ("xyz",),
     "mass": ("value",),
-    "inertia": _TENSOR,
+    "inertia": TENSOR,
 }
 """Elements with these attributes and no others."""
 
@@ -101,7 +102,8 @@ class JointRecord:
 
     Attributes:
         name, kind, parent, child: as the file has them.
-        xyz, rpy: placement in the parent link at q = 0, (3,) each, m and rad.
+        rpy: turn in the parent link at q = 0, (3,), rad.
+        placement: pose in the parent link at q = 0, (4, 4).
         axis: unit direction in the joint's frame, (3,).
         lower, upper: limits, rad or m.
         velocity, effort: limits, SI.
@@ -113,9 +115,9 @@ class JointRecord:
     kind: str
     parent: str
     child: str
-    xyz: Array
     rpy: Array
-    axis: Array
+    placement: Array
+    axis: Array = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
     lower: float = 0.0
     upper: float = 0.0
     velocity: float = 0.0
@@ -123,13 +125,6 @@ class JointRecord:
     damping: float = 0.0
     friction: float = 0.0
     mimics: bool = False
-
-    @property
-    def placement(self) -> Array:
-        """Pose of the joint in the parent link at q = 0, (4, 4)."""
-        pose = np.eye(4)
-        pose[:3, :3], pose[:3, 3] = rpy_matrix(*self.rpy), self.xyz
-        return pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -253,7 +248,33 @@ def read_numbers(
     """
     if text is None:
         return np.array(default, dtype=float)
-    return strict_numbers(text, count, where, UrdfError, most)
+    values = strict_numbers(text, count, where, UrdfError)
+    _check_size(values, where, most)
+    return values
+
+
+def check_sizes(tree: UrdfTree, place: str) -> None:
+    """Refuses records with numbers that no arm has: what the reader asks of each number it reads.
+
+    Raises:
+        UrdfError: naming the link or joint.
+    """
+    for name, link in tree.links.items():
+        if link.inertial is not None:
+            body = link.inertial
+            values = np.array([body.mass, *body.com, *body.inertia.ravel()])
+            _check_size(values, f"{place}: link {name!r}: inertial")
+    for name, joint in tree.joints.items():
+        _check_size(joint.placement, f"{place}: joint {name!r}: origin xyz")
+        limits = np.array([joint.lower, joint.upper])
+        _check_size(limits, f"{place}: joint {name!r}: limits", _LIMITLESS)
+    _check_size(tree.gravity, f"{place}: gravity")
+
+
+def _check_size(values: Array, where: str, most: float = _MOST) -> None:
+    largest = float(np.max(np.abs(values)))
+    if largest > most:
+        raise UrdfError(f"{where}: {largest:g} is beyond {most:g}, more than any arm has")
 
 
 def _only(element: Any, tag: str, where: str) -> Any:
@@ -291,9 +312,20 @@ def _check_spelling(root: Any, place: str) -> None:
 
 def _named(root: Any, tag: str, place: str) -> list[Any]:
     elements = root.findall(tag)
+    check_names(tag, [element.get("name") for element in elements], place)
+    if not elements and tag == "link":
+        raise UrdfError(f"{place}: it has no links")
+    return list(elements)
+
+
+def check_names(tag: str, names: Iterable[str | None], place: str) -> None:
+    """Refuses names of links or joints that programs read differently, or that stand twice.
+
+    Raises:
+        UrdfError: naming the first.
+    """
     seen: set[str] = set()
-    for element in elements:
-        name = element.get("name")
+    for name in names:
         if not name:
             raise UrdfError(f"{place}: a <{tag}> has no name")
         if not name.isprintable() or name != name.strip():
@@ -304,9 +336,6 @@ def _named(root: Any, tag: str, place: str) -> list[Any]:
         if name in seen:
             raise UrdfError(f"{place}: {tag} {name!r} is defined twice")
         seen.add(name)
-    if not elements and tag == "link":
-        raise UrdfError(f"{place}: it has no links")
-    return list(elements)
 
 
 def _root_link(links: list[str], parents: dict[str, str], place: str) -> str:
@@ -349,7 +378,7 @@ def _inertial(inertial: Any, where: str) -> Inertial:
     if tensor is None:
         raise UrdfError(f"{where}: <inertial> has no <inertia>")
     xx, xy, xz, yy, yz, zz = (
-        float(read_numbers(tensor.get(key), 1, (0.0,), f"{where}: {key}")[0]) for key in _TENSOR
+        float(read_numbers(tensor.get(key), 1, (0.0,), f"{where}: {key}")[0]) for key in TENSOR
     )
     moments = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     return Inertial(value, xyz, rpy, rpy_matrix(*rpy), moments)
@@ -369,16 +398,10 @@ def _joint(element: Any, links: dict[str, LinkRecord], where: str) -> JointRecor
     if kind not in _KNOWN:
         raise UrdfError(f"{where}: type {kind!r} is unknown; {near(str(kind), _KNOWN)}")
     xyz, rpy = read_origin(element, where)
-    fixed = JointRecord(
-        element.get("name"),
-        kind,
-        ends[0],
-        ends[1],
-        xyz,
-        rpy,
-        np.array([1.0, 0.0, 0.0]),
-        mimics=_only(element, "mimic", where) is not None,
-    )
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = rpy_matrix(*rpy), xyz
+    mimics = _only(element, "mimic", where) is not None
+    fixed = JointRecord(element.get("name"), kind, ends[0], ends[1], rpy, pose, mimics=mimics)
     return _moving(fixed, element, where) if kind in MOVING else fixed
 
 

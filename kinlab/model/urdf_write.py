@@ -11,7 +11,15 @@ from kinlab.arrays import Array
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.rotations import matrices_rpy
-from kinlab.model.urdf_records import EXTENSION
+from kinlab.model.urdf_engine import document, joined, write_origin
+from kinlab.model.urdf_records import (
+    Inertial,
+    JointRecord,
+    LinkRecord,
+    UrdfTree,
+    check_names,
+    check_sizes,
+)
 
 # -------- Where the joints and links of a DH table stand in URDF's terms
 # With Tail = Tx(a) Rx(alpha) of a row (the part of its transform behind the joint):
@@ -149,15 +157,14 @@ def _shift_z(d: float) -> Array:
     return out
 
 
-# -------- DH table to URDF text, through yourdfpy's own classes
-# The recipe for origins and inertias is the first part.
+# -------- DH table to records and URDF text
 
 BASE_LINK = "base_link"
 
 _MATERIALS = {
-    "even_link": (0.33, 0.47, 0.60, 1.0),
-    "odd_link": (0.86, 0.47, 0.20, 1.0),
-    "joint_axis": (0.20, 0.22, 0.25, 1.0),
+    "even_link": "0.33 0.47 0.6 1.0",
+    "odd_link": "0.86 0.47 0.2 1.0",
+    "joint_axis": "0.2 0.22 0.25 1.0",
 }
 
 
@@ -172,114 +179,98 @@ def written(table: DHTable) -> str:
         table: the DH table.
 
     Returns:
-        URDF text. Gravity other than standard, armatures, and that inertias are meant which no body
-        can have, stand in a ``<kinlab>`` element, which other tools ignore.
+        URDF text. Gravity, armatures, and that inertias are meant which no body can have, stand in
+        a ``<kinlab>`` element, which other tools ignore.
+
+    Raises:
+        UrdfError: as :func:`records`.
     """
-    from yourdfpy import urdf as y  # half a second to import
+    return text_of(table, records(table))
 
+
+def records(table: DHTable) -> UrdfTree:
+    """A DH table as the records that reading its URDF gives.
+
+    Raises:
+        UrdfError: names that a URDF cannot hold, or numbers that no arm has.
+    """
+    where, n = f"table {table.name!r}", table.n
     places = placements(table)
-    shapes = visuals(table, places)
-    names = table.joint_names
-    links = [y.Link(name=BASE_LINK, visuals=_visuals(shapes[0], "even_link", y))]
-    joints = []
+    poses = [place.origin for place in places] + [place.tail for place in places]
+    poses.append(places[-1].tail @ np.asarray(table.tool))
+    rpy = np.array(matrices_rpy([pose[:3, :3] for pose in poses])) + 0.0
+    links = [LinkRecord(BASE_LINK, None)]
+    joints: list[JointRecord] = []
+    armature = {}
+
+    def add(link: LinkRecord, joint: str, kind: str, parent: str, k: int, **moves: Any) -> None:
+        links.append(link)
+        joints.append(JointRecord(joint, kind, parent, link.name, rpy[k], poses[k], **moves))
+
     parent = BASE_LINK
-    for i, (link, place) in enumerate(zip(table.links, places, strict=True), 1):
-        name = f"link_{i}"
-        links.append(
-            y.Link(
-                name=name,
-                inertial=_inertial(link, place, y),
-                visuals=_visuals(shapes[i], "odd_link" if i % 2 else "even_link", y),
-            )
-        )
-        joints.append(
-            y.Joint(
-                name=names[i - 1],
-                type=link.joint,
-                parent=parent,
-                child=name,
-                origin=place.origin,
-                axis=np.array([0.0, 0.0, -1.0 if link.flip else 1.0]),
-                limit=y.Limit(
-                    effort=link.effort, velocity=link.velocity, lower=link.lower, upper=link.upper
-                ),
-                dynamics=_friction(link, y),
-            )
-        )
-        parent = name
+    for i, (row, name) in enumerate(zip(table.links, table.joint_names, strict=True)):
+        moves = {key: getattr(row, key) for key in ("lower", "upper", "velocity", "effort")}
+        moves |= {"damping": row.viscous_friction, "friction": row.coulomb_friction}
+        axis = np.array([0.0, 0.0, -1.0 if row.flip else 1.0])
+        link = LinkRecord(f"link_{i + 1}", _inertial(row, poses[n + i], rpy[n + i]))
+        add(link, name, row.joint, parent, i, axis=axis, **moves)
+        if row.armature:
+            armature[name] = row.armature
+        parent = link.name
         if table.convention is Convention.STANDARD:
-            _fixed(f"dh_{i}", f"dh_joint_{i}", name, place.tail, links, joints, y)
-    tool = places[-1].tail @ np.asarray(table.tool)
-    _fixed(table.tool_name, f"{table.tool_name}_joint", parent, tool, links, joints, y)
-    return _text(y.URDF(y.Robot(table.name, links, joints), build_scene_graph=False), table, names)
+            frame = LinkRecord(f"dh_{i + 1}", None)
+            add(frame, f"dh_joint_{i + 1}", "fixed", parent, n + i)
+    add(LinkRecord(table.tool_name, None), f"{table.tool_name}_joint", "fixed", parent, -1)
+    tree = UrdfTree(
+        table.name,
+        {link.name: link for link in links},
+        {joint.name: joint for joint in joints},
+        BASE_LINK,
+        np.asarray(table.gravity),
+        armature,
+        table.unphysical,
+    )
+    check_names("link", [link.name for link in links], where)
+    check_names("joint", [joint.name for joint in joints], where)
+    check_sizes(tree, where)
+    return tree
 
 
-def _inertial(link: DHLink, place: LinkPlacement, y: Any) -> Any:
-    inertia = np.asarray(link.inertia)
-    if link.mass == 0.0 and not inertia.any():
+def _inertial(row: DHLink, tail: Array, rpy: Array) -> Inertial | None:
+    inertia = np.asarray(row.inertia)
+    if row.mass == 0.0 and not inertia.any():
         return None
+    upper = np.triu(inertia)  # as a URDF has it
     centre = np.eye(4)
-    centre[:3, 3] = link.com
-    return y.Inertial(origin=place.tail @ centre, mass=link.mass, inertia=inertia)
+    centre[:3, 3] = row.com
+    com = (tail @ centre)[:3, 3]
+    return Inertial(row.mass, com, rpy, tail[:3, :3], upper + np.triu(inertia, 1).T)
 
 
-def _friction(link: DHLink, y: Any) -> Any:
-    if link.viscous_friction == 0.0 and link.coulomb_friction == 0.0:
-        return None
-    return y.Dynamics(damping=link.viscous_friction, friction=link.coulomb_friction)
-
-
-def _fixed(
-    name: str, joint: str, parent: str, origin: Array, links: list[Any], joints: list[Any], y: Any
-) -> None:
-    links.append(y.Link(name=name))
-    joints.append(y.Joint(name=joint, type="fixed", parent=parent, child=name, origin=origin))
-
-
-def _visuals(shapes: list[Shape], material: str, y: Any) -> list[Any]:
-    drawn = []
-    for shape in shapes:
-        name = "joint_axis" if shape.stub else material
-        paint = y.Material(name=name, color=y.Color(rgba=np.array(_MATERIALS[name])))
-        if shape.box is not None:
-            geometry = y.Geometry(box=y.Box(size=np.array(shape.box)))
-        else:
-            geometry = y.Geometry(cylinder=y.Cylinder(radius=shape.radius, length=shape.length))
-        drawn.append(y.Visual(origin=shape.origin, geometry=geometry, material=paint))
-    return drawn
-
-
-def _text(urdf: Any, table: DHTable, names: tuple[str, ...]) -> str:
+def text_of(table: DHTable, tree: UrdfTree) -> str:
+    """The text that :func:`written` gives, from the table's records."""
     from lxml import etree
 
-    root = urdf.write_xml().getroot()
-    _write_rotations(root, urdf.robot)
+    root = document(tree, table.joint_names)
     about = f"DH table {table.name!r}, {table.convention} convention. {table.source}"
     about = "".join(c for c in " ".join(about.split()) if c.isprintable())
     root.insert(0, etree.Comment(f" {about.replace('-', '‐' if '--' in about else '-')} "))
-    armatures = {
-        name: link.armature for name, link in zip(names, table.links, strict=True) if link.armature
-    }
-    extension = etree.SubElement(
-        root, EXTENSION, gravity=" ".join(repr(float(g)) for g in np.asarray(table.gravity))
-    )
-    if table.unphysical:
-        extension.set("unphysical", "true")
-    for name, armature in armatures.items():
-        etree.SubElement(extension, "joint", name=name, armature=repr(armature))
+    links = {element.get("name"): element for element in root.findall("link")}
+    shapes = visuals(table, placements(table))
+    angles = iter(matrices_rpy([shape.origin[:3, :3] for drawn in shapes for shape in drawn]))
+    for i, drawn in enumerate(shapes):
+        for shape in drawn:
+            visual = etree.SubElement(links[f"link_{i}" if i else BASE_LINK], "visual")
+            geometry = etree.SubElement(visual, "geometry")
+            if shape.box is not None:
+                etree.SubElement(geometry, "box", size=joined(np.array(shape.box)))
+            else:
+                sizes = {"radius": repr(shape.radius), "length": repr(shape.length)}
+                etree.SubElement(geometry, "cylinder", sizes)
+            write_origin(visual, shape.origin[:3, 3], np.array(next(angles)) + 0.0)
+            name = "joint_axis" if shape.stub else "odd_link" if i % 2 else "even_link"
+            material = etree.SubElement(visual, "material", name=name)
+            etree.SubElement(material, "color", rgba=_MATERIALS[name])
     etree.indent(root, "  ")
     text: str = etree.tostring(root, encoding="unicode", pretty_print=True)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + text
-
-
-def _write_rotations(root: Any, robot: Any) -> None:
-    """Writes the angles anew: yourdfpy's come from a formula that fails in gimbal lock."""
-    pairs = []
-    for element, link in zip(root.findall("link"), robot.links, strict=True):
-        if link.inertial is not None:
-            pairs.append((element.find("inertial"), link.inertial))
-        pairs.extend(zip(element.findall("visual"), link.visuals, strict=True))
-    pairs.extend(zip(root.findall("joint"), robot.joints, strict=True))
-    angles_of = matrices_rpy([record.origin[:3, :3] for _, record in pairs])
-    for (element, _), angles in zip(pairs, angles_of, strict=True):
-        element.find("origin").set("rpy", " ".join(repr(angle + 0.0) for angle in angles))

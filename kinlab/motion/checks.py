@@ -291,8 +291,7 @@ def _met(space: TaskSpace, motion: Motion, times: Array) -> list[Finding]:
 
 def _sigma(space: TaskSpace, motion: Motion, t: Array) -> Array:
     values = space.sigma(motion.at(t)[0])
-    out: Array = values[:, -1] / values[:, 0]
-    return out
+    return values[:, -1] / values[:, 0]
 
 
 def _crossing(space: TaskSpace, motion: Motion, low: float, high: float) -> float | None:

@@ -1,4 +1,4 @@
-"""Joint positions along a way of the tool: on one branch, clear of singularities, or refused.
+"""Joint positions along a path of the tool: on one branch, clear of singularities, or refused.
 
 What is refused is said with its time and place, and up to where the way can be had.
 """
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.structure.task_space import TaskSpace
+from kinlab.analysis.structure.task_space import TaskSpace, mask_of
 from kinlab.arrays import Array, between
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.errors import SingularError, UnreachableError
@@ -18,30 +18,30 @@ from kinlab.inverse.methods import pose_error
 from kinlab.inverse.postures.path import IKPath, ik_path
 from kinlab.inverse.search import ik
 from kinlab.model.robot import Robot
-from kinlab.motion.ways import TimedWay
+from kinlab.motion.paths import TimedPath
 from kinlab.tolerances import TOLERANCES
 
 _ROWS = 20
-"""Poses that are followed at a time: a way that ends is not searched on beyond its end."""
+"""Poses that are followed at a time: a path that ends is not searched on beyond its end."""
 
 
 def follow(
     robot: Robot,
     space: TaskSpace,
-    way: TimedWay,
+    path: TimedPath,
     times: Array,
     goals: Array,
     q0: ArrayLike | None,
     seed: int,
 ) -> Array:
     """Joint positions at the times, (N, n), on one branch and clear of singularities."""
-    mask = [row in space.rows for row in range(6)]
+    mask = mask_of(space.rows)
     near = TOLERANCES.follows
     begin = ik(robot, goals[0], q0, "lm", near, near, seed, task=mask)
     if not begin.success:
         raise UnreachableError(_unreachable(robot, goals[0], 0.0, begin, None))
     if space.m < robot.n:
-        q = _with_spare_joints(robot, space, way, times, goals, begin.q)
+        q = _with_spare_joints(robot, space, path, times, goals, begin.q)
     else:
         q = _on_one_branch(robot, space, times, goals, begin.q, seed)
     _require_one_side(robot, space, times, goals, q)
@@ -62,7 +62,7 @@ def _on_one_branch(
     robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array, seed: int
 ) -> Array:
     """:func:`kinlab.ik_path` from q on, some rows at a time, up to the first that ends the way."""
-    mask = [row in space.rows for row in range(6)]
+    mask = mask_of(space.rows)
     rows = [q[np.newaxis]]
     near = TOLERANCES.follows
     for first in range(0, len(goals), _ROWS):
@@ -80,7 +80,13 @@ def _on_one_branch(
 
 
 def _refuse_row(
-    robot: Robot, times: Array, goals: Array, found: IKPath, bad: int, first: int, mask: list[bool]
+    robot: Robot,
+    times: Array,
+    goals: Array,
+    found: IKPath,
+    bad: int,
+    first: int,
+    mask: tuple[bool, ...],
 ) -> None:
     """Says why a row of a path cannot be had: another branch, or out of reach."""
     row = first + bad
@@ -95,7 +101,7 @@ def _refuse_row(
 
 
 def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array) -> None:
-    """Refuses a way whose det J changes its sign between samples, or that all but loses rank.
+    """Refuses a path whose det J changes its sign between samples, or that all but loses rank.
 
     Raises:
         SingularError: when and where.
@@ -113,14 +119,14 @@ def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array
 
 
 def _with_spare_joints(
-    robot: Robot, space: TaskSpace, way: TimedWay, times: Array, goals: Array, q: Array
+    robot: Robot, space: TaskSpace, path: TimedPath, times: Array, goals: Array, q: Array
 ) -> Array:
     """The least-norm motion qdot = J⁺ V from q on, kept on the poses by Newton steps."""
     rows = [q]
     for k in range(1, len(times)):
         step = times[k] - times[k - 1]
         middle = 0.5 * (times[k] + times[k - 1])
-        _, twists, _ = way.at(np.array([times[k - 1], middle, times[k]]))
+        _, twists, _ = path.at(np.array([times[k - 1], middle, times[k]]))
         k1 = _least(space, q, twists[0])
         k2 = _least(space, q + 0.5 * step * k1, twists[1])
         k3 = _least(space, q + 0.5 * step * k2, twists[1])
@@ -146,11 +152,10 @@ def _with_spare_joints(
 
 def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
     rows = list(space.rows)
-    out: Array = np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
-    return out
+    return np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
 
 
-# -------- What is said where a way cannot be had
+# -------- What is said where a path cannot be had
 
 
 def _place(t: float, pose: Array) -> str:

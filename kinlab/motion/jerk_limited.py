@@ -7,7 +7,6 @@ profiles, so that what the answer holds does not rest on its sampling.
 
 from __future__ import annotations
 
-import itertools
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from scipy.interpolate import PPoly
 from kinlab.arrays import Array
 from kinlab.errors import MissingExtraError, OptionError
 from kinlab.motion.limits import Limits, within_time_limits
+from kinlab.motion.record import along_lines
 
 
 def plan(rows: Array, limits: Limits) -> Any:
@@ -30,16 +30,15 @@ def plan(rows: Array, limits: Limits) -> Any:
         raise MissingExtraError(
             "jerk-limited motions need ruckig: install it with pip install 'kinlab[motion]'"
         ) from None
-    n = rows.shape[1]
-    breaks, pieces = [np.zeros(1)], []
-    for one, two in itertools.pairwise(rows):
-        # along the straight line from 0 to 1: one freedom, so that all joints keep in proportion
-        way = np.abs(two - one)
-        moves = way > 0.0
+
+    def law(line: Array) -> Any:
+        # from 0 to 1: one freedom, so that all joints keep in proportion
+        displacement = np.abs(line)
+        moves = displacement > 0.0
         asked = ruckig.InputParameter(1)
         asked.current_position, asked.target_position = [0.0], [1.0]
         for name in ("velocity", "acceleration", "jerk"):
-            bound = float(np.min(getattr(limits, name)[moves] / way[moves]))
+            bound = float(np.min(getattr(limits, name)[moves] / displacement[moves]))
             setattr(asked, f"max_{name}", [bound])
         found = ruckig.Trajectory(1)
         status = ruckig.Ruckig(1).calculate(asked, found)
@@ -62,8 +61,6 @@ def plan(rows: Array, limits: Limits) -> Any:
             )
         if abs(state[0] - 1.0) > 1e-6:
             raise OptionError("jerk-limited motion: ruckig's profile does not end at its target")
-        coefficients = np.array(rows_here).T[:, :, np.newaxis] * (two - one)
-        coefficients[-1] += one
-        pieces.append(coefficients.reshape(4, -1, n))
-        breaks.append(breaks[-1][-1] + np.cumsum(lengths[kept]))
-    return within_time_limits(PPoly(np.concatenate(pieces, axis=1), np.concatenate(breaks)), limits)
+        return PPoly(np.array(rows_here).T, np.concatenate([[0.0], np.cumsum(lengths[kept])]))
+
+    return within_time_limits(along_lines(rows, law), limits)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.interpolate import PPoly, make_interp_spline
+from scipy.interpolate import make_interp_spline
 
 from kinlab.arrays import Array, between, number, word
 from kinlab.drives import laws
@@ -18,7 +17,7 @@ from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 from kinlab.motion import jerk_limited, time_optimal
 from kinlab.motion.limits import Limits, read_limits, require_limits, stretch_to
-from kinlab.motion.record import Motion, motion_of, pieces_of, stretch
+from kinlab.motion.record import Motion, along_lines, motion_of, pieces_of, stretch
 from kinlab.tolerances import TOLERANCES
 
 STEP = 0.01
@@ -140,24 +139,15 @@ def _straight(law: Callable[[float, float], Any]) -> Callable[[Array, Limits], A
     """Straight lines in joint space, each by one law, at rest in every point."""
 
     def plan(rows: Array, limits: Limits) -> Any:
-        breaks, pieces = [np.zeros(1)], []
-        for one, two in itertools.pairwise(rows):
-            way = two - one
-            speed, gain = _caps(way, limits)
-            unit = law(speed, gain)
-            coefficients = unit.c[:, :, np.newaxis] * way
-            coefficients[-1] += one
-            pieces.append(coefficients)
-            breaks.append(breaks[-1][-1] + unit.x[1:])
-        return PPoly(np.concatenate(pieces, axis=1), np.concatenate(breaks))
+        return along_lines(rows, lambda line: law(*_caps(line, limits)))
 
     return plan
 
 
-def _caps(way: Array, limits: Limits) -> tuple[float, float]:
+def _caps(displacement: Array, limits: Limits) -> tuple[float, float]:
     """Largest speed and acceleration along a line, as parts of it per s and s²."""
-    moves = np.abs(way) > 0.0
-    size = np.abs(way[moves])
+    moves = np.abs(displacement) > 0.0
+    size = np.abs(displacement[moves])
     velocity, acceleration = limits.velocity[moves], limits.acceleration[moves]
     speed = float(np.min(velocity / size))
     gain = float(np.min(acceleration / size))

@@ -9,7 +9,9 @@ from __future__ import annotations
 
 import csv
 import io
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from math import factorial
 from pathlib import Path
 from typing import Any
@@ -197,6 +199,23 @@ def hermite(times: Array, q: Array, v: Array, before: Array, after: Array) -> An
     b2 = pieces**2 * after[near] / 20.0 + 2.0 * b1 - b0
     b3 = pieces**2 * before[far] / 20.0 + 2.0 * b4 - b5
     return PPoly.from_bernstein_basis(BPoly(np.stack([b0, b1, b2, b3, b4, b5]), times))
+
+
+def along_lines(rows: Array, law: Callable[[Array], Any]) -> Any:
+    """Straight lines from point to point (K, n), at rest in each, as pieces.
+
+    Args:
+        rows: the points.
+        law: from a line, end minus start (n,), to its curve from 0 to 1 (``PPoly`` of (k, M)).
+    """
+    breaks, pieces = [np.zeros(1)], []
+    for one, two in pairwise(rows):
+        unit = law(two - one)
+        coefficients = unit.c[:, :, np.newaxis] * (two - one)
+        coefficients[-1] += one
+        pieces.append(coefficients)
+        breaks.append(breaks[-1][-1] + unit.x[1:])
+    return PPoly(np.concatenate(pieces, axis=1), np.concatenate(breaks))
 
 
 def pieces_of(spline: Any) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,11 +37,12 @@ def tip_wrench(arm: Arm, q: Array, wrench: Array) -> tuple[Array, Array]:
     return force, apply(up, wrench[..., 3:]) + cross(last.tool[:3, 3], force)
 
 
-@formula(
+_statics = partial(formula, source="note 000, statics", robots="serial")
+
+
+@_statics(
     "000.force",
-    source="note 000, statics",
     quantity="static_wrenches",
-    robots="serial",
     latex=r"{}^if_i = {}^i_{i+1}R\,{}^{i+1}f_{i+1},\quad"
     r" {}^in_i = {}^i_{i+1}R\,{}^{i+1}n_{i+1} + {}^iP_{i+1} \times {}^if_i",
 )
@@ -50,18 +52,16 @@ def static_wrenches(arm: Arm, q: Array, wrench: Array) -> Array:
     force, moment = tip_wrench(arm, q, wrench)
     result = [np.concatenate([force, moment], axis=-1)]
     for i in reversed(range(arm.n - 1)):
-        rotation, place = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
+        rotation, position = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
         force = apply(rotation, force)
-        moment = apply(rotation, moment) + cross(place, force)
+        moment = apply(rotation, moment) + cross(position, force)
         result.append(np.concatenate([force, moment], axis=-1))
     return np.stack(result[::-1], axis=-2)
 
 
-@formula(
+@_statics(
     "000.tau",
-    source="note 000, statics",
     quantity="statics",
-    robots="serial",
     latex=r"\tau_i = {}^in_i \cdot \hat Z \ \text{(revolute)},\quad"
     r" \tau_i = {}^if_i \cdot \hat Z \ \text{(prismatic)}",
 )
@@ -71,14 +71,7 @@ def joint_torques(arm: Arm, q: Array, wrench: Array) -> Array:
     return arm.sign * np.where(arm.prismatic, wrenches[..., 2], wrenches[..., 5])
 
 
-@formula(
-    "000.JTF",
-    part="tool",
-    source="note 000, statics",
-    quantity="statics_tool",
-    robots="serial",
-    latex=r"\tau = {}^nJ^T\,{}^nF",
-)
+@_statics("000.JTF", part="tool", quantity="statics_tool", latex=r"\tau = {}^nJ^T\,{}^nF")
 def tool_statics(arm: Arm, q: Array, wrench: Array) -> Array:
     """tau = J^T F with both in tool axes."""
     return apply(transpose(tool_jacobian(arm, q)), wrench)
@@ -94,12 +87,11 @@ def _force_only(arm: Arm, q: Array, wrench: Array) -> Array:
     return apply(transpose(_base_jacobian(arm, q)), turned)
 
 
-@formula(
+@_statics(
     "000.JTF",
     part="base",
     source="note 000, statics 2",
     quantity="statics_tool",
-    robots="serial",
     latex=r"\tau = {}^0J^T\,{}^0F,\quad {}^0F ="
     r" \fixed{\begin{pmatrix} {}^0_nR & 0 \\ 0 & {}^0_nR \end{pmatrix}} {}^nF",
     printed=Printed(
@@ -186,11 +178,12 @@ _OMEGA_DOT = (
 )
 
 
-@formula(
+_newton_euler = partial(formula, source="note 000, dynamics 1", robots="serial")
+
+
+@_newton_euler(
     "000.ne.out",
-    source="note 000, dynamics 1",
     quantity="link_accelerations",
-    robots="serial",
     latex=_OMEGA_DOT + r"\fixed{({}^{i+1}_iR\,{}^i\omega_i) \times \dot\theta_{i+1}"
     r"\,{}^{i+1}\hat Z_{i+1}}",
     printed=Printed(
@@ -214,11 +207,9 @@ def centre_accelerations(arm: Arm, motion: Motion) -> Array:
     return motion.v_dot + cross(motion.omega_dot, arm.com) + swing
 
 
-@formula(
+@_newton_euler(
     "000.ne.com",
-    source="note 000, dynamics 1",
     quantity="com_accelerations",
-    robots="serial",
     latex=r"{}^i\dot v_{C_i} = {}^i\dot v_i + {}^i\dot\omega_i \times {}^ip_{C_i}"
     r" + {}^i\omega_i \times ({}^i\omega_i \times {}^ip_{C_i})",
     remark="the heading says velocity; it is the acceleration",
@@ -232,15 +223,13 @@ def com_accelerations(arm: Arm, q: Array, v: Array, a: Array) -> Array:
 def inertial(arm: Arm, motion: Motion) -> tuple[Array, Array]:
     """F and N of every link, each (..., n, 3)."""
     force = arm.mass[:, None] * centre_accelerations(arm, motion)
-    spin = apply(arm.inertia, motion.omega)
-    return force, apply(arm.inertia, motion.omega_dot) + cross(motion.omega, spin)
+    momentum = apply(arm.inertia, motion.omega)
+    return force, apply(arm.inertia, motion.omega_dot) + cross(motion.omega, momentum)
 
 
-@formula(
+@_newton_euler(
     "000.ne.FN",
-    source="note 000, dynamics 1",
     quantity="inertial_wrenches",
-    robots="serial",
     latex=r"F_i = m_i \dot v_{C_i},\quad N_i = {}^{C_i}I_i\,\dot\omega_i"
     r" + \omega_i \times {}^{C_i}I_i\,\omega_i",
     remark="the second term is Euler's gyroscopic term, not the parallel-axis theorem; the "
@@ -263,20 +252,18 @@ def inward(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravity
     result = []
     for i in reversed(range(arm.n)):
         if i < arm.n - 1:
-            rotation, place = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
+            rotation, position = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
             force = apply(rotation, force)
-            moment = apply(rotation, moment) + cross(place, force)
+            moment = apply(rotation, moment) + cross(position, force)
         moment = moment + moments[..., i, :] + cross(last.com[i], forces[..., i, :])
         force = force + forces[..., i, :]
         result.append(np.concatenate([force, moment], axis=-1))
     return np.stack(result[::-1], axis=-2)
 
 
-@formula(
+@_newton_euler(
     "000.ne.in",
-    source="note 000, dynamics 1",
     quantity="joint_wrenches",
-    robots="serial",
     latex=r"f_i = {}^i_{i+1}R f_{i+1} + F_i,\quad n_i = {}^i_{i+1}R n_{i+1}"
     r" + P_{i+1} \times {}^i_{i+1}R f_{i+1} + N_i + P_{C_i} \times F_i",
     remark="an index of R is lost in f_i; gravity enters as v_dot_0 = -g, which is not said",
@@ -298,12 +285,10 @@ def _torques(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravi
     return arm.sign * share + arm.armature * a
 
 
-@formula(
+@_newton_euler(
     "000.ne.in",
     part="tau",
-    source="note 000, dynamics 1",
     quantity="inverse_dynamics_loaded",
-    robots="serial",
     latex=r"\tau_i = n_i \cdot \hat Z \ \text{or}\ f_i \cdot \hat Z,\quad"
     r" \fixed{\dot v_0 = -g}",
     printed=Printed(
@@ -327,24 +312,18 @@ def _motion_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     return torques(arm, q, np.broadcast_to(v, shape), np.broadcast_to(a, shape), None, np.zeros(3))
 
 
-@formula(
-    "000.MVG",
-    part="M",
-    source="note 000, dynamics 2",
-    quantity="mass_matrix",
-    robots="serial",
-    latex=r"M e_j = \tau(q, 0, e_j) - G",
-)
+_mvg = partial(formula, "000.MVG", source="note 000, dynamics 2", robots="serial")
+
+
+@_mvg(part="M", quantity="mass_matrix", latex=r"M e_j = \tau(q, 0, e_j) - G")
 def mvg_mass(arm: Arm, q: Array) -> Array:
     """M read off Newton-Euler at unit accelerations."""
     still = np.zeros(arm.n)
     return np.stack([_motion_torques(arm, q, still, e) for e in np.eye(arm.n)], axis=-1)
 
 
-@formula(
-    "000.MVG",
+@_mvg(
     part="B",
-    source="note 000, dynamics 2",
     quantity="coriolis_coefficients",
     robots=("planar2r", "planar3r", "spatial3r", "scara", "stanford", "puma560", "panda", "ur5"),
     latex=r"V = \underbrace{B(\theta)}_{n \times \binom n2} [\dot\theta_i \dot\theta_j]_{i<j}"
@@ -364,12 +343,9 @@ def mvg_products(arm: Arm, q: Array) -> Array:
     )
 
 
-@formula(
-    "000.MVG",
+@_mvg(
     part="C",
-    source="note 000, dynamics 2",
     quantity="centrifugal_coefficients",
-    robots="serial",
     latex=r"V = B(\theta)[\dot\theta_i \dot\theta_j] + C(\theta)[\dot\theta^2]",
 )
 def mvg_squares(arm: Arm, q: Array) -> Array:
@@ -378,26 +354,16 @@ def mvg_squares(arm: Arm, q: Array) -> Array:
     return np.stack([_motion_torques(arm, q, e, still) for e in np.eye(arm.n)], axis=-1)
 
 
-@formula(
-    "000.MVG",
-    part="G",
-    source="note 000, dynamics 2",
-    quantity="gravity_torques",
-    robots="serial",
-    latex=r"G = \tau(q, 0, 0)",
-)
+@_mvg(part="G", quantity="gravity_torques", latex=r"G = \tau(q, 0, 0)")
 def mvg_gravity(arm: Arm, q: Array) -> Array:
     """G is the torque at rest."""
     still = np.zeros(np.shape(q))
     return torques(arm, q, still, still, None, arm.gravity)
 
 
-@formula(
-    "000.MVG",
+@_mvg(
     part="tau",
-    source="note 000, dynamics 2",
     quantity="inverse_dynamics",
-    robots="serial",
     latex=r"\tau = M \ddot\theta + B[\dot\theta_i\dot\theta_j] + C[\dot\theta^2] + G",
 )
 def mvg_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
@@ -410,12 +376,12 @@ def mvg_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     return inertia + products + squares + mass.gravity_torques(arm, q)
 
 
-@formula(
-    "000.lag",
+_lagrange = partial(formula, "000.lag", source="note 000, dynamics 3", robots="serial")
+
+
+@_lagrange(
     part="k",
-    source="note 000, dynamics 3",
     quantity="link_kinetic_energies",
-    robots="serial",
     latex=r"k_i = \tfrac12 m_i \lVert \vec v_{C_i} \rVert^2 + \tfrac12 \omega_i^T I_i\,\omega_i",
 )
 def kinetic_energies(arm: Arm, q: Array, v: Array) -> Any:
@@ -433,12 +399,9 @@ def _u_printed(arm: Arm, q: Array) -> Any:
     return -arm.mass * np.linalg.norm(arm.gravity) * height
 
 
-@formula(
-    "000.lag",
+@_lagrange(
     part="u",
-    source="note 000, dynamics 3",
     quantity="link_potential_energies",
-    robots="serial",
     latex=r"u_i = \fixed{+m_i g h_i} = -m_i\, \vec g^T \vec P_{C_i}",
     printed=Printed(
         _u_printed,
@@ -451,19 +414,16 @@ def potential_energies(arm: Arm, q: Array) -> Any:
     return -arm.mass * (mass.centres(arm, q) @ arm.gravity)
 
 
-@formula(
-    "000.lag",
+@_lagrange(
     part="tau",
-    source="note 000, dynamics 3",
     quantity="inverse_dynamics",
-    robots="serial",
     latex=r"\tau_i = \frac{d}{dt}\frac{\partial k}{\partial \dot\theta_i}"
     r" - \frac{\partial k}{\partial \theta_i} + \frac{\partial u}{\partial \theta_i}",
 )
 def lagrange_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     """Joint torques by differentiation of the energies, exactly."""
-    slope = mass.mass_derivatives(arm, q)
-    turning: Array = np.einsum("...ijk,...k,...j->...i", slope, v, v)
+    derivative = mass.mass_derivatives(arm, q)
+    turning: Array = np.einsum("...ijk,...k,...j->...i", derivative, v, v)
     rate = turning + apply(mass.mass_matrix(arm, q), a)
-    gradient: Array = 0.5 * np.einsum("...ijk,...i,...j->...k", slope, v, v)
+    gradient: Array = 0.5 * np.einsum("...ijk,...i,...j->...k", derivative, v, v)
     return rate - gradient + mass.gravity_torques(arm, q)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -93,12 +94,14 @@ def isotropy_defect(arm: Arm, q: Array) -> Array:
     return _defect(jacobian @ transpose(jacobian))
 
 
-@formula(
-    "000.iso2r",
+_isotropic_2r = partial(
+    formula, "000.iso2r", source="note 000, section 6", robots=("planar2r", "planar2r_rods")
+)
+
+
+@_isotropic_2r(
     part="3J",
-    source="note 000, section 6",
     quantity="jacobian_tool[:2]",
-    robots=("planar2r", "planar2r_rods"),
     latex=r"{}^3J = \begin{pmatrix} l_1 s_2 & 0 \\ l_1 c_2 + l_2 & l_2 \end{pmatrix}",
 )
 def planar_2r_tip_jacobian(arm: Arm, q: Array) -> Array:
@@ -106,12 +109,10 @@ def planar_2r_tip_jacobian(arm: Arm, q: Array) -> Array:
     return tip_jacobian(arm, q)
 
 
-@formula(
-    "000.iso2r",
+@_isotropic_2r(
     part="orthogonal",
     source="note 000, section 6.1",
     quantity="orthogonal_columns_cosine",
-    robots=("planar2r", "planar2r_rods"),
     latex=r"c_2 = -\frac{l_2}{l_1}",
 )
 def orthogonal_cosine(arm: Arm, q: Array) -> Array:
@@ -120,12 +121,10 @@ def orthogonal_cosine(arm: Arm, q: Array) -> Array:
     return np.full(np.shape(q)[:-1], -l2 / l1)
 
 
-@formula(
-    "000.iso2r",
+@_isotropic_2r(
     part="equal",
     source="note 000, section 6.2",
     quantity="equal_columns_cosine",
-    robots=("planar2r", "planar2r_rods"),
     latex=r"c_2 = -\frac{l_1}{2 l_2}",
 )
 def equal_cosine(arm: Arm, q: Array) -> Array:
@@ -140,10 +139,8 @@ def _one_angle(arm: Arm, q: Array) -> Array:
     return np.where(known[..., None, None], l2 * np.eye(2), np.nan)
 
 
-@formula(
-    "000.iso2r",
+@_isotropic_2r(
     part="135 degrees",
-    source="note 000, section 6",
     quantity="isotropic_jacobian",
     robots="planar2r_isotropic",
     latex=r"l_1 = \sqrt2\, l_2,\ \theta_2 = \fixed{\pm} 135^\circ \Rightarrow"
@@ -253,26 +250,19 @@ def left_inverse(arm: Arm, q: Array, twist: Array) -> Array:
     return _left(arm, q, twist)
 
 
-@formula(
-    "000.grad",
-    part="loss",
-    source="note 000, inverse kinematics 2",
-    quantity="loss",
-    robots="planar3r",
-    latex=r"g(q) = \tfrac12 \lVert x_d - f(q) \rVert^2",
-)
+_gradient = partial(formula, "000.grad", source="note 000, inverse kinematics 2", robots="planar3r")
+
+
+@_gradient(part="loss", quantity="loss", latex=r"g(q) = \tfrac12 \lVert x_d - f(q) \rVert^2")
 def loss(arm: Arm, q: Array, target: Array) -> Any:
     """The loss that gradient descent lowers."""
     miss = _miss(arm, q, target)
     return 0.5 * np.sum(miss * miss, axis=-1)
 
 
-@formula(
-    "000.grad",
+@_gradient(
     part="gradient",
-    source="note 000, inverse kinematics 2",
     quantity="loss_gradient",
-    robots="planar3r",
     latex=r"\nabla g = -J^T [x_d - f(q)]",
     remark="the brace under (df/dq)^T is labelled J; it is J^T",
 )
@@ -281,14 +271,7 @@ def loss_gradient(arm: Arm, q: Array, target: Array) -> Array:
     return -apply(transpose(planar_3r_jacobian(arm, q)), _miss(arm, q, target))
 
 
-@formula(
-    "000.grad",
-    part="step",
-    source="note 000, inverse kinematics 2",
-    quantity="gradient_step",
-    robots="planar3r",
-    latex=r"q_{k+1} = q_k + \alpha J^T [x_d - f(q)]",
-)
+@_gradient(part="step", quantity="gradient_step", latex=r"q_{k+1} = q_k + \alpha J^T [x_d - f(q)]")
 def gradient_step(arm: Arm, q: Array, target: Array) -> Array:
     """Step of gradient descent."""
     return q - 0.1 * loss_gradient(arm, q, target)

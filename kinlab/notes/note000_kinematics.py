@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -32,25 +33,18 @@ from kinlab.notes.arm import (
 #          planar 3R
 
 
-@formula(
-    "000.R",
-    part="inverse",
-    source="note 000, section 2",
-    quantity="rotation_inverse",
-    robots="identity",
-    latex=r"R^{-1} = R^T,\quad \det R = 1",
-)
+_rotation = partial(formula, "000.R", source="note 000, section 2", robots="identity")
+
+
+@_rotation(part="inverse", quantity="rotation_inverse", latex=r"R^{-1} = R^T,\quad \det R = 1")
 def rotation_inverse(_: None, rotation: Array) -> Array:
     """Rows of R are unit vectors and orthogonal: its inverse is its transpose."""
     return transpose(rotation)
 
 
-@formula(
-    "000.R",
+@_rotation(
     part="length",
-    source="note 000, section 2",
     quantity="rotated_length",
-    robots="identity",
     latex=r"\lVert {}^1p \rVert = \lVert R\,{}^0p \rVert = \lVert {}^0p \rVert",
 )
 def rotated_length(_: None, rotation: Array, point: Array) -> Any:
@@ -59,12 +53,9 @@ def rotated_length(_: None, rotation: Array, point: Array) -> Any:
     return np.linalg.norm(point, axis=-1)
 
 
-@formula(
-    "000.R",
+@_rotation(
     part="determinant",
-    source="note 000, section 2",
     quantity="rotation_determinant",
-    robots="identity",
     latex=r"\det R = 1",
     remark="rows orthogonal and of unit length allow det R = -1 too: the three are those "
     "of a rotation, not of any orthogonal matrix",
@@ -247,10 +238,6 @@ def propagate(arm: Arm, q: Array, v: Array, slide: Array = Z) -> Array:
     return np.stack(result, axis=-2)
 
 
-def _velocities_printed(arm: Arm, q: Array, v: Array) -> Array:
-    return propagate(arm, q, v, slide=0.0 * Z)
-
-
 _VELOCITY = (
     r"{}^{i+1}\omega_{i+1} = {}^{i+1}_iR\,{}^i\omega_i"
     r" + \dot\theta_{i+1}\,{}^{i+1}\hat Z_{i+1},\quad"
@@ -258,19 +245,16 @@ _VELOCITY = (
 )
 
 
-def _no_formula(arm: Arm, q: Array) -> Array:
-    return np.full((*np.shape(q)[:-1], 3, arm.n), np.nan)
+_jacobian_rows = partial(formula, source="note 000, section 4.2", robots="serial")
 
 
-@formula(
+@_jacobian_rows(
     "000.Jv",
-    source="note 000, section 4.2",
     quantity="jacobian[:3]",
-    robots="serial",
     latex=r"\fixed{{}^0J_v = ({}^0\hat Z_1 \times ({}^0p_e - {}^0p_1)\ \cdots"
     r"\ {}^0\hat Z_n \times ({}^0p_e - {}^0p_n))}",
     printed=Printed(
-        _no_formula,
+        lambda arm, q: np.full((*np.shape(q)[:-1], 3, arm.n), np.nan),
         "the linear velocity is said to have no general formula; it has one, for any arm (shown: "
         "the printed form gives nothing)",
         r"{}^0J_v:\ \wrong{\text{no general formula}}",
@@ -282,14 +266,12 @@ def linear_jacobian(arm: Arm, q: Array) -> Array:
     return geometric_jacobian(arm, q, tool_pose(arm, q)[..., :3, 3])[..., :3, :]
 
 
-@formula(
+@_jacobian_rows(
     "000.vel",
-    source="note 000, section 4.2",
     quantity="link_velocities",
-    robots="serial",
     latex=_VELOCITY + r"\fixed{ + \dot d_{i+1}\,{}^{i+1}\hat Z_{i+1}}",
     printed=Printed(
-        _velocities_printed,
+        lambda arm, q, v: propagate(arm, q, v, slide=0.0 * Z),
         "written for revolute joints only: at a slide v gains d_dot Z and omega gains nothing",
         _VELOCITY + r"\wrong{\text{ (revolute only)}}",
         robots=("sliding",),
@@ -301,12 +283,10 @@ def velocities(arm: Arm, q: Array, v: Array) -> Array:
     return propagate(arm, q, v)
 
 
-@formula(
+@_jacobian_rows(
     "000.omega",
     part="base",
-    source="note 000, section 4.2",
     quantity="jacobian[3:]",
-    robots="serial",
     latex=r"{}^0J_\omega = ({}^0\hat Z_1\ \ {}^0\hat Z_2\ \cdots\ {}^0\hat Z_n)",
     remark="the column of a prismatic joint is zero",
 )
@@ -323,12 +303,10 @@ def _omega_printed(arm: Arm, q: Array) -> Array:
     return transpose(np.where(arm.prismatic[:, None], 0.0, arm.sign[:, None] * back[..., :, 2]))
 
 
-@formula(
+@_jacobian_rows(
     "000.omega",
     part="last frame",
-    source="note 000, section 4.2",
     quantity="angular_jacobian_last",
-    robots="serial",
     latex=r"{}^n\omega_n = \sum_i \fixed{{}^n_iR} \begin{pmatrix} 0 \\ 0 \\ 1 \end{pmatrix}"
     r" \dot\theta_i",
     printed=Printed(

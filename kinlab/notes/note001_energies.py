@@ -6,6 +6,7 @@ Throughout d1, d2 are the joint rates.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -47,10 +48,6 @@ def _inertial(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     return torques(arm, q, v, a, None, np.zeros(3))
 
 
-def _eom_printed(arm: Arm, q: Array, v: Array, a: Array, wrench: Array) -> Array:
-    return _inertial(arm, q, v, a) + q - _contact(arm, q, wrench)
-
-
 @formula(
     "001.eom",
     source="note 001, section 1",
@@ -58,7 +55,7 @@ def _eom_printed(arm: Arm, q: Array, v: Array, a: Array, wrench: Array) -> Array
     robots="serial",
     latex=r"M(q)\ddot q + b(q, \dot q) + \fixed{g(q)} = \tau + J_c^T F_c",
     printed=Printed(
-        _eom_printed,
+        lambda arm, q, v, a, wrench: _inertial(arm, q, v, a) + q - _contact(arm, q, wrench),
         "q(q) stands for the gravity term g(q) (read literally: q itself)",
         r"M(q)\ddot q + b(q, \dot q) + \wrong{q(q)} = \tau + J_c^T F_c",
     ),
@@ -69,11 +66,12 @@ def equation_of_motion(arm: Arm, q: Array, v: Array, a: Array, wrench: Array) ->
     return _inertial(arm, q, v, a) + mass.gravity_torques(arm, q) - _contact(arm, q, wrench)
 
 
-@formula(
+two_link = partial(formula, source=SECTION, robots=ARM)
+
+
+@two_link(
     "001.K",
-    source=SECTION,
     quantity="link_kinetic_energies",
-    robots=ARM,
     latex=r"K_1 = \tfrac12 m_1 l_1^2 \dot\theta_1^2,\quad K_2 = \tfrac12 m_2 v_2^2",
     remark="the note sets the square of theta_1 under the dot",
 )
@@ -84,11 +82,9 @@ def kinetic_energies(arm: Arm, q: Array, v: Array) -> Array:
     return vector(0.5 * m1 * l1**2 * d1**2, 0.5 * m2 * speed_squared(arm, q, v))
 
 
-@formula(
+@two_link(
     "001.P",
-    source=SECTION,
     quantity="link_potential_energies",
-    robots=ARM,
     latex=r"P_1 = m_1 g l_1 \sin\theta_1,\quad"
     r" P_2 = m_2 g l_1 \sin\theta_1 + m_2 g l_2 \sin(\theta_1 + \theta_2)",
 )
@@ -119,11 +115,9 @@ _V2 = (
 )
 
 
-@formula(
+@two_link(
     "001.v2",
-    source=SECTION,
     quantity="tip_speed_squared",
-    robots=ARM,
     latex=_V2[0] + r"\fixed{2\dot\theta_1\dot\theta_2}" + _V2[1],
     printed=Printed(
         _v2_printed,
@@ -165,11 +159,9 @@ _LAGRANGIAN = (
 )
 
 
-@formula(
+@two_link(
     "001.L",
-    source=SECTION,
     quantity="lagrangian",
-    robots=ARM,
     latex=_LAGRANGIAN[0]
     + r"\fixed{2\dot\theta_1\dot\theta_2}"
     + _LAGRANGIAN[1]

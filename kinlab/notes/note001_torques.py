@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from kinlab.formulas.record import Printed, formula
 from kinlab.notes.arm import Arm, Array, apply, columns, matrix, vector
-from kinlab.notes.note001_energies import ARM, SECTION, numbers
+from kinlab.notes.note001_energies import ARM, numbers, two_link
 
 # -------- Note 001: Lagrange's equation of the planar 2R arm, term by term, and the D
 #          coefficients
 # As in :mod:`kinlab.notes.note001_energies`; a1, a2 are the joint accelerations.
 
 
-@formula(
+@two_link(
     "001.dLdd1",
-    source=SECTION,
     quantity="momentum[0]",
-    robots=ARM,
     latex=r"\frac{\partial L}{\partial \dot\theta_1} = (m_1 + m_2) l_1^2 \dot\theta_1"
     r" + m_2 l_2^2 \dot\theta_1 + m_2 l_2^2 \dot\theta_2 + 2 m_2 l_1 l_2 c_2 \dot\theta_1"
     r" + m_2 l_1 l_2 c_2 \dot\theta_2",
@@ -50,11 +49,9 @@ def _rate_1_printed(arm: Arm, q: Array, v: Array, a: Array) -> Any:
     )
 
 
-@formula(
+@two_link(
     "001.ddt1",
-    source=SECTION,
     quantity="momentum_rate[0]",
-    robots=ARM,
     latex=r"\frac{d}{dt}\frac{\partial L}{\partial \fixed{\dot\theta_1}} ="
     r" [(m_1 + m_2) l_1^2 + \fixed{m_2 l_2^2} + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
     r" + (\fixed{m_2 l_2^2} + m_2 l_1 l_2 c_2)\ddot\theta_2"
@@ -85,11 +82,9 @@ def momentum_rate_1(arm: Arm, q: Array, v: Array, a: Array) -> Any:
     )
 
 
-@formula(
+@two_link(
     "001.dLdt1",
-    source=SECTION,
     quantity="lagrangian_gradient[0]",
-    robots=ARM,
     latex=r"\frac{\partial L}{\partial \theta_1} = -(m_1 + m_2) g l_1 c_1 - m_2 g l_2 c_{12}",
 )
 def gradient_1(arm: Arm, q: Array, v: Array) -> Any:
@@ -121,11 +116,9 @@ _TAU1 = (
 )
 
 
-@formula(
+@two_link(
     "001.tau1",
-    source=SECTION,
     quantity="inverse_dynamics[0]",
-    robots=ARM,
     latex=r"\tau_1 = [(m_1 + m_2) l_1^2 + \fixed{m_2 l_2^2} + 2 m_2 l_1 l_2 c_2]\ddot\theta_1"
     r" + (m_2 l_2^2 + m_2 l_1 l_2 c_2)\fixed{\ddot\theta_2}" + _TAU1,
     printed=Printed(
@@ -153,11 +146,9 @@ def tau_1(arm: Arm, q: Array, v: Array, a: Array) -> Any:
     )
 
 
-@formula(
+@two_link(
     "001.dLdd2",
-    source=SECTION,
     quantity="momentum[1]",
-    robots=ARM,
     latex=r"\frac{\partial L}{\partial \dot\theta_2} = m_2 l_2^2 \dot\theta_1"
     r" + m_2 l_2^2 \dot\theta_2 + m_2 l_1 l_2 c_2 \dot\theta_1",
 )
@@ -168,11 +159,9 @@ def momentum_2(arm: Arm, q: Array, v: Array) -> Any:
     return m2 * l2**2 * d1 + m2 * l2**2 * d2 + m2 * l1 * l2 * np.cos(columns(q)[1]) * d1
 
 
-@formula(
+@two_link(
     "001.ddt2",
-    source=SECTION,
     quantity="momentum_rate[1]",
-    robots=ARM,
     latex=r"\frac{d}{dt}\frac{\partial L}{\partial \dot\theta_2} = m_2 l_2^2 \ddot\theta_1"
     r" + m_2 l_2^2 \ddot\theta_2 + m_2 l_1 l_2 c_2 \ddot\theta_1"
     r" - m_2 l_1 l_2 s_2 \dot\theta_1\dot\theta_2",
@@ -192,11 +181,9 @@ def momentum_rate_2(arm: Arm, q: Array, v: Array, a: Array) -> Any:
     )
 
 
-@formula(
+@two_link(
     "001.dLdt2",
-    source=SECTION,
     quantity="lagrangian_gradient[1]",
-    robots=ARM,
     latex=r"\frac{\partial L}{\partial \theta_2} ="
     r" -m_2 l_1 l_2 s_2(\dot\theta_1^2 + \dot\theta_1\dot\theta_2) - m_2 g l_2 c_{12}",
 )
@@ -208,11 +195,9 @@ def gradient_2(arm: Arm, q: Array, v: Array) -> Any:
     return -m2 * l1 * l2 * np.sin(q2) * (d1**2 + d1 * d2) - m2 * g * l2 * np.cos(q1 + q2)
 
 
-@formula(
+@two_link(
     "001.tau2",
-    source=SECTION,
     quantity="inverse_dynamics[1]",
-    robots=ARM,
     latex=r"\tau_2 = (m_2 l_2^2 + m_2 l_1 l_2 c_2)\ddot\theta_1 + m_2 l_2^2 \ddot\theta_2"
     r" + m_2 l_1 l_2 s_2 \dot\theta_1^2 + m_2 l_2 g c_{12}",
 )
@@ -232,15 +217,12 @@ def tau_2(arm: Arm, q: Array, v: Array, a: Array) -> Any:
 
 # -------- Note 001, "Rearrange": the coefficients D_ij, D_ijk and D_i of the planar 2R arm
 
-_SOURCE = "note 001, section 2, rearranged"
+_coefficients = partial(formula, "001.D", source="note 001, section 2, rearranged", robots=ARM)
 
 
-@formula(
-    "001.D",
+@_coefficients(
     part="D_ij",
-    source=_SOURCE,
     quantity="mass_matrix",
-    robots=ARM,
     latex=r"D_{11} = (m_1 + m_2) l_1^2 + m_2 l_2^2 + 2 m_2 l_1 l_2 c_2,\quad"
     r" D_{12} = D_{21} = m_2 l_2^2 + m_2 l_1 l_2 c_2,\quad D_{22} = m_2 l_2^2",
     remark="at joint i the coupling torque is D_ij theta_j_ddot; D_ij theta_i_ddot is joint j's",
@@ -256,12 +238,9 @@ def inertias(arm: Arm, q: Array) -> Array:
     )
 
 
-@formula(
-    "001.D",
+@_coefficients(
     part="D_ijk",
-    source=_SOURCE,
     quantity="christoffel",
-    robots=ARM,
     latex=r"D_{122} = D_{112} = D_{121} = -m_2 l_1 l_2 s_2,\quad D_{211} = m_2 l_1 l_2 s_2,\quad"
     r" D_{111} = D_{222} = D_{212} = D_{221} = 0",
 )
@@ -273,12 +252,9 @@ def velocity_coefficients(arm: Arm, q: Array) -> Array:
     return np.stack([first, second], axis=-3)
 
 
-@formula(
-    "001.D",
+@_coefficients(
     part="D_i",
-    source=_SOURCE,
     quantity="gravity_torques",
-    robots=ARM,
     latex=r"D_1 = (m_1 + m_2) g l_1 c_1 + m_2 g l_2 c_{12},\quad D_2 = m_2 g l_2 c_{12}",
 )
 def gravity(arm: Arm, q: Array) -> Array:
@@ -298,10 +274,6 @@ def _assembled(arm: Arm, q: Array, v: Array, a: Array, squares: Array) -> Array:
     return apply(inertias(arm, q), a) + centripetal + coriolis + gravity(arm, q)
 
 
-def _tau_printed(arm: Arm, q: Array, v: Array, a: Array) -> Array:
-    return _assembled(arm, q, v, a, v)
-
-
 _D = (
     r"\tau_i = D_{i1}\ddot\theta_1 + D_{i2}\ddot\theta_2 + D_{i11}",
     r" + D_{i22}",
@@ -309,15 +281,12 @@ _D = (
 )
 
 
-@formula(
-    "001.D",
+@_coefficients(
     part="tau",
-    source=_SOURCE,
     quantity="inverse_dynamics",
-    robots=ARM,
     latex=_D[0] + r"\fixed{\dot\theta_1^2}" + _D[1] + r"\fixed{\dot\theta_2^2}" + _D[2],
     printed=Printed(
-        _tau_printed,
+        lambda arm, q, v, a: _assembled(arm, q, v, a, v),
         "D_ijj multiplies theta_j_dot², printed theta_j_dot",
         _D[0] + r"\wrong{\dot\theta_1}" + _D[1] + r"\wrong{\dot\theta_2}" + _D[2],
     ),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -65,12 +66,13 @@ def velocity_slope(arm: Arm, q: Array, v: Array) -> Array:
     return slope
 
 
-@formula(
+_coriolis = partial(formula, source=_SECTION, robots=MOVING)
+
+
+@_coriolis(
     "002.C",
     part="C",
-    source=_SECTION,
     quantity="coriolis_matrix",
-    robots=MOVING,
     latex=_CHRISTOFFEL,
     printed=Printed(printed_coriolis, _MISPRINT, _PRINTED),
 )
@@ -79,19 +81,13 @@ def coriolis_matrix(arm: Arm, q: Array, v: Array) -> Array:
     return coriolis(arm, q, v)
 
 
-def _twice_coriolis(arm: Arm, q: Array, v: Array) -> Array:
-    return 2.0 * coriolis(arm, q, v)
-
-
-@formula(
+@_coriolis(
     "002.C",
     part="symmetry",
-    source=_SECTION,
     quantity="mass_matrix_dot",
-    robots=MOVING,
     latex=r"(\dot M - 2C)^T = -(\dot M - 2C) \Rightarrow \fixed{C_{ij} + C_{ji} = \dot M_{ij}}",
     printed=Printed(
-        _twice_coriolis,
+        lambda arm, q, v: 2.0 * coriolis(arm, q, v),
         "from Mdot - 2C skew follows C_ij + C_ji = Mdot_ij, not C_ji = C_ij (shown: "
         "with C_ji = C_ij, Mdot would be 2C)",
         r"(\dot M - 2C)^T = -(\dot M - 2C) \Rightarrow \wrong{C_{ji} = C_{ij}}",
@@ -103,19 +99,13 @@ def mass_rate_by_symmetry(arm: Arm, q: Array, v: Array) -> Array:
     return np.asarray(found + transpose(found))
 
 
-def _printed_torques(arm: Arm, q: Array, v: Array) -> Array:
-    return apply(printed_coriolis(arm, q, v), v)
-
-
-@formula(
+@_coriolis(
     "002.C",
     part="torque",
-    source=_SECTION,
     quantity="coriolis_torques",
-    robots=MOVING,
     latex=_CHRISTOFFEL + r",\quad \tau = C\dot q",
     printed=Printed(
-        _printed_torques,
+        lambda arm, q, v: apply(printed_coriolis(arm, q, v), v),
         "the printed C gives wrong torques too: on the 2R arm C qd is off by "
         "m2 l1 l2 s2 (d2(2 d1 + d2)/2, -d1(4 d1 + 3 d2)/2)",
         _PRINTED + r",\quad \tau = C\dot q",
@@ -126,20 +116,14 @@ def coriolis_torques(arm: Arm, q: Array, v: Array) -> Array:
     return apply(coriolis(arm, q, v), v)
 
 
-def _twice(arm: Arm, q: Array, v: Array) -> Array:
-    return 2.0 * apply(coriolis(arm, q, v), v)
-
-
-@formula(
+@_coriolis(
     "002.C",
     part="Mdot qd",
-    source=_SECTION,
     quantity="mass_rate_velocity",
-    robots=MOVING,
     latex=r"\dot M \dot q = \fixed{C \dot q + \tfrac12 \dot q^T \frac{\partial M}{\partial q}"
     r" \dot q}",
     printed=Printed(
-        _twice,
+        lambda arm, q, v: 2.0 * apply(coriolis(arm, q, v), v),
         "Mdot qd = 2 C qd does not follow from qd^T (Mdot - 2C) qd = 0: a vector is not zero "
         "because its product with qd is",
         r"\dot M \dot q = \wrong{2 C \dot q}",
@@ -155,12 +139,10 @@ def _one_number(arm: Arm, q: Array, v: Array) -> Array:
     return np.broadcast_to(total[..., None], np.shape(q))
 
 
-@formula(
+@_coriolis(
     "002.C",
     part="gradient",
-    source=_SECTION,
     quantity="kinetic_gradient",
-    robots=MOVING,
     latex=r"\left(\tfrac12 \dot q^T \frac{\partial M}{\partial q} \dot q\right)_{\fixed{i}} ="
     r" \tfrac12\, \dot q^T \frac{\partial M}{\partial q_{\fixed{i}}} \dot q",
     printed=Printed(
@@ -175,20 +157,14 @@ def kinetic_gradient(arm: Arm, q: Array, v: Array) -> Array:
     return velocity_slope(arm, q, v)
 
 
-def _half_rate(arm: Arm, q: Array, v: Array) -> Array:
-    return 0.5 * apply(mass_rate(arm, q, v), v)
-
-
-@formula(
+@_coriolis(
     "002.C",
     part="reduction",
-    source=_SECTION,
     quantity="coriolis_torques",
-    robots=MOVING,
     latex=r"C \dot q = \fixed{\dot M \dot q - \tfrac12 \dot q^T \frac{\partial M}{\partial q}"
     r" \dot q}",
     printed=Printed(
-        _half_rate,
+        lambda arm, q, v: 0.5 * apply(mass_rate(arm, q, v), v),
         "the derivation ends in C qd = ½ Mdot qd, which holds for the power qd^T C qd only",
         r"C \dot q = \wrong{\tfrac12 \dot M \dot q}",
     ),
@@ -198,20 +174,14 @@ def reduced_torques(arm: Arm, q: Array, v: Array) -> Array:
     return apply(mass_rate(arm, q, v), v) - velocity_slope(arm, q, v)
 
 
-def _printed_skew(arm: Arm, q: Array, v: Array) -> Array:
-    return mass_rate(arm, q, v) - 2.0 * printed_coriolis(arm, q, v)
-
-
-@formula(
+@_coriolis(
     "002.skew",
     part="matrix",
-    source=_SECTION,
     quantity="skew_matrix",
-    robots=MOVING,
     latex=r"(\dot M - 2C)_{ij} = \sum_k \left( \fixed{\frac{\partial M_{jk}}{\partial q_i}"
     r" - \frac{\partial M_{ik}}{\partial q_j}} \right) \dot q_k",
     printed=Printed(
-        _printed_skew,
+        lambda arm, q, v: mass_rate(arm, q, v) - 2.0 * printed_coriolis(arm, q, v),
         "with the printed C, Mdot - 2C is symmetric, not skew (the note's own S_ji = -S_ij "
         "exchanges nothing but names)",
         r"S_{ij} = \sum_k \left( \wrong{\frac{\partial M_{ij}}{\partial q_k}"
@@ -225,12 +195,10 @@ def skew_matrix(arm: Arm, q: Array, v: Array) -> Array:
     return np.asarray(transpose(one) - one)
 
 
-@formula(
+@_coriolis(
     "002.skew",
     part="power",
-    source=_SECTION,
     quantity="mass_rate_power",
-    robots=MOVING,
     latex=r"\dot q^T (\dot M - 2C)\,\dot q = 0",
 )
 def no_power(arm: Arm, q: Array, v: Array) -> Any:

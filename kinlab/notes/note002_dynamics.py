@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -15,16 +16,14 @@ from kinlab.notes.note002_coriolis import mass_rate, velocity_slope
 # -------- Note 002: Lagrange's equation, its terms, and the single-joint example
 
 _EQUATION = "note 002, section 4.1 and core principle"
-_TERMS = "note 002, sections 4.2 to 4.5"
-_EXAMPLE = "note 002, section 4.7, single joint"
 
 
-@formula(
-    "002.Mdot",
+_term = partial(formula, "002.Mdot", source="note 002, sections 4.2 to 4.5", robots="serial")
+
+
+@_term(
     part="d/dt dL/dqd",
-    source=_TERMS,
     quantity="momentum_rate",
-    robots="serial",
     latex=r"\frac{d}{dt}(M \dot q) = \dot M \dot q + M \ddot q",
 )
 def momentum_rate(arm: Arm, q: Array, v: Array, a: Array) -> Array:
@@ -32,25 +31,17 @@ def momentum_rate(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     return apply(mass_rate(arm, q, v), v) + apply(mass.mass_matrix(arm, q), a)
 
 
-@formula(
-    "002.Mdot",
-    part="dL/dqd",
-    source=_TERMS,
-    quantity="momentum",
-    robots="serial",
-    latex=r"\frac{\partial L}{\partial \dot q} = M(q)\,\dot q",
+@_term(
+    part="dL/dqd", quantity="momentum", latex=r"\frac{\partial L}{\partial \dot q} = M(q)\,\dot q"
 )
 def momentum(arm: Arm, q: Array, v: Array) -> Array:
     """The generalized momentum."""
     return apply(mass.mass_matrix(arm, q), v)
 
 
-@formula(
-    "002.Mdot",
+@_term(
     part="Mdot",
-    source=_TERMS,
     quantity="mass_matrix_dot",
-    robots="serial",
     latex=r"\dot M = \sum_j \frac{\partial M}{\partial q_j} \dot q_j",
 )
 def mass_matrix_dot(arm: Arm, q: Array, v: Array) -> Array:
@@ -58,22 +49,15 @@ def mass_matrix_dot(arm: Arm, q: Array, v: Array) -> Array:
     return mass_rate(arm, q, v)
 
 
-@formula(
-    "002.Mdot",
+@_term(
     part="dL/dq",
-    source=_TERMS,
     quantity="lagrangian_gradient",
-    robots="serial",
     latex=r"\frac{\partial L}{\partial q} = \tfrac12\, \dot q^T \frac{\partial M}{\partial q}"
     r" \dot q - G(q)",
 )
 def lagrangian_gradient(arm: Arm, q: Array, v: Array) -> Array:
     """Gradient of the Lagrangian."""
     return velocity_slope(arm, q, v) - mass.gravity_torques(arm, q)
-
-
-def _reversed(arm: Arm, q: Array, v: Array, a: Array) -> Array:
-    return lagrangian_gradient(arm, q, v) - momentum_rate(arm, q, v, a)
 
 
 @formula(
@@ -84,7 +68,7 @@ def _reversed(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     latex=r"\fixed{\frac{d}{dt}\frac{\partial L}{\partial \dot q}"
     r" - \frac{\partial L}{\partial q}} = Q",
     printed=Printed(
-        _reversed,
+        lambda arm, q, v, a: lagrangian_gradient(arm, q, v) - momentum_rate(arm, q, v, a),
         "wrong sign: dL/dq - d/dt dL/dqd is -Q (the note has it right in section 4.1)",
         r"\wrong{\frac{\partial L}{\partial q}"
         r" - \frac{d}{dt}\frac{\partial L}{\partial \dot q}} = Q",
@@ -114,12 +98,14 @@ def _pendulum_printed(arm: Arm, q: Array, v: Array, a: Array) -> Any:
     return inertia * columns(a)[0] + weight * np.sin(_from_upright(q))
 
 
-@formula(
-    "002.pend",
+_single_joint = partial(
+    formula, "002.pend", source="note 002, section 4.7, single joint", robots="single_link"
+)
+
+
+@_single_joint(
     part="torque",
-    source=_EXAMPLE,
     quantity="inverse_dynamics[0]",
-    robots="single_link",
     latex=r"V = m g l_c \cos q \Rightarrow I \ddot q \fixed{-} m g l_c \sin q = \tau",
     printed=Printed(
         _pendulum_printed,
@@ -140,12 +126,9 @@ def _lagrangian_printed(arm: Arm, q: Array, v: Array) -> Any:
     return 0.5 * inertia * columns(v)[0] ** 2 + weight * np.cos(_from_upright(q))
 
 
-@formula(
-    "002.pend",
+@_single_joint(
     part="L",
-    source=_EXAMPLE,
     quantity="lagrangian",
-    robots="single_link",
     latex=r"L = T - V = \tfrac12 I \dot q^2 \fixed{-} m g l_c \cos q",
     printed=Printed(
         _lagrangian_printed,
@@ -159,12 +142,9 @@ def pendulum_lagrangian(arm: Arm, q: Array, v: Array) -> Any:
     return 0.5 * inertia * columns(v)[0] ** 2 - weight * np.cos(_from_upright(q))
 
 
-@formula(
-    "002.pend",
+@_single_joint(
     part="dL/dq",
-    source=_EXAMPLE,
     quantity="lagrangian_gradient[0]",
-    robots="single_link",
     latex=r"\frac{\partial L}{\partial q} = m g l_c \sin q",
 )
 def pendulum_gradient(arm: Arm, q: Array, v: Array) -> Any:
@@ -179,7 +159,6 @@ def pendulum_gradient(arm: Arm, q: Array, v: Array) -> Any:
 # integrals are sums over Gauss's 24 nodes, exact to rounding for paths as smooth as these.
 
 _SOURCE = "note 002, principle of least action"
-_ARMS = ("single_link", "planar2r", "spatial3r", "stanford")
 _T = 0.4
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 _TIMES, _SHARES = 0.5 * _T * (_NODES + 1.0), 0.5 * _T * _WEIGHTS
@@ -194,12 +173,17 @@ def _inner(arm: Arm, q: Array, v: Array, a: Array, dq: Array, shape: Array) -> A
     return total
 
 
-@formula(
+_action = partial(
+    formula,
     "002.action",
-    part="fixed ends",
     source=_SOURCE,
+    robots=("single_link", "planar2r", "spatial3r", "stanford"),
+)
+
+
+@_action(
+    part="fixed ends",
     quantity="action_variation",
-    robots=_ARMS,
     latex=r"\delta S = \int_{t_1}^{t_2} \left( \frac{\partial L}{\partial q}"
     r" - \frac{d}{dt}\frac{\partial L}{\partial \dot q} \right) \delta q\, dt",
 )
@@ -225,12 +209,10 @@ _INNER = (
 )
 
 
-@formula(
-    "002.action",
+@_action(
     part="boundary term",
     source=_SOURCE + ", integration by parts",
     quantity="action_variation_free_ends",
-    robots=_ARMS,
     latex=_INNER + r"\fixed{\frac{\partial L}{\partial \dot q}(t_2)\,\delta q(t_2)"
     r" - \frac{\partial L}{\partial \dot q}(t_1)\,\delta q(t_1)}",
     printed=Printed(
@@ -248,10 +230,8 @@ def variation_with_boundary(arm: Arm, q: Array, v: Array, a: Array, dq: Array) -
     return inner + dot(late, 2.0 * dq) - dot(early, dq)
 
 
-@formula(
-    "002.action",
+@_action(
     part="true motion",
-    source=_SOURCE,
     quantity="action_variation_of_motion",
     robots=("single_link", "planar2r"),
     latex=r"\delta S = 0 \ \text{along the true motion}",
@@ -263,21 +243,14 @@ def no_variation(arm: Arm, q: Array, v: Array, dq: Array) -> Any:
     return np.zeros(np.shape(q)[:-1])
 
 
-def _always_more(arm: Arm, duration: Array) -> Any:
-    del arm
-    return np.ones(np.shape(duration)[:-1])
-
-
-@formula(
-    "002.action",
+@_action(
     part="least",
-    source=_SOURCE,
     quantity="excess_action_sign",
     robots="single_link",
     latex=r"S_{new} - S \approx \tfrac12 \delta^2 S \ \fixed{\gtrless 0}, \quad \delta^2 S = "
     r"\tfrac{T}{2} A^2 \left( \tfrac{\pi^2}{T^2} I - m g l_c \right)",
     printed=Printed(
-        _always_more,
+        lambda arm, duration: np.ones(np.shape(duration)[:-1]),
         "the action is said to be least; it is stationary only: for a hanging arm watched longer "
         "than half a swing, nearby paths have less",
         r"S_{new} \wrong{> S}",

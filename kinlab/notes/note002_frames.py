@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from kinlab.formulas.record import Printed, formula
@@ -90,26 +92,17 @@ def elementary(_: None, theta: Array, d: Array, a: Array, alpha: Array) -> Array
     return _matrices(theta, d, a, tilted)
 
 
-@formula(
-    "002.T",
-    part="T_0i",
-    source=_SECTION,
-    quantity="dh_poses",
-    robots="serial",
-    latex=r"T_{0i}(q) = \prod_{k=1}^{i} T_k(q_k)",
-)
+_frames = partial(formula, source=_SECTION, robots="serial")
+
+
+@_frames("002.T", part="T_0i", quantity="dh_poses", latex=r"T_{0i}(q) = \prod_{k=1}^{i} T_k(q_k)")
 def poses(arm: Arm, q: Array) -> Array:
     """Pose of every DH frame in the base."""
     return frames(arm, q)[..., 1:, :, :]
 
 
-@formula(
-    "002.T",
-    part="R_i",
-    source=_SECTION,
-    quantity="dh_poses[:, :3, :3]",
-    robots="serial",
-    latex=r"R_i(q) = [T_{0i}(q)]_{1..3,\,1..3}",
+@_frames(
+    "002.T", part="R_i", quantity="dh_poses[:, :3, :3]", latex=r"R_i(q) = [T_{0i}(q)]_{1..3,\,1..3}"
 )
 def rotations(arm: Arm, q: Array) -> Array:
     """Rotation of every DH frame: the product of the links' own rotations."""
@@ -120,12 +113,10 @@ def rotations(arm: Arm, q: Array) -> Array:
     return np.stack(turned[1:], axis=-3)
 
 
-@formula(
+@_frames(
     "002.com",
     part="general",
-    source=_SECTION,
     quantity="com_positions",
-    robots="serial",
     latex=r"r_i = T_{0i} \begin{pmatrix} r_{i,local} \\ 1 \end{pmatrix}"
     r" = p_{0i} + R_i\,r_{i,local}",
 )
@@ -141,19 +132,16 @@ def _centres_on_x(arm: Arm, q: Array, share: float) -> Array:
     return poses[..., :3, 3] + offset[:, None] * poses[..., :3, 0]
 
 
-def _half_ahead(arm: Arm, q: Array) -> Array:
-    return _centres_on_x(arm, q, 0.5)
+_example = partial(formula, source=_SECTION + ", two-link example", robots="planar2r_rods")
 
 
-@formula(
+@_example(
     "002.com",
     part="example",
-    source=_SECTION + ", two-link example",
     quantity="com_positions",
-    robots="planar2r_rods",
     latex=r"r_i = T_{0i}\,[\fixed{-l_i/2}, 0, 0, 1]^T",
     printed=Printed(
-        _half_ahead,
+        lambda arm, q: _centres_on_x(arm, q, 0.5),
         "in standard DH frame i sits at the far end of link i: the example's centres at l/2 need "
         "c_i = -l_i/2",
         r"r_i = T_{0i}\,[\wrong{l_i/2}, 0, 0, 1]^T",
@@ -164,12 +152,10 @@ def rod_centres(arm: Arm, q: Array) -> Array:
     return _centres_on_x(arm, q, -0.5)
 
 
-@formula(
+@_example(
     "002.T2r",
     part="T_1, T_2",
-    source=_SECTION + ", two-link example",
     quantity="link_transforms",
-    robots="planar2r_rods",
     latex=r"T_i = R_z(q_i)\,T_x(l_i) = \begin{pmatrix} c_i & -s_i & 0 & l_i c_i \\"
     r" s_i & c_i & 0 & l_i s_i \\ 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{pmatrix}",
 )
@@ -192,12 +178,10 @@ _P2 = r" & 0 & l_1 c_1 + l_2 \cos(q_1 + q_2) \\ "
 _P2Y = r" & 0 & l_1 s_1 + l_2 \sin(q_1 + q_2) \\ 0 & 0 & 1 & 0 \\ 0 & 0 & 0 & 1 \end{pmatrix}"
 
 
-@formula(
+@_example(
     "002.T2r",
     part="T_02",
-    source=_SECTION + ", two-link example",
     quantity="dh_poses[1]",
-    robots="planar2r_rods",
     latex=r"T_{02} = \begin{pmatrix} \fixed{\cos(q_1 + q_2)} & -\fixed{\sin(q_1 + q_2)}"
     + _P2
     + r"\fixed{\sin(q_1 + q_2)} & \fixed{\cos(q_1 + q_2)}"
@@ -221,12 +205,10 @@ def two_link_pose(arm: Arm, q: Array) -> Array:
     return matrix([c, -s, 0, x], [s, c, 0, y], [0, 0, 1, 0], [0, 0, 0, 1])
 
 
-@formula(
+@_example(
     "002.T2r",
     part="r_1, r_2",
-    source=_SECTION + ", two-link example",
     quantity="com_positions",
-    robots="planar2r_rods",
     latex=r"r_1 = \begin{pmatrix} \frac{l_1}{2} c_1 \\ \frac{l_1}{2} s_1 \\ 0 \end{pmatrix},\quad"
     r" r_2 = \begin{pmatrix} l_1 c_1 + \frac{l_2}{2} c_{12} \\ l_1 s_1 + \frac{l_2}{2} s_{12}"
     r" \\ 0 \end{pmatrix}",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,12 +28,12 @@ def _tensor(points: Array, masses: Array) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 
-@formula(
-    "002.rot",
+_rotation = partial(formula, "002.rot", source=_TURNING, robots="identity")
+
+
+@_rotation(
     part="tensor",
-    source=_TURNING,
     quantity="point_inertia",
-    robots="identity",
     latex=r"I_{xx} = \sum m(y^2 + z^2),\ I_{xy} = \sum m x y,\quad I = \begin{pmatrix}"
     r" I_{xx} & -I_{xy} & -I_{xz} \\ -I_{xy} & I_{yy} & -I_{yz} \\ -I_{xz} & -I_{yz} & I_{zz}"
     r" \end{pmatrix}",
@@ -42,25 +43,17 @@ def inertia_tensor(_: None, points: Array, masses: Array) -> Array:
     return _tensor(points, masses)
 
 
-@formula(
-    "002.rot",
-    part="energy",
-    source=_TURNING,
-    quantity="turning_energy",
-    robots="identity",
-    latex=r"T_{rot} = \tfrac12\,\omega^T I\,\omega",
+@_rotation(
+    part="energy", quantity="turning_energy", latex=r"T_{rot} = \tfrac12\,\omega^T I\,\omega"
 )
 def turning_energy(_: None, points: Array, masses: Array, omega: Array) -> Any:
     """Kinetic energy of a turning body by its tensor."""
     return 0.5 * dot(omega, apply(_tensor(points, masses), omega))
 
 
-@formula(
-    "002.rot",
+@_rotation(
     part="cross product",
-    source=_TURNING,
     quantity="cross_norm_squared",
-    robots="identity",
     latex=r"\lVert a \times b \rVert^2 = \lVert a \rVert^2 \lVert b \rVert^2 - (a \cdot b)^2",
 )
 def cross_norm_squared(_: None, point: Array, other: Array) -> Any:
@@ -68,12 +61,12 @@ def cross_norm_squared(_: None, point: Array, other: Array) -> Any:
     return dot(point, point) * dot(other, other) - dot(point, other) ** 2
 
 
-@formula(
-    "002.M",
+_mapping = partial(formula, "002.M", source=_MAPPING, robots="serial")
+
+
+@_mapping(
     part="J",
-    source=_MAPPING,
     quantity="com_jacobians",
-    robots="serial",
     latex=r"\dot r_i = J_i(q)\,\dot q,\quad \omega_i = J_{\omega i}(q)\,\dot q",
 )
 def link_jacobians(arm: Arm, q: Array) -> Array:
@@ -89,12 +82,9 @@ def _own_axes(arm: Arm, q: Array) -> Array:
     return total + turning + np.diag(arm.armature)
 
 
-@formula(
-    "002.M",
+@_mapping(
     part="M",
-    source=_MAPPING,
     quantity="mass_matrix",
-    robots="serial",
     latex=r"M = \sum_i \left( m_i J_i^T J_i + J_{\omega i}^T \fixed{R_i I_i R_i^T} J_{\omega i}"
     r" \right)",
     printed=Printed(
@@ -111,14 +101,7 @@ def mass_matrix(arm: Arm, q: Array) -> Array:
     return mass.mass_matrix(arm, q)
 
 
-@formula(
-    "002.M",
-    part="T",
-    source=_MAPPING,
-    quantity="kinetic_energy",
-    robots="serial",
-    latex=r"T = \tfrac12\,\dot q^T M(q)\,\dot q",
-)
+@_mapping(part="T", quantity="kinetic_energy", latex=r"T = \tfrac12\,\dot q^T M(q)\,\dot q")
 def kinetic_energy(arm: Arm, q: Array, v: Array) -> Any:
     """Kinetic energy by the mass matrix."""
     return 0.5 * dot(v, apply(mass.mass_matrix(arm, q), v))
@@ -131,12 +114,12 @@ def _along_z(arm: Arm, q: Array) -> Array:
     return torque
 
 
-@formula(
-    "002.G",
+_gravity = partial(formula, "002.G", source=_GRAVITY, robots="serial")
+
+
+@_gravity(
     part="general",
-    source=_GRAVITY,
     quantity="gravity_torques",
-    robots="serial",
     latex=r"G_j = \frac{\partial V}{\partial q_j} = \sum_i m_i g"
     r" \frac{\partial \fixed{h_i}}{\partial q_j},\quad \fixed{h_i = -\hat g^T r_i}",
     printed=Printed(
@@ -153,21 +136,13 @@ def gravity_vector(arm: Arm, q: Array) -> Array:
     return mass.gravity_torques(arm, q)
 
 
-@formula(
-    "002.G",
-    part="V",
-    source=_GRAVITY,
-    quantity="potential_energy",
-    robots="serial",
-    latex=r"V = \sum_i m_i g h_i",
-)
+@_gravity(part="V", quantity="potential_energy", latex=r"V = \sum_i m_i g h_i")
 def potential_energy(arm: Arm, q: Array) -> Any:
     """Potential energy, zero at the base origin."""
     return mass.potential(arm, q)
 
 
-@formula(
-    "002.G",
+@_gravity(
     part="single link",
     source=_GRAVITY + ", example",
     quantity="gravity_torques[0]",

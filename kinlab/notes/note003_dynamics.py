@@ -6,6 +6,7 @@ engine has when they do. Vector g points down; the note writes m g e2 for minus 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -23,11 +24,12 @@ def _crank_gravity(loop: Loop, u: Array) -> Any:
     return loop.crank * loop.crank_com * loop.g * u[..., 0]
 
 
-@formula(
+_inverse = partial(formula, source=INVERSE, robots=HEAVY)
+
+
+@_inverse(
     "003.vw",
-    source=INVERSE,
     quantity="fivebar_torque_massless",
-    robots=HEAVY,
     latex=r"\boldsymbol\tau = (I_A \boldsymbol J + m \boldsymbol J^{-T}) \boldsymbol a"
     r" + I_A f(\boldsymbol v) + \boldsymbol\tau_{Ag} + m g \boldsymbol J^{-T} \boldsymbol e_2",
     remark="Holds for rods without mass and a point payload.",
@@ -40,12 +42,10 @@ def torque(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     return moved + _crank_gravity(loop, u) + held
 
 
-@formula(
+@_inverse(
     "003.vw",
     part="joint",
-    source=INVERSE,
     quantity="fivebar_torque_massless",
-    robots=HEAVY,
     latex=r"\boldsymbol\tau = (I_A + m \boldsymbol J^{-T} \boldsymbol J^{-1})"
     r" \ddot{\boldsymbol\theta} - m \boldsymbol J^{-T} \boldsymbol J^{-1} f + \boldsymbol\tau_{Ag}"
     r" + m g \boldsymbol J^{-T} \boldsymbol e_2",
@@ -53,10 +53,10 @@ def torque(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
 def torque_in_joints(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     """The same in the crank accelerations."""
     u, _, _ = bars(loop, xy, mode)
-    felt = loop.payload * tool_inertia(loop, xy, mode)
+    reflected = loop.payload * tool_inertia(loop, xy, mode)
     held = loop.payload * loop.g * times(inverse_transpose(jacobian(loop, xy, mode)), E2)
     theta_ddot = turn(loop, xy, v, a, mode)
-    payload = times(felt, theta_ddot) - times(felt, bias(loop, xy, v, mode))
+    payload = times(reflected, theta_ddot) - times(reflected, bias(loop, xy, v, mode))
     return loop.arm * theta_ddot + payload + _crank_gravity(loop, u) + held
 
 
@@ -66,12 +66,11 @@ def tool_inertia(loop: Loop, xy: Array, mode: Array) -> Any:
     return back @ np.swapaxes(back, -1, -2)
 
 
-@formula(
+@_inverse(
     "003.vw",
     part="rods",
     source="not in the note; Lagrange's equation with rigid rods",
     quantity="fivebar_torque",
-    robots=HEAVY,
     latex=r"\tau_i = I_{A,i}^* \ddot\theta_i + \kappa_i l_1 \boldsymbol n_i \cdot \boldsymbol a"
     r" + \tau_{Ag,i}^* + [\boldsymbol J^{-T} ((m + \Sigma\alpha_C) \boldsymbol a"
     r" + \Sigma \kappa_i \boldsymbol a_{B,i} + (m + \Sigma \rho m_d) g \boldsymbol e_2)]_i",
@@ -80,9 +79,9 @@ def torque_with_rods(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> 
     """Crank torques with rods of mass."""
     u, _, _ = bars(loop, xy, mode)
     n = np.stack([-u[..., 1], u[..., 0]], axis=-1)
-    rho, spin = loop.rod_com / loop.l2, loop.rod_inertia / loop.l2**2
-    alpha_b, alpha_c = loop.rod * (1 - rho) ** 2 + spin, loop.rod * rho**2 + spin
-    kappa = loop.rod * rho * (1 - rho) - spin
+    rho, inertia = loop.rod_com / loop.l2, loop.rod_inertia / loop.l2**2
+    alpha_b, alpha_c = loop.rod * (1 - rho) ** 2 + inertia, loop.rod * rho**2 + inertia
+    kappa = loop.rod * rho * (1 - rho) - inertia
     jac = jacobian(loop, xy, mode)
     rate, theta_ddot = times(jac, v), turn(loop, xy, v, a, mode)
     elbow = loop.l1[:, None] * (theta_ddot[..., None] * n - rate[..., None] ** 2 * u)
@@ -94,11 +93,9 @@ def torque_with_rods(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> 
     return own + held + times(inverse_transpose(jac), force)
 
 
-@formula(
+@_inverse(
     "003.G",
-    source=INVERSE,
     quantity="fivebar_torque_per_acceleration",
-    robots=HEAVY,
     latex=r"\boldsymbol G = I_A \boldsymbol J + m \boldsymbol J^{-T}"
     r" = I_A (\boldsymbol J + \eta \boldsymbol J^{-T}), \quad \eta = m/I_A",
     remark="The note corrects the paper: eta = m/I_A, whose dimension is 1/m².",
@@ -110,10 +107,9 @@ def linear(loop: Loop, xy: Array, mode: Array) -> Any:
     return loop.arm[:, None] * (jac + eta[:, None] * inverse_transpose(jac))
 
 
-@formula(
+@_inverse(
     "003.G",
     part="sigma",
-    source=INVERSE,
     quantity="fivebar_torque_gains",
     robots="isotropic",
     latex=r"\sigma_i(\boldsymbol G) = I_A (\sigma_i + \eta/\sigma_i) \ge 2\sqrt{m I_A}",
@@ -126,21 +122,17 @@ def gains(loop: Loop, xy: Array, mode: Array) -> Any:
     return np.sort(found, axis=-1)[..., ::-1]
 
 
-@formula(
-    "003.P",
-    source=INVERSE,
-    quantity="fivebar_power_massless",
-    robots=HEAVY,
-    latex=r"P_i = \tau_i \dot\theta_i",
-)
+@_inverse("003.P", quantity="fivebar_power_massless", latex=r"P_i = \tau_i \dot\theta_i")
 def power(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     """Power of each crank."""
     return torque(loop, xy, v, a, mode) * times(jacobian(loop, xy, mode), v)
 
 
-@formula(
+_servo = partial(formula, source=SERVO, robots=HEAVY)
+
+
+@_servo(
     "003.speed",
-    source=SERVO,
     quantity="fivebar_rate_per_speed",
     robots=("fivebar",),
     latex=r"\dot\Theta = \max\sqrt{\boldsymbol J_i \boldsymbol J_i^T}\, v_{\max}, \quad"
@@ -155,26 +147,22 @@ def rate_per_speed(loop: Loop, xy: Array, mode: Array) -> Any:
     return np.sqrt(dot(jac, jac))
 
 
-@formula(
+@_servo(
     "003.IM",
-    source=SERVO,
     quantity="fivebar_load_inertia_massless",
-    robots=HEAVY,
     latex=r"I_L = \operatorname{diag}(I_A + m \boldsymbol J^{-T} \boldsymbol J^{-1}), \quad"
     r" \frac{I_L}{3 j^2} < I_M < \frac{I_L}{j^2}",
     remark="The note writes I_L for the whole 2x2 matrix; a motor feels its diagonal entry.",
 )
 def load_inertia(loop: Loop, xy: Array, mode: Array) -> Any:
     """Inertia that each crank's motor carries, massless rods."""
-    felt = np.diagonal(tool_inertia(loop, xy, mode), axis1=-2, axis2=-1)
-    return loop.arm + loop.payload * felt
+    reflected = np.diagonal(tool_inertia(loop, xy, mode), axis1=-2, axis2=-1)
+    return loop.arm + loop.payload * reflected
 
 
-@formula(
+@_servo(
     "003.Tmax",
-    source=SERVO,
     quantity="fivebar_torque_per_acceleration_worst",
-    robots=HEAVY,
     latex=r"T_{\max} = \max\sqrt{\boldsymbol G_i \boldsymbol G_i^T}\, a_{\max}",
     remark="Printed with G_1 only; both rows are needed, and the transpose behind the product "
     "belongs to the second factor. Leaves out f(v), gravity, rods and efficiency; "

@@ -7,6 +7,7 @@ signs of u_i x w_i, which choose the sign before the root.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,11 +20,12 @@ INVERSE = "note 003, inverse kinematics"
 JACOBIAN = "note 003, Jacobian"
 
 
-@formula(
+_formula = partial(formula, source=INVERSE, robots=ROBOTS)
+
+
+@_formula(
     "003.loop",
-    source=INVERSE,
     quantity="fivebar_rod_length",
-    robots=ROBOTS,
     latex=r"(s e + l_1 \cos\theta - x)^2 + (l_1 \sin\theta - y)^2 = l_2^2",
 )
 def rod_length(loop: Loop, theta: Array, xy: Array) -> Any:
@@ -44,11 +46,9 @@ def _c_printed(loop: Loop, theta: Array, xy: Array) -> Any:
     return loop.l2**2 - loop.l1**2 - loop.e**2 - x**2 - y**2
 
 
-@formula(
+@_formula(
     "003.ABC",
-    source=INVERSE,
     quantity="fivebar_projection",
-    robots=ROBOTS,
     latex=r"2(s e - x) l_1 \cos\theta - 2 y l_1 \sin\theta ="
     r" l_2^2 - l_1^2 - e^2 - x^2 - y^2 \fixed{+ 2 s e x}",
     printed=Printed(
@@ -66,11 +66,9 @@ def right_side(loop: Loop, theta: Array, xy: Array) -> Any:
     return _c(loop, xy)
 
 
-@formula(
+@_formula(
     "003.tan",
-    source=INVERSE,
     quantity="fivebar_cranks",
-    robots=ROBOTS,
     latex=r"\theta = 2 \arctan \frac{B \pm \sqrt{A^2 + B^2 - C^2}}{A + C}",
     remark="0/0 where A + C = 0 (theta = pi in one mode); the plus sign is u x w > 0. kinlab's "
     "own inverse kinematics solves the leg's triangle instead.",
@@ -85,11 +83,9 @@ def cranks(loop: Loop, xy: Array, mode: Array) -> Any:
     return np.stack([np.cos(theta), np.sin(theta)], axis=-1)
 
 
-@formula(
+@_formula(
     "003.w",
-    source=INVERSE,
     quantity="fivebar_rods",
-    robots=ROBOTS,
     latex=r"\boldsymbol w_i = (\boldsymbol r - s e\,\boldsymbol e_1 - l_1 \boldsymbol u_i)/l_2",
 )
 def rods(loop: Loop, xy: Array, mode: Array) -> Any:
@@ -105,11 +101,10 @@ def bars(loop: Loop, xy: Array, mode: Array) -> tuple[Array, Array, Array]:
     return u, w, triple(u, w)
 
 
-@formula(
+@_formula(
     "003.J",
     source=JACOBIAN,
     quantity="fivebar_jacobian",
-    robots=ROBOTS,
     latex=r"\dot\theta_i = \frac{\boldsymbol w_i^T}{l_1 \boldsymbol u_i^T \boldsymbol H"
     r" \boldsymbol w_i} \boldsymbol v = \boldsymbol J_i \boldsymbol v",
 )
@@ -126,11 +121,10 @@ def bias(loop: Loop, xy: Array, v: Array, mode: Array) -> Any:
     return (vw**2 * dot(u, w) / loop.l1 + vu**2 / loop.l2) / (loop.l1 * sine**3)
 
 
-@formula(
+@_formula(
     "003.acc",
     source=JACOBIAN,
     quantity="fivebar_turn",
-    robots=ROBOTS,
     latex=r"\ddot\theta_i = \boldsymbol J_i \boldsymbol a + \frac{(\boldsymbol v \cdot"
     r" \boldsymbol w_i)^2 (\boldsymbol u_i \cdot \boldsymbol w_i)/l_1 + (\boldsymbol v \cdot"
     r" \boldsymbol u_i)^2/l_2}{l_1 (\boldsymbol u_i^T \boldsymbol H \boldsymbol w_i)^3}",

@@ -8,28 +8,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.metrics import ellipsoid
-from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.axes import Axes, frame_origins
 from kinlab.analysis.structure.task_space import TaskSpace
-from kinlab.arrays import Array
-from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot
 from kinlab.plots.canvas import BLUE, GREEN, GREY, RED, new_axes
 from kinlab.sweeps.workspace import stays_in_plane
 
 _STYLES = {"velocity": (GREEN, "-"), "force": (RED, "--"), "dynamic": (GREY, "-.")}
-
-
-def arm_points(robot: Robot, q: Array) -> Array:
-    """Corners of the arm's line: the joint frames' origins and the tool, (n + 2, 3)."""
-    import pinocchio as pin
-
-    data = robot.model.createData()
-    pin.forwardKinematics(robot.model, data, q)
-    joints = [np.zeros(3), *(np.array(data.oMi[i].translation) for i in range(1, robot.n + 1))]
-    return np.array([*joints, fk(robot, q)[:3, 3]])
 
 
 def ellipses(
@@ -64,7 +51,7 @@ def ellipses(
     state = joint_vector(robot, q, "q")
     found = [ellipsoid(robot, state, kind, "xy") for kind in kinds]
     axes = ax if ax is not None else new_axes(f"{robot.name}: ellipses at the tool")
-    corners = arm_points(robot, state)[:, :2]
+    corners = frame_origins(robot, state)[:, :2]
     axes.plot(*corners.T, color=BLUE, lw=4, solid_capstyle="round", zorder=2)
     axes.plot(
         *Axes.at(robot, state).point[:, :2].T, "o", color="white", mec=BLUE, ms=8, mew=2, zorder=3

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.singularities.loci import singular_loci
+from kinlab.analysis.structure.task_space import mask_of
 from kinlab.analysis.workspace.boundary import PlanarBoundary, planar_boundary
 from kinlab.analysis.workspace.sections import WorkspaceSection, takes_limits, workspace_section
 from kinlab.arrays import Array
@@ -68,8 +69,7 @@ def workspace(
         boundary = planar_boundary(robot)
         needed = abs(len(chart.rows) - robot.n) + 2
         if needed == robot.n:  # in a smaller slice the others would be held: not the whole set
-            task = tuple(i in chart.rows for i in range(6))
-            loci = singular_loci(robot, list(range(needed)), task=task)
+            loci = singular_loci(robot, list(range(needed)), task=mask_of(chart.rows))
             curves = [fk(robot, curve.q)[:, :3, 3] for curve in loci.curves]
     return workspace_map(
         chart, boundary=boundary, curves=curves, section=section, plane=plane, cells=cells, ax=ax
@@ -204,8 +204,7 @@ def _spread(values: Array, filled: Any) -> Array:
     for i, j in np.ndindex(3, 3):
         near += total[i : i + rows, j : j + columns]
         weight += count[i : i + rows, j : j + columns]
-    spread: Array = np.where(filled, values, near / np.maximum(weight, 1.0))
-    return spread
+    return np.where(filled, values, near / np.maximum(weight, 1.0))
 
 
 def _lines(

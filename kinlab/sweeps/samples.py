@@ -52,10 +52,9 @@ class Box:
         """See :class:`Samples`."""
         stream = np.random.SeedSequence(self.seed, spawn_key=(index,))
         rows = min(BLOCK, self.count - index * BLOCK)
-        states: Array = np.random.default_rng(stream).uniform(
+        return np.random.default_rng(stream).uniform(
             self.lower, self.upper, (rows, len(self.lower))
         )
-        return states
 
     def portion(self, first: int, last: int) -> Box:
         """The box itself: it is small."""

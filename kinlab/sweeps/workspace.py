@@ -13,7 +13,13 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.metrics import read_kind, singular_values, weighted
-from kinlab.analysis.structure.task_space import TaskSpace, read_length, read_task, search_box
+from kinlab.analysis.structure.task_space import (
+    TaskSpace,
+    mask_of,
+    read_length,
+    read_task,
+    search_box,
+)
 from kinlab.arrays import Array, frozen, seed_of, whole, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.fast.stacks import fk
@@ -238,7 +244,7 @@ class DexterityMeasure:
 
     def __call__(self, robot: Robot, q: Array) -> dict[str, Array]:
         """``points`` (m, 3) and ``values`` (m,) of the states q (m, n)."""
-        space = read_task(robot, tuple(row in self.rows for row in range(6)))
+        space = read_task(robot, mask_of(self.rows))
         matrix = space.jacobian(q, self.length)
         if self.metric == "asada":
             matrix = weighted(matrix, mass_matrix(robot, q))

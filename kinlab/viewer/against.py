@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.axes import frame_origins
 from kinlab.arrays import Array
 from kinlab.doctor.tables.diagnosis import diagnose_table
 from kinlab.doctor.tables.reference.against import poses_of, read_mine, reference_robot
@@ -15,7 +16,7 @@ from kinlab.doctor.tables.result import TableDiagnosis
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
-from kinlab.viewer.arm_page import DIRECTION, MARGIN, joint_json, origins
+from kinlab.viewer.arm_page import DIRECTION, MARGIN, joint_json
 from kinlab.viewer.drawing import shapes
 from kinlab.viewer.drawing.arm import draw_ghost, joint_paths, reach
 from kinlab.viewer.drawing.dh_picture import Carriers
@@ -56,7 +57,7 @@ def against_scene(
     if other is not None:
         _draw_over(scene, other, _("the repaired table") if other.table is found.repaired else "")
     for part in _wrong(found):
-        _light(scene, robot, table, part)
+        _highlight(scene, robot, table, part)
     first = _("{verdict} (against {reference}): {sentence}").format(
         verdict=_(found.verdict), reference=found.reference, sentence=found.sentence
     )
@@ -89,8 +90,8 @@ def _draw_over(scene: Scene, other: Robot, name: str) -> None:
             {**joint_json(other, i), "path": paths[i], "joint": i - 1}
             for i in range(1, other.model.njoints)
         ]
-    seen = [origins(scene.robot, scene.q)]
-    seen += [origins(other, scene.q)] if follows else []
+    seen = [frame_origins(scene.robot, scene.q)]
+    seen += [frame_origins(other, scene.q)] if follows else []
     camera = look_at(np.concatenate(seen), DIRECTION, MARGIN * reach(scene.robot))
     scene._spec["camera"] = camera.as_json()
     scene._spec["groups"]["reference"] = [root]
@@ -118,7 +119,7 @@ def _n(found: TableDiagnosis) -> int:
     return found.mine.n
 
 
-def _light(scene: Scene, robot: Robot, table: DHTable, part: int | str) -> None:
+def _highlight(scene: Scene, robot: Robot, table: DHTable, part: int | str) -> None:
     """A red rod from frame to frame over the segment of a row, the base or the tool."""
     frames = [np.asarray(table.base), *table.frames(np.zeros(table.n))]
     size = reach(robot)

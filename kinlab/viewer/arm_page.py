@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pinocchio as pin
 
+from kinlab.analysis.structure.axes import frame_origins
 from kinlab.analysis.structure.tasks import TASKS, generic_rank
 from kinlab.arrays import Array
-from kinlab.engine.fast.stacks import fk, jacobian
+from kinlab.engine.fast.stacks import jacobian
 from kinlab.errors import StructureError
 from kinlab.host.language import N_, _
 from kinlab.model.extract import as_table
@@ -51,7 +51,7 @@ def draw_page(vis: Any, robot: Robot, q: Array, *, meshes: bool) -> dict[str, An
     """
     size = reach(robot)
     set_stage(vis, size)
-    camera = look_at(origins(robot, q), DIRECTION, MARGIN * size)
+    camera = look_at(frame_origins(robot, q), DIRECTION, MARGIN * size)
     spec = empty_spec(
         robot.name, _("{n} joints. {source}").format(n=robot.n, source=robot.source).strip(), camera
     )
@@ -136,11 +136,3 @@ def _poses(robot: Robot) -> dict[str, list[float]]:
 
 def _flat(matrix: Array) -> list[float]:
     return [float(x) for x in np.asarray(matrix).reshape(-1)]
-
-
-def origins(robot: Robot, q: Array) -> Array:
-    """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
-    data = robot.model.createData()
-    pin.forwardKinematics(robot.model, data, q)
-    joints = [placement.translation for placement in list(data.oMi)[1:]]
-    return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])

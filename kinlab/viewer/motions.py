@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.task_space import mask_of
 from kinlab.arrays import Array, real_array
 from kinlab.drives.laws import rising
 from kinlab.engine.fast.stacks import fk, jacobian
@@ -130,7 +131,7 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
     walk = [q]
     for _step in range(3 * _STEPS):
         heading = _slide(det, q, heading)
-        q = _settle(det, q + 0.02 * heading)
+        q = _onto_singularity(det, q + 0.02 * heading)
         outside = (q < robot.lower) | (q > robot.upper)
         if outside.any():  # bounce off the limit
             heading = np.where(outside, -heading, heading)
@@ -218,9 +219,8 @@ def _track(robot: Robot, rows: list[int], q: Array, pose: Array, offsets: Array)
     goals[:, :3, 3] += offsets
     from kinlab.inverse.postures.path import ik_path
 
-    task = [r in rows for r in range(6)]
     for pick in (goals[::10], goals):  # a few first: most paths that fail do so there
-        way = ik_path(robot, pick, q, 1e-8, 1e-8, task=task)
+        way = ik_path(robot, pick, q, 1e-8, 1e-8, task=mask_of(rows))
         if not way.success.all() or len(way.jumps):
             return None
     return way.q
@@ -246,8 +246,7 @@ def _on_locus(robot: Robot, det: Callable[[Array], Array], rng: np.random.Genera
 
 def _slope(det: Callable[[Array], Array], q: Array) -> Array:
     step = 1e-6 * np.eye(len(q))
-    slope: Array = (det(q + step) - det(q - step)) / 2e-6
-    return slope
+    return (det(q + step) - det(q - step)) / 2e-6
 
 
 def _slide(det: Callable[[Array], Array], q: Array, heading: Array) -> Array:
@@ -259,7 +258,7 @@ def _slide(det: Callable[[Array], Array], q: Array, heading: Array) -> Array:
     return along
 
 
-def _settle(det: Callable[[Array], Array], q: Array) -> Array:
+def _onto_singularity(det: Callable[[Array], Array], q: Array) -> Array:
     """Back onto det J = 0 by Newton steps along its gradient."""
     for _step in range(4):
         normal = _slope(det, q)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
+from kinlab.analysis.structure.axes import frame_origins
 from kinlab.arrays import Array, real_array, shaped
 from kinlab.engine.fast.stacks import fk, jacobian
 from kinlab.engine.states import joint_vector, warn_far
@@ -17,7 +18,7 @@ from kinlab.fivebar.geometry import solve_pose
 from kinlab.fivebar.linkage import as_five_bar
 from kinlab.host.language import _
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page, origins
+from kinlab.viewer.arm_page import DIRECTION, MARGIN, draw_page
 from kinlab.viewer.drawing import shapes
 from kinlab.viewer.drawing.arm import draw_ghost, reach
 from kinlab.viewer.drawing.fivebar import best_start, size_of
@@ -67,8 +68,8 @@ class Scene(Page):
     def _see(self, poses: Array) -> None:
         """Moves the camera so that it sees the arm at the start and at poses (N, n)."""
         some = np.unique(np.linspace(0, len(poses) - 1, _SEEN).astype(int))
-        self._seen += [origins(self.robot, poses[k]) for k in some if k < len(poses)]
-        points = np.concatenate([origins(self.robot, self.q), *self._seen])
+        self._seen += [frame_origins(self.robot, poses[k]) for k in some if k < len(poses)]
+        points = np.concatenate([frame_origins(self.robot, self.q), *self._seen])
         self._spec["camera"] = look_at(points, DIRECTION, MARGIN * self._size).as_json()
 
     def _joints(self, q: ArrayLike) -> Array:

@@ -266,7 +266,7 @@ CONFUSIONS: dict[str, tuple[Callable[[Any, random.Random], Made], tuple[str, ...
     "joint order": (joint_order, ("joint order",)),
     "passive wrench sign": (passive, ("wrench sign",)),
     "inertia about the joint": (inertia_point, ("inertia point",)),
-    "inertia in link axes": (inertia_frame, ("inertia frame",)),
+    "inertia in link axes": (inertia_frame, ("inertia frame", "tensor not rotated")),
     "symmetric Coriolis": (symmetric, ("symmetric Coriolis",)),
     "gyroscopic term": (gyroscopic, ("gyroscopic term",)),
     "rotor inertia left out": (rotor, ("rotor inertia",)),

@@ -12,14 +12,13 @@ import argparse
 import random
 import re
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
-import bench_doctor
 import numpy as np
+from bench_doctor_cases import CONFUSED, ROBOTS, same
+from bench_doctor_cases import slips as bench_slips
 from confusions import CONFUSIONS, random_arm
 
 import kinlab as kl
@@ -114,25 +113,18 @@ def _printed(row: Any, robot: Any, samples: int) -> Callable[[], Any]:
     )
 
 
-def slips(count: int, seed: int, folder: Path, robots: tuple[str, ...] = ()) -> list[Judged]:
+def slips(count: int, seed: int, robots: tuple[str, ...] = ROBOTS) -> list[Judged]:
     """The bench's slips of the pen, one and two, as texts and as functions."""
-    rng = random.Random(seed)
-    kept, found = (bench_doctor.ROBOTS, bench_doctor.one_slip), []
-
-    def note(bench: Any, tallies: Any, formula: Any, form: str, rules: Any, bad: str,
-             folder: Path) -> None:  # fmt: skip
-        if bench_doctor.differs(formula, bad, form == "function"):
-            by = bench_doctor.by_text if form == "text" else bench_doctor.by_function
-            more = (folder,) if form == "text" else ()
-            label = f"{formula.robot} {formula.entry} {form} {'+'.join(rules)}"
-            found.append((label, lambda: by(formula, bad, *more)))
-
-    try:
-        bench_doctor.ROBOTS, bench_doctor.one_slip = robots or kept[0], note
-        pool = bench_doctor.formulas(rng)
-        bench_doctor.slips(bench_doctor.Bench(), pool, count, rng, folder)
-    finally:
-        bench_doctor.ROBOTS, bench_doctor.one_slip = kept
+    found: list[Judged] = []
+    for form in ("text", "function"):
+        for many in (1, 2):
+            for number in range(count):
+                rng = random.Random(f"{seed} {form} {many} {number}")
+                case = bench_slips(many, form)(rng, robots)
+                if case is not None:
+                    about = case.about
+                    label = f"{about['robot']} {about['entry']} {form} {case.label}"
+                    found.append((label, case.examine))
     return found
 
 
@@ -142,11 +134,11 @@ def confusions(rounds: int, seed: int, robots: tuple[str, ...] = ()) -> list[Jud
     found: list[Judged] = []
     for _ in range(rounds):
         shipped = robots or rng.random() < 0.5
-        arm = (kl.load(rng.choice(robots or bench_doctor.CONFUSED)) if shipped
+        arm = (kl.load(rng.choice(robots or CONFUSED)) if shipped
                else random_arm(rng, rng.choice([2, 3, 4, 6])))  # fmt: skip
         for name, (make, _) in CONFUSIONS.items():
             made = make(arm, rng)
-            if made is not None and not bench_doctor.same(arm, *made):
+            if made is not None and not same(arm, *made):
                 found.append((f"{arm.name} {made[0]} {name}", _confused(arm, *made)))
     return found
 
@@ -163,13 +155,12 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--seed", type=int, default=0, help="of the bench")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
-        judged = misprints() + confusions(options.rounds, options.seed)
-        judged += slips(options.count, options.seed, Path(folder))
-        changed = []
-        for k, one in enumerate(judged):
-            changed += changes([one], range(options.seeds))
-            print(f"{k + 1} of {len(judged)}, {len(changed)} changed", flush=True)
+    judged = misprints() + confusions(options.rounds, options.seed)
+    judged += slips(options.count, options.seed)
+    changed = []
+    for k, one in enumerate(judged):
+        changed += changes([one], range(options.seeds))
+        print(f"{k + 1} of {len(judged)}, {len(changed)} changed", flush=True)
     print("\n".join(changed))
     print(f"{len(judged)} diagnoses, {options.seeds} seeds: {len(changed)} told differently")
     sys.exit(bool(changed))

@@ -6,8 +6,8 @@
 Parties, in processes of their own that take turns on the same states: that checkout's
 ``mass_matrix``, ``coriolis_matrix`` and ``potential_energy`` of (N, n); today's, one Pinocchio
 call after the other; and Pinocchio on all cores. Ratios are medians over the rounds of a party's
-time over that of the compiled engine. The rule: a second engine stays where it is 3 times faster
-than Pinocchio can be had, at every length of stack.
+time over that of the compiled engine, with quartiles. The rule: a second engine stays where it is
+3 times faster than Pinocchio can be had, at every length of stack.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ def main() -> None:
             command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, cwd=root,
             env={**os.environ, "PYTHONPATH": str(root)},
         )  # fmt: skip
-    print(f"{'function':17} {'states':>7}  own us/state   one by one / own   on threads / own")
+    print(f"{'function':17} {'states':>7}  own us/state    one by one / own     on threads / own")
     for name in WHAT:
         for length in LENGTHS:
             seconds: dict[str, list[float]] = {party: [] for party in PARTIES}
@@ -137,9 +137,11 @@ def main() -> None:
                     sums.append(total)
                 assert np.allclose(sums, sums[0], rtol=1e-9), sums
             own = np.array(seconds["own engine"])
-            one, many = (np.median(np.array(seconds[p]) / own) for p in PARTIES[1:])
-            micro = 1e6 * np.median(own) / length
-            print(f"{name:17} {length:7}  {micro:12.3f}   {one:16.2f}   {many:16.2f}")
+            told = ""
+            for party in PARTIES[1:]:
+                low, middle, high = np.percentile(np.array(seconds[party]) / own, [25, 50, 75])
+                told += f"  {middle:5.2f} ({low:5.2f} to {high:5.2f})"
+            print(f"{name:17} {length:7}  {1e6 * np.median(own) / length:12.3f}{told}")
     for helper in helpers.values():
         assert helper.stdin is not None
         helper.stdin.close()

@@ -54,6 +54,26 @@ def test_a_slip_does_not_hide_behind_rounding(tmp_path: Path, text: str) -> None
     assert judge(tmp_path, g2=text).grade == "wrong"
 
 
+@pytest.mark.parametrize("text", ["1.5*0.16*1.001", "1.501*0.16", "0.24*0.999", "m2*0.16*1.005",
+                                  "m2*l2**2*0.995", "1.5*0.1602", "0.99*m2*0.16"])  # fmt: skip
+def test_an_error_is_not_laid_into_an_exact_number(tmp_path: Path, text: str) -> None:
+    assert judge(tmp_path, M22=text).grade == "wrong"
+
+
+@pytest.mark.parametrize("text", ["1.5*0.4*9.8*c12", "0.60*9.8*c12", "9.82*0.6*c12", "m2*3.92*c12",
+                                  "(1.5708/3.1416)*2*m2*9.8*l2*c12"])  # fmt: skip
+def test_numbers_beside_exact_ones_are_rounded(tmp_path: Path, text: str) -> None:
+    assert judge(tmp_path, g2=text).form == "rounded"
+
+
+def test_two_numbers_in_one_term_are_both_rounded(tmp_path: Path) -> None:
+    found = judge(tmp_path, "planar2r_rods", M22="0.33*1.5*0.16")
+    assert found.remarks == ("0.33 stands for 1/3",)
+    both = judge(tmp_path, "planar2r_rods", g2="0.5*m2*0.4*9.8*c12*3.14/3.14159")
+    assert "3.14 stands for pi" in both.remarks
+    assert "9.8 stands for g = 9.81" in both.remarks
+
+
 def test_numbers_for_names_hold_for_one_robot_only(tmp_path: Path) -> None:
     found = judge(tmp_path, M11="(m1+m2)*0.25 + m2*l2**2 + 2*m2*l1*l2*c2")
     assert found.grade == "right"
@@ -112,6 +132,25 @@ def test_functions_with_rounded_numbers() -> None:
     assert mass.grade == "right with rounded numbers"
     much = kl.diagnose(ARM, "gravity_torques", lambda q: kl.gravity_torques(ARM, q) * 9.5 / 9.81)
     assert not much.agrees
+
+
+@pytest.mark.parametrize("factor", [1.001, 0.999, 0.99, 1.005, 0.9995])
+def test_a_function_that_is_off_by_a_factor_is_not_rounded(factor: float) -> None:
+    one = kl.diagnose(ARM, "gravity_torques[1]", lambda q: factor * 5.886 * np.cos(q[0] + q[1]))
+    assert not one.agrees
+    whole = kl.diagnose(ARM, "gravity_torques", lambda q: factor * kl.gravity_torques(ARM, q))
+    assert not whole.agrees
+
+
+def test_a_third_in_a_function_is_rounded() -> None:
+    rods = kl.load("planar2r_rods")
+    told = kl.diagnose(rods, "mass_matrix[1,1]", lambda q: 0.333 * 1.5 * 0.16)
+    assert told.remarks == ("0.333 stands for 1/3",)
+
+    def inertia(q):
+        return (0.333 * 2.0 + 1.5) * 0.25 + 0.333 * 1.5 * 0.16 + 0.3 * np.cos(q[1])
+
+    assert kl.diagnose(rods, "mass_matrix[0,0]", inertia).form == "rounded"
 
 
 def test_no_false_alarm_in_a_sample_of_the_campaign(tmp_path: Path) -> None:

@@ -54,8 +54,8 @@ def test_a_misprint_of_a_spatial_arm_is_told_alike(rounding, key, robot):
     assert rounding.changes(judged, SEEDS[:2]) == []
 
 
-def test_slips_of_the_bench_are_told_alike(rounding, tmp_path):
-    judged = rounding.slips(8, 0, tmp_path, ("planar2r", "single_link"))
+def test_slips_of_the_bench_are_told_alike(rounding):
+    judged = rounding.slips(8, 0, ("planar2r", "single_link"))
     assert len(judged) > 15
     assert rounding.changes(judged, SEEDS[:3]) == []
 

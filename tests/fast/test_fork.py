@@ -24,8 +24,9 @@ work = {
 }[sys.argv[1]]
 here = work()
 
+# the child compares: five megabytes through a pipe would wait behind the parent's busy threads
 def in_child(_):
-    return work()
+    return np.array_equal(here, work())
 
 stop = threading.Event()
 def busy():
@@ -39,7 +40,7 @@ with multiprocessing.get_context("fork").Pool(2) as pool:
 stop.set()
 for thread in threads:
     thread.join()
-print(all(np.array_equal(here, one) for one in there))
+print(all(there))
 """
 
 

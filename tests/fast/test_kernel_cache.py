@@ -7,7 +7,7 @@ import pickle
 
 import pytest
 
-from kinlab.engine.fast.compiled import _Forgiving
+from kinlab.engine.fast.compiled import ForgivingCache
 
 
 class Cache:
@@ -30,7 +30,7 @@ class Cache:
 )
 def test_neither_reading_nor_writing_it_raises(problem):
     inner = Cache(problem)
-    cache = _Forgiving(inner)
+    cache = ForgivingCache(inner)
     assert cache.load_overload("sig", None) is None
     assert inner.flushed
     cache.save_overload("sig", None)

@@ -14,6 +14,7 @@ from newton_euler import mass_matrix, torques
 from random_tables import random_table, tables
 
 import kinlab as kl
+from kinlab.errors import UrdfError
 
 POSE = 1e-12
 DYNAMICS = 1e-10
@@ -124,3 +125,34 @@ def test_gimbal_lock_loses_nothing(convention, alpha, theta):
     table = kl.DHTable("gimbal", convention, rows)
     q = states(table, 20)[0]
     assert np.max(np.abs(kl.fk(kl.Robot.from_dh(table), q) - table.fk(q)[:, -1])) <= 1e-14
+
+
+@settings(max_examples=40)
+@given(tables)
+def test_the_records_of_a_table_are_what_its_urdf_reads_as(table):
+    """What is built without reading the text back is what a reader of the text gets."""
+    one, two = kl.Robot.from_dh(table).model, kl.Robot.from_urdf(kl.to_urdf(table), "tool").model
+    assert list(one.names) == list(two.names)
+    for i in range(1, one.njoints):
+        assert np.array_equal(
+            one.jointPlacements[i].homogeneous, two.jointPlacements[i].homogeneous
+        )
+        assert np.array_equal(one.inertias[i].matrix(), two.inertias[i].matrix())
+    for name in ("lowerPositionLimit", "upperPositionLimit", "armature", "damping", "friction"):
+        assert np.array_equal(getattr(one, name), getattr(two, name))
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        ({"a": 4e9}, "'dh_joint_1': origin xyz: 4e\\+09 is beyond 1e\\+09"),
+        ({"mass": 4e9}, "link 'link_1': inertial: 4e\\+09 is beyond"),
+        ({"upper": 1e18}, "joint 'joint_1': limits: 1e\\+18 is beyond 1e\\+17"),
+        ({"name": " shoulder"}, "begin or end with a blank"),
+        ({"name": "tool_joint"}, "joint 'tool_joint' is defined twice"),
+    ],
+)
+def test_tables_that_no_urdf_can_hold_are_named(row, message):
+    table = kl.DHTable("odd", "standard", [kl.DHLink(**row)])
+    with pytest.raises(UrdfError, match=f"table 'odd': .*{message}"):
+        kl.Robot.from_dh(table)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from console import kinlab as run
+from scenes import told
 
 import kinlab as kl
 from kinlab.errors import KinlabError, OptionError
@@ -24,12 +25,12 @@ MOTION = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, -0.6]], acceleration=8)
 def test_the_page_plays_a_motion_and_marks_what_it_meets(monkeypatch):
     monkeypatch.setattr(show, "in_notebook", lambda: True)  # no server
     scene = kl.view(ELBOW, motion=MOTION)
-    shown = scene._spec["animation"]
+    shown = told(scene)["animation"]
     assert np.array_equal(shown["q"], MOTION.q) and np.array_equal(shown["times"], MOTION.t)
     assert shown["name"] == "Motion: quintic" and scene.q.tolist() == [0.4, 0.9]
-    assert "singularity, t = 0.576 s" in str(scene._spec["labels"])
+    assert "singularity, t = 0.576 s" in str(told(scene)["labels"])
     ran = kl.simulate(ELBOW, [0.1, 0.2], duration=0.1)
-    assert kl.view("planar2r", motion=ran)._spec["animation"]["name"] == "Simulated motion"
+    assert told(kl.view("planar2r", motion=ran))["animation"]["name"] == "Simulated motion"
     with pytest.raises(OptionError, match="one arm"):
         kl.view(kl.FiveBar.load("isotropic"), motion=MOTION)
     with pytest.raises(KinlabError, match="expected"):

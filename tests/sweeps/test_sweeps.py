@@ -261,6 +261,12 @@ def test_what_the_measure_raises_arrives(workers):
                  chunk=1)  # fmt: skip
 
 
+def test_the_first_block_that_fails_is_told_whichever_is_faster():
+    with pytest.raises(ZeroDivisionError, match=f"block of {BLOCK}"):
+        kl.sweep(1, sweep_measures.raises_late, BLOCK + 100, lower=[0], upper=[1], workers=2,
+                 chunk=1)  # fmt: skip
+
+
 def test_memory_is_that_of_a_chunk(tmp_path):
     """20 blocks of 3.3 MB each go to disk and are searched with few of them in memory."""
     block = BLOCK * 100 * 8

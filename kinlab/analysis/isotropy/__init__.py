@@ -11,5 +11,7 @@ module              what it holds
                     configuration
 ``design_model``    A DH table with some of its numbers open: its Jacobian and how it changes with
                     them
+``system``          Isotropy as a system of smooth equations, and the length that may be one of its
+                    unknowns
 ==================  ==============================================================================
 """

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.isotropy.system import LengthChoice
 from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import jacobian_derivative
 from kinlab.analysis.structure.task_space import TaskSpace, search_box
@@ -70,18 +71,19 @@ def least_condition(
         rng: source of the starts.
         starts: most starts.
     """
+    choice = LengthChoice(space, length)
     lower, upper = search_box(space.robot)
     best: tuple[float, Array, float] | None = None
     lowest, ends = np.inf, np.empty(0)
     while len(ends) < starts:
         # a whole block is drawn even if less is used: the sequence is the same for every effort
         drawn = rng.uniform(lower, upper, (BLOCK, space.robot.n))[: starts - len(ends)]
-        x = _unknowns(space, length, drawn)
+        x = choice.start(drawn)
         for power in _TOGETHER:
-            x, value = _descend_together(space, length, x, power)
+            x, value = _descend_together(choice, x, power)
         ends = np.concatenate([ends, np.exp(value)])
         for number in _different(value, np.log(space.m) / _TOGETHER[-1]):
-            state, size = _follow(space, length, x[number])
+            state, size = _follow(choice, x[number])
             reached = float(condition_number(singular_values(space.jacobian(state, size))))
             if best is None or reached < best[0] * (1.0 - 1e-12):
                 if best is None or reached < best[0] * (1.0 - 1e-6):
@@ -92,12 +94,6 @@ def least_condition(
             break
     assert best is not None
     return LeastCondition(best[1], best[2], best[0], len(ends), met, ends)
-
-
-def _unknowns(space: TaskSpace, length: float | None, q: Array) -> Array:
-    if length is not None or not space.mixed:
-        return q
-    return np.concatenate([q, np.full((len(q), 1), np.log(space.scale))], axis=1)
 
 
 def _box(space: TaskSpace, width: int) -> tuple[Array, Array]:
@@ -124,35 +120,33 @@ def _different(value: Array, error: float) -> list[int]:
     return chosen
 
 
-def _descend_together(
-    space: TaskSpace, length: float | None, x: Array, power: float
-) -> tuple[Array, Array]:
+def _descend_together(choice: LengthChoice, x: Array, power: float) -> tuple[Array, Array]:
     """BFGS within the limits on every row of x (N, k); returns x and the values (N,)."""
-    lower, upper = _box(space, x.shape[1])
+    lower, upper = _box(choice.space, x.shape[1])
     x = np.clip(x, lower, upper)
-    value, slope = _surrogate(x, space, power, length)
+    value, derivative = _surrogate(x, choice, power)
     inverse = np.broadcast_to(np.eye(x.shape[1]), (len(x), *[x.shape[1]] * 2)).copy()
     size = np.full(len(x), 0.3)
     for _ in range(_ROUNDS):
         pulse()
-        held = ((x <= lower) & (slope > 0.0)) | ((x >= upper) & (slope < 0.0))
-        free = np.where(held, 0.0, slope)
+        held = ((x <= lower) & (derivative > 0.0)) | ((x >= upper) & (derivative < 0.0))
+        free = np.where(held, 0.0, derivative)
         step = -np.einsum("nij,nj->ni", inverse, free)
         step = np.where(held, 0.0, step)
-        uphill = np.einsum("ni,ni->n", step, free) >= 0.0
-        inverse[uphill] = np.eye(x.shape[1])
-        step = np.where(uphill[:, np.newaxis], -free, step)
+        ascending = np.einsum("ni,ni->n", step, free) >= 0.0
+        inverse[ascending] = np.eye(x.shape[1])
+        step = np.where(ascending[:, np.newaxis], -free, step)
         largest = np.abs(step).max(axis=1)
         step *= np.minimum(1.0, size / np.maximum(largest, 1e-300))[:, np.newaxis]
         trial = np.clip(x + step, lower, upper)
-        new, new_slope = _surrogate(trial, space, power, length)
+        new, new_derivative = _surrogate(trial, choice, power)
         better = new < value
-        moved, turned = trial - x, new_slope - slope
+        moved, turned = trial - x, new_derivative - derivative
         inverse = _bfgs(inverse, moved, turned, better)
         size = np.where(better, np.minimum(0.5, 2.0 * size), 0.25 * np.minimum(size, largest))
         x = np.where(better[:, np.newaxis], trial, x)
         value = np.where(better, new, value)
-        slope = np.where(better[:, np.newaxis], new_slope, slope)
+        derivative = np.where(better[:, np.newaxis], new_derivative, derivative)
     return x, value
 
 
@@ -166,15 +160,15 @@ def _bfgs(inverse: Array, moved: Array, turned: Array, better: Any) -> Array:
     return np.where(sound[:, np.newaxis, np.newaxis], new, inverse)
 
 
-def _follow(space: TaskSpace, length: float | None, x: Array) -> tuple[Array, float]:
+def _follow(choice: LengthChoice, x: Array) -> tuple[Array, float]:
     """To the kink, through growing powers: q (n,) and the length."""
     from scipy.optimize import minimize  # `import kinlab` does not wait for scipy
 
-    bounds = list(zip(*_box(space, len(x)), strict=True))
+    bounds = list(zip(*_box(choice.space, len(x)), strict=True))
 
     def cost(y: Array, power: float) -> tuple[float, Array]:
-        value, slope = _surrogate(y[np.newaxis], space, power, length)
-        return float(value[0]), slope[0]
+        value, derivative = _surrogate(y[np.newaxis], choice, power)
+        return float(value[0]), derivative[0]
 
     for power in _POWERS:
         answer = minimize(
@@ -187,36 +181,28 @@ def _follow(space: TaskSpace, length: float | None, x: Array) -> tuple[Array, fl
             options={"maxiter": 300, "ftol": 1e-15},
         )
         x = answer.x
-    n = space.robot.n
-    if len(x) > n:
-        return x[:n], float(np.exp(x[-1]))
-    return x, length if length is not None else 1.0
+    return x[: choice.space.robot.n], float(choice.length(x[np.newaxis])[0])
 
 
-def _surrogate(
-    x: Array, space: TaskSpace, power: float, length: float | None
-) -> tuple[Array, Array]:
+def _surrogate(x: Array, choice: LengthChoice, power: float) -> tuple[Array, Array]:
     """ln of the p-norm condition number (N,), and its gradient (N, k)."""
-    n = space.robot.n
-    open_length = x.shape[1] > n
-    size = np.exp(x[:, -1]) if open_length else np.full(len(x), 1.0 if length is None else length)
-    full = jacobian(space.robot, x[:, :n])
+    space, size = choice.space, choice.length(x)
+    full = jacobian(space.robot, x[:, : space.robot.n])
     matrix = space.select(full, size)
     change = space.select(jacobian_derivative(full), size[:, np.newaxis])
-    if open_length:
-        change = np.concatenate([change, (-matrix * space.metres)[:, np.newaxis]], axis=1)
+    change = choice.with_length(change, matrix)
     left, sigma, right = np.linalg.svd(matrix, full_matrices=False)
     flat = sigma[:, -1] < 1e-12 * sigma[:, 0]
     sigma = np.where(flat[:, np.newaxis], 1.0, sigma)
     log = np.log(sigma)
     # d ln sigma_i / d x_k
     inner = np.einsum("nmi,nkmj->nkij", left, change)
-    slope = np.einsum("nkij,nij->nki", inner, right) / sigma[:, np.newaxis]
+    derivative = np.einsum("nkij,nij->nki", inner, right) / sigma[:, np.newaxis]
     high, low = 2.0 * power * (log - log[:, :1]), -2.0 * power * (log - log[:, -1:])
     top, bottom = np.exp(high), np.exp(low)
     sums = np.log(top.sum(axis=1)) + np.log(bottom.sum(axis=1))
     value = sums / (2.0 * power) + log[:, 0] - log[:, -1]
     weight = top / top.sum(axis=1, keepdims=True) - bottom / bottom.sum(axis=1, keepdims=True)
-    gradient = np.einsum("nki,ni->nk", slope, weight)
+    gradient = np.einsum("nki,ni->nk", derivative, weight)
     # a singular start stays where it is, and is never best
     return np.where(flat, 60.0, value), np.where(flat[:, np.newaxis], 0.0, gradient)

@@ -15,17 +15,16 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
+from kinlab.analysis.isotropy.system import IsotropySystem
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
-from kinlab.analysis.solver import jacobian_derivative, solve
+from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import (
-    TaskSpace,
     read_reachable_task,
     revolute,
     search_box,
     wrap,
 )
 from kinlab.arrays import Array, between, frozen, seed_of, whole
-from kinlab.engine.fast.stacks import jacobian
 from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells, vector
 from kinlab.host.progress import takes_long
@@ -194,13 +193,12 @@ def find_isotropic(
         best_length = least.length if space.mixed else None
         low, middle, high = np.quantile(least.ends, [0.05, 0.5, 0.95])
         spread = (float(low), float(middle), float(high))
-    how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     return IsotropySearch(
         robot.name,
         space.name,
         space.rows,
         space.suggested,
-        how,
+        system.how,
         configurations,
         best_q,
         best_condition,
@@ -243,12 +241,12 @@ def isotropic_families(
     space, robot = system.space, system.space.robot
     lower, upper = search_box(robot)
     turns = revolute(robot)
-    parked = np.clip(np.zeros(robot.n), lower, upper)
+    at_zero = np.clip(np.zeros(robot.n), lower, upper)
     seen: list[tuple[tuple[int, ...], int, Array, float]] = []
     for state, size in zip(q, lengths, strict=True):
         free = _free_joints(system, state, float(size))
         place = state.copy()
-        place[list(free)] = parked[list(free)]
+        place[list(free)] = at_zero[list(free)]
         alike = [(freedom, other) for group, freedom, other, _ in seen if group == free]
         apart = [
             np.where(turns, 2.0 * np.abs(np.sin(0.5 * (place - other))), np.abs(place - other))
@@ -311,8 +309,8 @@ def _dimension(system: IsotropySystem, q: Array, length: float) -> int:
 
 def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     """Solutions around x (1, k), (N, k), and how many directions they span."""
-    _, slope = system(x)
-    _, values, right = np.linalg.svd(slope[0])
+    _, derivative = system(x)
+    _, values, right = np.linalg.svd(derivative[0])
     still = right[int(np.sum(values > 1e-5 * values[0])) :]
     if not len(still):
         return x[:0], 0
@@ -325,71 +323,3 @@ def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     apart = system.q(around) - system.q(x)
     spread = np.linalg.svd(apart / np.sqrt(len(around)), compute_uv=False)
     return around, int(np.sum(spread > 0.15 * TOLERANCES.family_radius / np.sqrt(len(still))))
-
-
-@dataclass(frozen=True)
-class IsotropySystem:
-    """J J^T / (trace / m) - 1 = 0 in q, and in ln L where the length is open.
-
-    Attributes:
-        space: the task.
-        given: characteristic length in metres, or ``None``.
-    """
-
-    space: TaskSpace
-    given: float | None
-
-    @property
-    def open_length(self) -> bool:
-        """Whether the length is an unknown."""
-        return self.given is None and self.space.mixed
-
-    def start(self, q: Array) -> Array:
-        """Unknowns at q (N, n)."""
-        if not self.open_length:
-            return q
-        return np.concatenate([q, np.full((len(q), 1), np.log(self.space.scale))], axis=1)
-
-    def q(self, x: Array) -> Array:
-        """The joint part of the unknowns, (N, n)."""
-        return x[:, : self.space.robot.n]
-
-    def length(self, x: Array) -> Array:
-        """The lengths, (N,)."""
-        if self.open_length:
-            # the span only stops a runaway start from overflowing
-            return np.exp(np.clip(x[:, -1], -30.0, 30.0))
-        return np.full(len(x), self.given if self.given is not None else 1.0)
-
-    def __call__(self, x: Array) -> tuple[Array, Array]:
-        """Residuals (N, p) and derivatives (N, p, k)."""
-        space = self.space
-        full, sizes = jacobian(space.robot, self.q(x)), self.length(x)
-        matrix = space.select(full, sizes)
-        change = space.select(jacobian_derivative(full), sizes[:, np.newaxis])
-        if self.open_length:
-            change = np.concatenate([change, (-matrix * space.metres)[:, np.newaxis]], axis=1)
-        return isotropy_equations(matrix, change)
-
-
-def isotropy_equations(matrix: Array, change: Array) -> tuple[Array, Array]:
-    """The upper triangle of J J^T / (trace / m) - 1, and its derivative.
-
-    Args:
-        matrix: task Jacobians, (N, m, n).
-        change: their derivatives, (N, k, m, n).
-
-    Returns:
-        (N, p) and (N, p, k), p = m (m + 1) / 2.
-    """
-    m = matrix.shape[1]
-    gram = matrix @ matrix.swapaxes(1, 2)
-    mean = np.trace(gram, axis1=1, axis2=2)[:, np.newaxis, np.newaxis] / m
-    half = change @ matrix.swapaxes(1, 2)[:, np.newaxis]
-    gram_change = half + half.swapaxes(2, 3)
-    mean_change = np.trace(gram_change, axis1=2, axis2=3)[..., np.newaxis, np.newaxis] / m
-    upper = np.triu_indices(m)
-    residual = (gram / mean - np.eye(m))[:, upper[0], upper[1]]
-    slope = gram_change / mean[:, np.newaxis]
-    slope = slope - gram[:, np.newaxis] * mean_change / mean[:, np.newaxis] ** 2
-    return residual, slope[:, :, upper[0], upper[1]].swapaxes(1, 2)

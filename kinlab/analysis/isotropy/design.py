@@ -11,13 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.isotropy.configurations import (
-    IsotropicConfiguration,
-    IsotropySystem,
-    isotropic_families,
-    isotropy_equations,
-)
+from kinlab.analysis.isotropy.configurations import IsotropicConfiguration, isotropic_families
 from kinlab.analysis.isotropy.design_model import OpenChain, open_chain
+from kinlab.analysis.isotropy.system import IsotropySystem, LengthChoice, isotropy_equations
 from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
@@ -157,7 +153,7 @@ def design_isotropic(
     chain = open_chain(table, free)
     space = read_reachable_task(Robot.from_dh(table), task)
     given = read_length_choice(length)
-    system = DesignSystem(chain, space, given)
+    system = DesignSystem(space, given, chain)
     x, _ = solve(system, system.starts(seeds, np.random.default_rng(seed)), iterations=120)
     q, values, lengths = system.split(x)
     q = wrap(space.robot, q)
@@ -165,12 +161,11 @@ def design_isotropic(
     sound = system.sound(q, values)
     accepted = sound & (condition - 1.0 <= TOLERANCES.isotropic)
     designs = _designs(system, x[accepted], q[accepted], values[accepted], lengths[accepted], keep)
-    how = "none needed" if not space.mixed else "optimal" if given is None else "given"
     finite = condition[sound & np.isfinite(condition)]
     return DesignSearch(
         space.name,
         space.suggested,
-        how,
+        system.how,
         "sum of the open lengths kept" if system.scalable else "set by the numbers that stay",
         designs,
         float(finite.min(initial=np.inf)),
@@ -234,23 +229,16 @@ def _freedom(system: DesignSystem, x: Array) -> int:
 
 
 @dataclass(frozen=True)
-class DesignSystem:
+class DesignSystem(LengthChoice):
     """Isotropy in q, the open numbers, and ln L where the length is open.
 
     Attributes:
-        chain: the table with open numbers.
         space: the task of the table as it is given.
         given: characteristic length, or ``None``.
+        chain: the table with open numbers.
     """
 
     chain: OpenChain
-    space: TaskSpace
-    given: float | None
-
-    @property
-    def open_length(self) -> bool:
-        """Whether the characteristic length is an unknown."""
-        return self.given is None and self.space.mixed
 
     @property
     def units(self) -> Array:
@@ -298,11 +286,7 @@ class DesignSystem:
     def split(self, x: Array) -> tuple[Array, Array, Array]:
         """q (N, n), open numbers in SI (N, k), lengths (N,)."""
         n, k = self.space.robot.n, len(self.chain.open)
-        size = self.given if self.given is not None else 1.0
-        lengths = np.full(len(x), size)
-        if self.open_length:
-            lengths = np.exp(np.clip(x[:, -1], -30.0, 30.0))
-        return x[:, :n], x[:, n : n + k] * self.units, lengths
+        return x[:, :n], x[:, n : n + k] * self.units, self.length(x)
 
     def matrix(self, x: Array) -> Array:
         """The task's J, (N, m, n)."""
@@ -319,10 +303,7 @@ class DesignSystem:
         matrix = self.space.select(full[..., driven], lengths)
         derivative = self.space.select(change, lengths[:, np.newaxis])
         derivative[:, n:] *= self.units[:, np.newaxis, np.newaxis]
-        if self.open_length:
-            by_length = (-matrix * self.space.metres)[:, np.newaxis]
-            derivative = np.concatenate([derivative, by_length], axis=1)
-        return matrix, derivative
+        return matrix, self.with_length(derivative, matrix)
 
     def __call__(self, x: Array) -> tuple[Array, Array]:
         """Residuals (N, p) and derivatives (N, p, unknowns)."""

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from kinlab import symbolic
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import System, solve
-from kinlab.analysis.structure.task_space import TaskSpace, read_task, search_box, wrap
+from kinlab.analysis.structure.task_space import TaskSpace, mask_of, read_task, search_box, wrap
 from kinlab.arrays import Array, between, seed_of
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
@@ -171,17 +171,16 @@ def _meaning(
 ) -> SingularFactor:
     robot = space.robot
     function = symbolic.to_function(arm, expression)
-    slope = symbolic.to_function(arm, sympy.Matrix([[sympy.diff(expression, q) for q in arm.q]]))
+    gradient = symbolic.to_function(arm, sympy.Matrix([[sympy.diff(expression, q) for q in arm.q]]))
     size = _size(robot, function)
     lower, upper = search_box(robot)
     starts = rng.uniform(lower, upper, (_STARTS, robot.n))
-    found, miss = solve(_as_system(function, slope, size), starts)
+    found, miss = solve(_as_system(function, gradient, size), starts)
     found = wrap(robot, found[miss < TOLERANCES.factor_vanishes])
     inside = between(found, lower, upper).all(axis=1)
     # zeros outside the limits show the meaning where there are none inside
     zeros = [*found[inside], *found[~inside]][:_EXAMPLES]
-    mask = tuple(i in space.rows for i in range(6))
-    examples = [describe_singularity(robot, q, mask) for q in zeros]
+    examples = [describe_singularity(robot, q, mask_of(space.rows)) for q in zeros]
     meaning = "/".join(sorted({e.kind for e in examples})) or "never zero"
     names = tuple(
         name
@@ -200,12 +199,12 @@ def _meaning(
 
 
 def _as_system(
-    function: Callable[[ArrayLike], Array], slope: Callable[[ArrayLike], Array], size: float
+    function: Callable[[ArrayLike], Array], gradient: Callable[[ArrayLike], Array], size: float
 ) -> System:
     def system(x: Array) -> tuple[Array, Array]:
         values = np.array([[float(function(q)) / size] for q in x])
-        slopes = np.array([slope(q).reshape(1, -1) / size for q in x])
-        return values, slopes
+        gradients = np.array([gradient(q).reshape(1, -1) / size for q in x])
+        return values, gradients
 
     return system
 

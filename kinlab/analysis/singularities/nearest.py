@@ -22,10 +22,14 @@ from kinlab.analysis.singularities.certified import nearest_zero
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
-from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, revolute
+from kinlab.analysis.structure.task_space import (
+    TaskSpace,
+    mask_of,
+    one_state,
+    read_reachable_task,
+    revolute,
+)
 from kinlab.arrays import Array, between, seed_of, whole
-from kinlab.engine.states import joint_vector
-from kinlab.errors import OptionError
 from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction
 from kinlab.host.progress import pulse, takes_long
@@ -103,9 +107,7 @@ def nearest_singularity(
     robot = as_robot(robot)
     boxes, points, seed = whole(boxes, "boxes"), whole(points, "points"), seed_of(seed)
     space = read_reachable_task(robot, task)
-    here = joint_vector(robot, q, "q")
-    if here.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {here.shape}; give one state")
+    here = one_state(robot, q)
     sigma = singular_values(space.jacobian(here, space.scale))
     parts = factors(space)
     if parts is None:
@@ -115,7 +117,7 @@ def nearest_singularity(
     distance = np.inf if state is None else float(np.linalg.norm(state - here))
     bound = float(np.clip(bound, 0.0, distance))
     meets = bool(bound >= distance - 2.0 * TOLERANCES.distance_gap)
-    found = None if state is None else describe_singularity(robot, state, space_mask(space.rows))
+    found = None if state is None else describe_singularity(robot, state, mask_of(space.rows))
     return NearestSingularity(
         distance,
         bound,
@@ -224,18 +226,13 @@ def slope_bound(space: TaskSpace) -> float:
     reach = np.array([sum(steps[i + 1 :]) + float(travel[i:].sum()) for i in range(robot.n)])
     column = np.where(turns, (reach / space.scale) ** 2 + 1.0, 1.0)
     # joint j turns every column, those before it by at most their length as seen from j
-    slope = [
+    squares = [
         float(column[j:].sum() + j * (reach[j] / space.scale) ** 2)
         if turns[j]
         else float(j) / space.scale**2
         for j in range(robot.n)
     ]
-    return float(np.sqrt(sum(slope)))
-
-
-def space_mask(rows: tuple[int, ...]) -> tuple[bool, ...]:
-    """The mask of six booleans of these rows."""
-    return tuple(i in rows for i in range(6))
+    return float(np.sqrt(sum(squares)))
 
 
 def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120) -> Array:
@@ -250,21 +247,21 @@ def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120)
         active = np.flatnonzero(size > 1e-9)
         if not len(active):
             break
-        _, slope = system(best[active])
+        _, derivative = system(best[active])
         wanted = np.zeros((len(active), best.shape[1]))
         wanted[:, :n] = here - best[active, :n]
         # tangential part in q: leave out what the constraint forbids, u follows along
-        step = wanted - _normal_part(slope, wanted, n)
+        step = wanted - _normal_part(derivative, wanted, n)
         trial = best[active] + size[active, np.newaxis] * step
         trial[:, :n] = np.clip(trial[:, :n], lower, upper)
         trial, valid = _restore(system, trial)
         before = np.linalg.norm(best[active, :n] - here, axis=1)
         after = np.linalg.norm(trial[:, :n] - here, axis=1)
-        won = valid & (after < before)
-        best[active[won]] = trial[won]
-        settled = won & (before - after < 1e-14 * np.maximum(before, 1.0))
-        size[active[won]] = np.minimum(1.0, 2.0 * size[active[won]])
-        size[active[~won]] *= 0.25
+        accepted = valid & (after < before)
+        best[active[accepted]] = trial[accepted]
+        settled = accepted & (before - after < 1e-14 * np.maximum(before, 1.0))
+        size[active[accepted]] = np.minimum(1.0, 2.0 * size[active[accepted]])
+        size[active[~accepted]] *= 0.25
         size[active[settled]] = 0.0
     return best
 
@@ -279,16 +276,16 @@ def _turned(robot: Robot, q: Array, here: Array) -> Array:
     return chosen
 
 
-def _normal_part(slope: Array, wanted: Array, n: int) -> Array:
+def _normal_part(derivative: Array, wanted: Array, n: int) -> Array:
     """What to take from ``wanted`` so that the constraint keeps its value; u moves at no cost.
 
     Minimises |dq - wanted_q|^2 + (1e-3)^2 |du|^2 with slope (dq, du) = 0.
     """
-    weight = np.ones(slope.shape[2])
+    weight = np.ones(derivative.shape[2])
     weight[n:] = 1e3  # per unit of the scaled unknown du / weight
-    scaled = slope * weight
+    scaled = derivative * weight
     inverse = np.linalg.pinv(scaled, rcond=1e-9)
-    value = np.einsum("nij,nj->ni", slope, wanted)
+    value = np.einsum("nij,nj->ni", derivative, wanted)
     part: Array = weight * np.einsum("nij,nj->ni", inverse, value)
     return part
 

@@ -17,6 +17,7 @@ from kinlab.analysis.singularities.singular_set import holds, pinned, pinned_pai
 from kinlab.analysis.structure.axes import name_singularity, structure
 from kinlab.analysis.structure.task_space import (
     TaskSpace,
+    one_state,
     read_reachable_task,
     revolute,
     search_box,
@@ -24,7 +25,6 @@ from kinlab.analysis.structure.task_space import (
 )
 from kinlab.analysis.structure.tasks import COORDINATES
 from kinlab.arrays import Array, between, frozen, largest_first, seed_of, whole
-from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Answer, Introduction, Rows, counted, numbered, vector
@@ -383,9 +383,7 @@ def describe_singularity(robot: ArmLike, q: ArrayLike, task: Any = "auto") -> Si
     """
     robot = as_robot(robot)
     space = read_reachable_task(robot, task)
-    state = joint_vector(robot, q, "q")
-    if state.ndim != 1:
-        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    state = one_state(robot, q)
     found = _describe(space, state)
     if found is None:
         values = space.sigma(state)
@@ -468,8 +466,7 @@ def _half_turn(robot: Robot, q: Array) -> Array:
     """q with -pi written as pi where the limits admit it: rounding must not choose between them."""
     there = revolute(robot) & (np.abs(q + np.pi) < TOLERANCES.same_pinned_value)
     there &= robot.upper >= np.pi - TOLERANCES.same_pinned_value
-    turned: Array = np.where(there, q + 2.0 * np.pi, q)
-    return turned
+    return np.where(there, q + 2.0 * np.pi, q)
 
 
 def _rounded(pinned: tuple[float, ...]) -> tuple[float, ...]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import pinocchio as pin
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.stacks import fk, jacobian
@@ -54,6 +55,22 @@ class Axes:
             return slide
         velocity: Array = np.cross(self.direction[i], at - self.point[i])
         return velocity
+
+
+def frame_origins(robot: Robot, q: Array) -> Array:
+    """Origins of the base, the joint frames and the tool, (n + 2, 3)."""
+    data = robot.model.createData()
+    pin.forwardKinematics(robot.model, data, q)
+    joints = [placement.translation for placement in list(data.oMi)[1:]]
+    return np.array([np.zeros(3), *joints, fk(robot, q)[:3, 3]])
+
+
+def first_axis(robot: Robot) -> tuple[Array, Array]:
+    """A point of the first axis, nearest to the base's origin, and its direction, (3,) each."""
+    axes = Axes.at(robot, np.zeros(robot.n))
+    axis, origin = axes.direction[0], axes.point[0]
+    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
+    return origin - axis * float(origin @ axis), axis
 
 
 def meeting_point(axes: Axes, joints: tuple[int, ...]) -> Array | None:

@@ -9,6 +9,7 @@ metres (linear rows, revolute columns) are divided by a *characteristic length* 
 from __future__ import annotations
 
 import ast
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -20,6 +21,7 @@ from numpy.typing import ArrayLike
 from kinlab.analysis.structure.tasks import TASKS, generic_rank, require_task, task_name, task_rows
 from kinlab.arrays import Array, frozen, real_array
 from kinlab.engine.fast.stacks import jacobian
+from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.model.robot import Robot
 
@@ -175,10 +177,27 @@ def _suggest(sample: Array) -> tuple[int, ...]:
     return rows
 
 
+def mask_of(rows: Sequence[int]) -> tuple[bool, ...]:
+    """The mask of six booleans of these rows, which is a task too."""
+    return tuple(row in rows for row in range(6))
+
+
 def plain_name(rows: tuple[int, ...]) -> str:
     """The task's name without quotes, or its coordinates."""
     name = task_name(rows)
     return str(ast.literal_eval(name)) if name.startswith("'") else name
+
+
+def one_state(robot: Robot, q: ArrayLike) -> Array:
+    """Reads one joint vector, (n,).
+
+    Raises:
+        StateError: of another shape, or not finite. OptionError: a stack.
+    """
+    state = joint_vector(robot, q, "q")
+    if state.ndim != 1:
+        raise OptionError(f"robot {robot.name!r}: q has shape {state.shape}; give one state")
+    return state
 
 
 def read_length(length: Any) -> float:

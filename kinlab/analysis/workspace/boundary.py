@@ -47,8 +47,7 @@ class BoundaryArc:
         """Points along the arc, ends included, (count, 2)."""
         angle = np.linspace(self.start, self.stop, count)
         circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        points: Array = self.centre + self.radius * circle
-        return points
+        return self.centre + self.radius * circle
 
 
 @dataclass(frozen=True, repr=False)

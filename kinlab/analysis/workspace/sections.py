@@ -20,7 +20,7 @@ import numpy as np
 
 from kinlab.analysis.singularities.loci import trace_from
 from kinlab.analysis.solver import jacobian_derivative, solve
-from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.axes import first_axis
 from kinlab.analysis.structure.task_space import TaskSpace, revolute, search_box, wrap
 from kinlab.arrays import Array, between, frozen, number, seed_of
 from kinlab.engine.fast.stacks import fk, jacobian
@@ -114,7 +114,7 @@ def workspace_section(robot: ArmLike, *, step: float = 0.05, seed: int = 0) -> W
         )
     lower, upper = search_box(robot)
     start = 0.5 * (lower + upper)
-    origin, axis = _first_axis(robot)
+    origin, axis = first_axis(robot)
     space = TaskSpace(robot, (0, 1, 2), "position")
     moving = _moving(robot, origin, axis)
     if len(moving) < 2:
@@ -170,15 +170,7 @@ def takes_limits(robot: Robot) -> bool:
     """Whether the section of this arm holds the curves of joints at a limit too: all edges."""
     if robot.n < 3 or not revolute(robot)[0]:
         return False
-    return 2 <= len(_moving(robot, *_first_axis(robot))) <= _MOST_LOCKED
-
-
-def _first_axis(robot: Robot) -> tuple[Array, Array]:
-    lower, upper = search_box(robot)
-    axes = Axes.at(robot, 0.5 * (lower + upper))
-    axis, origin = axes.direction[0], axes.point[0]
-    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
-    return origin - axis * float(origin @ axis), axis
+    return 2 <= len(_moving(robot, *first_axis(robot))) <= _MOST_LOCKED
 
 
 def _moving(robot: Robot, origin: Array, axis: Array) -> tuple[int, ...]:
@@ -253,8 +245,8 @@ class _SectionSystem:
         rows, outward, rho, full = self._rows(self.states(x))
         change = jacobian_derivative(full)[:, moving][:, :, :3][..., free]  # (N, j, 3, i)
         round_ = np.cross(self.axis, outward)
-        turn = np.einsum("nc,nci->ni", round_, full[:, :3])  # speed around the axis
-        swing = turn[:, moving][:, :, np.newaxis] * turn[:, free][:, np.newaxis, :]
+        tangential = np.einsum("nc,nci->ni", round_, full[:, :3])  # speed around the axis
+        swing = tangential[:, moving][:, :, np.newaxis] * tangential[:, free][:, np.newaxis, :]
         bent = np.stack(
             [
                 np.einsum("nc,njci->nji", outward, change) + swing / rho[:, np.newaxis, np.newaxis],
@@ -266,11 +258,11 @@ class _SectionSystem:
         residual = np.empty((len(x), k + 1))
         residual[:, :k] = np.einsum("nr,nri->ni", u, chosen) / scale
         residual[:, k] = 0.5 * (np.einsum("nr,nr->n", u, u) - 1.0)
-        slope = np.zeros((len(x), k + 1, unknown + 2))
-        slope[:, :k, :unknown] = np.einsum("nr,nrji->nij", u, bent) / scale
-        slope[:, :k, unknown:] = chosen.swapaxes(1, 2) / scale
-        slope[:, k, unknown:] = u
-        return residual, slope
+        derivative = np.zeros((len(x), k + 1, unknown + 2))
+        derivative[:, :k, :unknown] = np.einsum("nr,nrji->nij", u, bent) / scale
+        derivative[:, :k, unknown:] = chosen.swapaxes(1, 2) / scale
+        derivative[:, k, unknown:] = u
+        return residual, derivative
 
 
 def _curves(system: _SectionSystem, rng: np.random.Generator, step: float) -> list[Array]:

@@ -12,10 +12,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.serial import SERIAL
-from kinlab.engine import dynamics
-from kinlab.engine import lagrange as energies
+from kinlab.engine import dynamics, lagrange
 from kinlab.model.robot import Robot
 
 DURATION = 0.4
@@ -48,8 +46,8 @@ def _variation(robot: Robot, q: Any, v: Any, a: Any, dq: Any, shape: Array, rate
     total = np.zeros(len(q))
     for time, weight, share, speed in zip(t, weights, shape, rate, strict=True):
         here, moving = q + v * time + 0.5 * a * time**2, v + a * time
-        slope = energies.lagrangian_gradient(robot, here, moving)
-        momentum = energies.momentum(robot, here, moving)
+        slope = lagrange.lagrangian_gradient(robot, here, moving)
+        momentum = lagrange.momentum(robot, here, moving)
         total += weight * np.sum((slope * share + momentum * speed) * dq, axis=1)
     return total
 
@@ -67,22 +65,23 @@ def variation_of_true_motion(robot: Robot, q: Any, v: Any, dq: Any) -> Array:
     for node, weight in zip(t, weights, strict=True):
         here, moving = _extrapolated(robot, here, moving, node - time)
         time = node
-        slope = energies.lagrangian_gradient(robot, here, moving) * np.sin(phase * node) ** 2
-        momentum = energies.momentum(robot, here, moving) * phase * np.sin(2.0 * phase * node)
+        slope = lagrange.lagrangian_gradient(robot, here, moving) * np.sin(phase * node) ** 2
+        momentum = lagrange.momentum(robot, here, moving) * phase * np.sin(2.0 * phase * node)
         total += weight * np.sum((slope + momentum) * dq, axis=1)
         size += weight * np.sum((np.abs(slope) + np.abs(momentum)) * np.abs(dq), axis=1)
-    share: Array = total / size
-    return share
+    return total / size
 
 
 def _extrapolated(robot: Robot, q: Array, v: Array, duration: float) -> tuple[Array, Array]:
     """Free motion: Runge-Kutta at one and at half the step, the leading error taken out."""
-    coarse, fine = (np.stack(_fall(robot, q, v, duration, k * _STEPS)) for k in (1, 2))
+    coarse, fine = (np.stack(_move_freely(robot, q, v, duration, k * _STEPS)) for k in (1, 2))
     better = fine + (fine - coarse) / 15.0
     return better[0], better[1]
 
 
-def _fall(robot: Robot, q: Array, v: Array, duration: float, steps: int) -> tuple[Array, Array]:
+def _move_freely(
+    robot: Robot, q: Array, v: Array, duration: float, steps: int
+) -> tuple[Array, Array]:
     """Free motion by Runge-Kutta of order 4."""
     h = duration / steps
     still = np.zeros(robot.n)
@@ -112,18 +111,17 @@ def excess_action_sign(robot: Robot, duration: Any) -> Array:
         phase = np.pi / span
         here = still + 0.02 * np.sin(phase * t)[:, None]
         moving = 0.02 * phase * np.cos(phase * t)[:, None]
-        varied = energies.action(robot, here, moving, weights)
+        varied = lagrange.action(robot, here, moving, weights)
         rest = np.broadcast_to(still, here.shape)
-        signs.append(np.sign(varied - energies.action(robot, rest, np.zeros_like(rest), weights)))
+        signs.append(np.sign(varied - lagrange.action(robot, rest, np.zeros_like(rest), weights)))
     return np.array(signs)
 
 
-def _hanging(robot: Robot) -> Array:
+def _hanging(robot: Robot) -> Any:
     """The pose of a one-joint arm in which it hangs still: of the two that balance, the lower."""
     angles = np.linspace(-np.pi, np.pi, 721)[:, None]
     energy = np.asarray(dynamics.potential_energy(robot, angles))
-    lowest: Array = angles[int(np.argmin(energy))]
-    return lowest
+    return angles[int(np.argmin(energy))]
 
 
 def _around_half_a_swing(
@@ -142,34 +140,30 @@ def _around_half_a_swing(
 
 
 QUANTITIES = (
-    Quantity(
+    SERIAL.quantity(
         "action_variation",
-        ("q", "v", "a", "dq"),
+        "q v a dq",
         variation_between_fixed_ends,
         "dS/d(eps) of q + v t + ½ a t² under dq sin²(pi t/T), T = 0.4 s, J s, a number",
-        SERIAL,
     ),
-    Quantity(
+    SERIAL.quantity(
         "action_variation_free_ends",
-        ("q", "v", "a", "dq"),
+        "q v a dq",
         variation_with_free_ends,
         "the same under dq (1 + t/T), J s, a number",
-        SERIAL,
     ),
-    Quantity(
+    SERIAL.quantity(
         "action_variation_of_motion",
-        ("q", "v", "dq"),
+        "q v dq",
         variation_of_true_motion,
         "dS/d(eps) of a simulated free motion, relative to its parts, a number",
-        SERIAL,
         scale=1.0,
     ),
-    Quantity(
+    SERIAL.quantity(
         "excess_action_sign",
-        ("duration",),
+        "duration",
         excess_action_sign,
         "sign of S(varied) - S(true) of a hanging one-joint arm, +1 or -1",
-        SERIAL,
         sample=_around_half_a_swing,
         joints=1,
     ),

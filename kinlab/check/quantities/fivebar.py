@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -99,11 +100,7 @@ def sample(
     raise MechanismError(f"{fivebar.name}: hardly any pose is clear of singularities")
 
 
-def _label(fivebar: FiveBar) -> str:
-    return fivebar.name
-
-
-FIVEBAR = Domain("fivebar", as_five_bar, _label, numbers, members, sample, DRAWS)
+FIVEBAR = Domain("fivebar", as_five_bar, attrgetter("name"), numbers, members, sample, DRAWS)
 
 
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
@@ -223,9 +220,8 @@ def _load(chain: ClosedChain, q: Array) -> Any:
 def _quantity(
     name: str, arguments: str, answer: EngineCall, about: str, *, rods: bool = True
 ) -> Quantity:
-    names = tuple(arguments.split())
-    engine = _posed(answer, rods=rods) if "mode" in names else _engine(answer)
-    return Quantity(name, names, engine, about, FIVEBAR)
+    engine = _posed(answer, rods=rods) if "mode" in arguments else _engine(answer)
+    return FIVEBAR.quantity(name, arguments, engine, about)
 
 
 QUANTITIES = (

@@ -12,7 +12,7 @@ import numpy as np
 import pinocchio as pin
 
 from kinlab.arrays import Array
-from kinlab.check.quantities.quantity import Domain, Quantity
+from kinlab.check.quantities.quantity import Domain
 from kinlab.errors import NameUnknownError
 
 POINTS = 6
@@ -89,12 +89,11 @@ def point_inertia(mechanism: None, points: Array, masses: Array) -> Array:
     return np.stack(tensors)
 
 
-def turning_energy(mechanism: None, points: Array, masses: Array, omega: Array) -> Array:
+def turning_energy(mechanism: None, points: Array, masses: Array, omega: Array) -> Any:
     """½ Σ m |omega x r|², point by point."""
     del mechanism
     speeds = np.cross(omega[:, None, :], points)
-    energy: Array = 0.5 * np.einsum("ap,api,api->a", masses, speeds, speeds)
-    return energy
+    return 0.5 * np.einsum("ap,api,api->a", masses, speeds, speeds)
 
 
 def _length(mechanism: None, rotation: Array, point: Array) -> Any:
@@ -117,7 +116,4 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
     ("cross_norm_squared", "point other", _cross_norm, "|a x b|², a number"),
 )
 
-QUANTITIES = tuple(
-    Quantity(name, tuple(arguments.split()), engine, about, IDENTITY)
-    for name, arguments, engine, about in _ROWS
-)
+QUANTITIES = tuple(IDENTITY.quantity(*row) for row in _ROWS)

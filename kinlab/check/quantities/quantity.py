@@ -44,6 +44,12 @@ class Domain:
     sample: Sampler
     draws: tuple[str, ...] = ()
 
+    def quantity(
+        self, name: str, arguments: str, engine: Callable[..., Any], about: str, **more: Any
+    ) -> Quantity:
+        """A quantity of this kind of mechanism; the arguments in one text, ``"q v a"``."""
+        return Quantity(name, tuple(arguments.split()), engine, about, self, **more)
+
 
 @dataclass(frozen=True)
 class Quantity:

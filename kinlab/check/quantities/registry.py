@@ -8,39 +8,11 @@ from functools import cache
 from typing import Any
 
 from kinlab.arrays import shown
-from kinlab.check.quantities import (
-    action as action_quantities,
-)
-from kinlab.check.quantities import (
-    fivebar as fivebar_quantities,
-)
-from kinlab.check.quantities import (
-    identity,
-)
-from kinlab.check.quantities import (
-    links as link_quantities,
-)
-from kinlab.check.quantities import (
-    serial as serial_quantities,
-)
-from kinlab.check.quantities import (
-    special as special_quantities,
-)
-from kinlab.check.quantities import (
-    table as table_quantities,
-)
+from kinlab.check.quantities import action, fivebar, identity, links, serial, special, table
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.errors import NameUnknownError, near
 
-_MODULES = (
-    serial_quantities,
-    link_quantities,
-    special_quantities,
-    action_quantities,
-    table_quantities,
-    identity,
-    fivebar_quantities,
-)
+_MODULES = (serial, links, special, action, table, identity, fivebar)
 """Modules whose ``QUANTITIES`` belong to the list."""
 
 _INDEXED = re.compile(r"(\w+)\[([\d:,\s-]+)\]")

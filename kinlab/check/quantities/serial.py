@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.quantities.quantity import Domain, Quantity
+from kinlab.check.quantities.quantity import Domain
 from kinlab.engine import dynamics, kinematics
 from kinlab.errors import NameUnknownError, near
 from kinlab.model import library
@@ -137,8 +137,7 @@ def _normal(scale: float) -> Callable[[Robot, int, np.random.Generator], Array]:
 
 def _wrench(robot: Robot, count: int, rng: np.random.Generator) -> Array:
     del robot
-    wrench: Array = rng.standard_normal((count, 6)) * [20.0, 20.0, 20.0, 5.0, 5.0, 5.0]
-    return wrench
+    return rng.standard_normal((count, 6)) * [20.0, 20.0, 20.0, 5.0, 5.0, 5.0]
 
 
 def _twist(robot: Robot, count: int, rng: np.random.Generator) -> Array:
@@ -171,71 +170,78 @@ def planar_pose(robot: Robot, q: Any) -> Array:
 
 def planar_jacobian(robot: Robot, q: Any) -> Array:
     """Rows vx, vy, wz of the Jacobian in the base."""
-    rows: Array = kinematics.jacobian(robot, q)[..., [0, 1, 5], :]
-    return rows
+    return kinematics.jacobian(robot, q)[..., [0, 1, 5], :]
 
 
-def tip_speed_squared(robot: Robot, q: Any, v: Any) -> Array:
+def tip_speed_squared(robot: Robot, q: Any, v: Any) -> Any:
     """|J_v qdot|² of the tool origin."""
     speed = np.einsum("aij,aj->ai", kinematics.jacobian(robot, q)[:, :3], v)
-    squared: Array = np.linalg.norm(speed, axis=1) ** 2
-    return squared
+    return np.linalg.norm(speed, axis=1) ** 2
 
 
 def coriolis_torques(robot: Robot, q: Any, v: Any) -> Array:
     """C(q, v) v: what is left of the torque without gravity and acceleration."""
     still = np.zeros_like(np.asarray(q))
-    tau: Array = dynamics.inverse_dynamics(robot, q, v, still) - dynamics.gravity_torques(robot, q)
-    return tau
-
-
-def _serial(name: str, arguments: str, engine: Any, about: str) -> Quantity:
-    return Quantity(name, tuple(arguments.split()), engine, about, SERIAL)
+    return dynamics.inverse_dynamics(robot, q, v, still) - dynamics.gravity_torques(robot, q)
 
 
 QUANTITIES = (
-    _serial("fk", "q", kinematics.fk, "pose of the tool in the base, (4, 4)"),
-    _serial("jacobian", "q", kinematics.jacobian, "twist of the tool per qdot, base axes, (6, n)"),
-    _serial(
+    SERIAL.quantity("fk", "q", kinematics.fk, "pose of the tool in the base, (4, 4)"),
+    SERIAL.quantity(
+        "jacobian", "q", kinematics.jacobian, "twist of the tool per qdot, base axes, (6, n)"
+    ),
+    SERIAL.quantity(
         "jacobian_tool",
         "q",
         lambda r, q: kinematics.jacobian(r, q, "tool"),
         "twist of the tool per qdot, tool axes, (6, n)",
     ),
-    _serial(
+    SERIAL.quantity(
         "jacobian_spatial",
         "q",
         lambda r, q: kinematics.jacobian(r, q, "spatial"),
         "spatial Jacobian: base axes, reference point the base origin, (6, n)",
     ),
-    _serial("jacobian_dot", "q v", kinematics.jacobian_dot, "its time derivative, base, (6, n)"),
-    _serial("planar_pose", "q", planar_pose, "x, y, cos phi, sin phi of a planar arm's tool, (4,)"),
-    _serial("planar_jacobian", "q", planar_jacobian, "rows vx, vy, wz of the Jacobian, (3, n)"),
-    _serial("tip_speed_squared", "q v", tip_speed_squared, "|v|² of the tool, m²/s², a number"),
-    _serial(
+    SERIAL.quantity(
+        "jacobian_dot", "q v", kinematics.jacobian_dot, "its time derivative, base, (6, n)"
+    ),
+    SERIAL.quantity(
+        "planar_pose", "q", planar_pose, "x, y, cos phi, sin phi of a planar arm's tool, (4,)"
+    ),
+    SERIAL.quantity(
+        "planar_jacobian", "q", planar_jacobian, "rows vx, vy, wz of the Jacobian, (3, n)"
+    ),
+    SERIAL.quantity(
+        "tip_speed_squared", "q v", tip_speed_squared, "|v|² of the tool, m²/s², a number"
+    ),
+    SERIAL.quantity(
         "statics",
         "q wrench",
         kinematics.statics,
         "joint torques J^T F of a wrench (f, n) that the tool exerts, base axes, (n,)",
     ),
-    _serial(
+    SERIAL.quantity(
         "statics_tool",
         "q wrench",
         lambda r, q, w: kinematics.statics(r, q, w, "tool"),
         "the same, with the wrench in tool axes, (n,)",
     ),
-    _serial("mass_matrix", "q", dynamics.mass_matrix, "M, kg m² (kg for a slide), (n, n)"),
-    _serial("coriolis_matrix", "q v", dynamics.coriolis_matrix, "Christoffel's C, (n, n)"),
-    _serial("coriolis_torques", "q v", coriolis_torques, "C(q, v) v, N m, (n,)"),
-    _serial("gravity_torques", "q", dynamics.gravity_torques, "g = dV/dq, N m, (n,)"),
-    _serial("inverse_dynamics", "q v a", dynamics.inverse_dynamics, "tau of a motion, N m, (n,)"),
-    _serial(
+    SERIAL.quantity("mass_matrix", "q", dynamics.mass_matrix, "M, kg m² (kg for a slide), (n, n)"),
+    SERIAL.quantity("coriolis_matrix", "q v", dynamics.coriolis_matrix, "Christoffel's C, (n, n)"),
+    SERIAL.quantity("coriolis_torques", "q v", coriolis_torques, "C(q, v) v, N m, (n,)"),
+    SERIAL.quantity("gravity_torques", "q", dynamics.gravity_torques, "g = dV/dq, N m, (n,)"),
+    SERIAL.quantity(
+        "inverse_dynamics", "q v a", dynamics.inverse_dynamics, "tau of a motion, N m, (n,)"
+    ),
+    SERIAL.quantity(
         "inverse_dynamics_loaded",
         "q v a wrench",
         dynamics.inverse_dynamics,
         "tau of a motion while the tool exerts a wrench (f, n), base axes, (n,)",
     ),
-    _serial("forward_dynamics", "q v tau", dynamics.forward_dynamics, "qddot, rad/s², (n,)"),
-    _serial("kinetic_energy", "q v", dynamics.kinetic_energy, "T, J, a number"),
-    _serial("potential_energy", "q", dynamics.potential_energy, "V, J, zero at the origin"),
+    SERIAL.quantity(
+        "forward_dynamics", "q v tau", dynamics.forward_dynamics, "qddot, rad/s², (n,)"
+    ),
+    SERIAL.quantity("kinetic_energy", "q v", dynamics.kinetic_energy, "T, J, a number"),
+    SERIAL.quantity("potential_energy", "q", dynamics.potential_energy, "V, J, zero at the origin"),
 )

@@ -5,6 +5,7 @@ Each is computed from Pinocchio's placements and Jacobians by another road than 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,8 +32,7 @@ def link_transforms(robot: Robot, q: Any) -> Array:
     poses = dh_poses(robot, q)
     first = np.broadcast_to(base, (len(poses), 1, 4, 4))
     before = np.concatenate([first, poses[:, :-1]], axis=1)
-    steps: Array = np.linalg.solve(before, poses)
-    return steps
+    return np.linalg.solve(before, poses)
 
 
 def _dh_frames(robot: Robot, q: Array, frames: list[int]) -> Array:
@@ -43,7 +43,7 @@ def _dh_frames(robot: Robot, q: Array, frames: list[int]) -> Array:
     return np.stack([data.oMf[frame].homogeneous for frame in frames])
 
 
-def common_normals(robot: Robot, q: Any) -> Array:
+def common_normals(robot: Robot, q: Any) -> Any:
     """Projectors on x_{i-1}, zero where z_{i-1} and z_i are parallel."""
     base = np.eye(4) if robot.table is None else np.asarray(robot.table.base)
     poses = links.link_poses(robot, q)
@@ -51,42 +51,37 @@ def common_normals(robot: Robot, q: Any) -> Array:
     x, z = all_poses[..., :-1, :3, 0], all_poses[..., :3, 2]
     along = np.abs(np.einsum("aij,aij->ai", z[:, :-1], z[:, 1:]))
     x = np.where((along < 1.0 - 1e-12)[..., None], x, 0.0)
-    projectors: Array = x[..., :, None] * x[..., None, :]
-    return projectors
+    return x[..., :, None] * x[..., None, :]
 
 
 def angular_jacobian_last(robot: Robot, q: Any) -> Array:
     """Angular rows of the last joint's Jacobian in its own axes."""
     poses = links.link_poses(robot, q)[:, -1, :3, :3]
-    rows: Array = np.swapaxes(poses, -1, -2) @ kinematics.jacobian(robot, q)[:, 3:]
-    return rows
+    return np.swapaxes(poses, -1, -2) @ kinematics.jacobian(robot, q)[:, 3:]
 
 
-def planar_determinant(robot: Robot, q: Any) -> Array:
+def planar_determinant(robot: Robot, q: Any) -> Any:
     """det of the rows vx, vy, wz."""
-    value: Array = np.linalg.det(planar_jacobian(robot, q))
-    return value
+    return np.linalg.det(planar_jacobian(robot, q))
 
 
-def planar_position_determinant(robot: Robot, q: Any) -> Array:
+def planar_position_determinant(robot: Robot, q: Any) -> Any:
     """det of the rows vx, vy."""
-    value: Array = np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
-    return value
+    return np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
 
 
-def isotropy_defect(robot: Robot, q: Any) -> Array:
+def isotropy_defect(robot: Robot, q: Any) -> Any:
     """Sum of (sigma_i^2 / mean - 1)^2 over the singular values of the rows vx, vy."""
     squares = np.linalg.svd(kinematics.jacobian(robot, q)[:, :2], compute_uv=False) ** 2
-    defect: Array = np.sum((squares / squares.mean(axis=1, keepdims=True) - 1.0) ** 2, axis=1)
-    return defect
+    return np.sum((squares / squares.mean(axis=1, keepdims=True) - 1.0) ** 2, axis=1)
 
 
-def orthogonal_columns_cosine(robot: Robot, q: Any) -> Array:
+def orthogonal_columns_cosine(robot: Robot, q: Any) -> Any:
     """cos theta2 in (0, pi) where the two columns of vx, vy become orthogonal, by bisection."""
     return _root(robot, q, lambda j: np.einsum("ai,ai->a", j[..., 0], j[..., 1]))
 
 
-def equal_columns_cosine(robot: Robot, q: Any) -> Array:
+def equal_columns_cosine(robot: Robot, q: Any) -> Any:
     """cos theta2 in (0, pi) where the two columns of vx, vy become equally long, by bisection."""
     return _root(
         robot,
@@ -98,29 +93,26 @@ def equal_columns_cosine(robot: Robot, q: Any) -> Array:
     )
 
 
-def _root(robot: Robot, q: Any, miss: Any) -> Array:
+def _root(robot: Robot, q: Any, miss: Any) -> Any:
     low, high = np.zeros(len(q)), np.full(len(q), np.pi)
 
-    def at(theta: Array) -> Array:
+    def at(theta: Array) -> Any:
         states = np.stack([q[:, 0], theta], axis=-1)
-        value: Array = miss(kinematics.jacobian(robot, states)[:, :2])
-        return value
+        return miss(kinematics.jacobian(robot, states)[:, :2])
 
     sign = np.sign(at(low))
     for _ in range(54):
         middle = 0.5 * (low + high)
         same = np.sign(at(middle)) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    cosine: Array = np.cos(0.5 * (low + high))
-    return cosine
+    return np.cos(0.5 * (low + high))
 
 
-def newton_step(robot: Robot, q: Any, target: Any) -> Array:
+def newton_step(robot: Robot, q: Any, target: Any) -> Any:
     """q + J^-1 (x_d - f(q)) for x = (x, y, phi)."""
-    step: Array = (
+    return (
         q + np.linalg.solve(planar_jacobian(robot, q), _miss(robot, q, target)[..., None])[..., 0]
     )
-    return step
 
 
 def newton_stops(robot: Robot, q: Any, target: Any) -> Array:
@@ -137,16 +129,14 @@ def loss_gradient(robot: Robot, q: Any, target: Any) -> Array:
     return np.stack([-np.sum(miss * jacobian[..., k], axis=1) for k in range(robot.n)], axis=1)
 
 
-def gradient_step(robot: Robot, q: Any, target: Any) -> Array:
+def gradient_step(robot: Robot, q: Any, target: Any) -> Any:
     """q - 0.1 times the gradient."""
-    step: Array = q - 0.1 * loss_gradient(robot, q, target)
-    return step
+    return q - 0.1 * loss_gradient(robot, q, target)
 
 
-def loss(robot: Robot, q: Any, target: Any) -> Array:
+def loss(robot: Robot, q: Any, target: Any) -> Any:
     """½|x_d - f|²."""
-    value: Array = 0.5 * np.linalg.norm(_miss(robot, q, target), axis=1) ** 2
-    return value
+    return 0.5 * np.linalg.norm(_miss(robot, q, target), axis=1) ** 2
 
 
 def least_rates(robot: Robot, q: Any, twist: Any) -> Array:
@@ -157,11 +147,10 @@ def least_rates(robot: Robot, q: Any, twist: Any) -> Array:
     )
 
 
-def _miss(robot: Robot, q: Any, target: Any) -> Array:
+def _miss(robot: Robot, q: Any, target: Any) -> Any:
     pose = planar_pose(robot, q)
     here = np.stack([pose[:, 0], pose[:, 1], np.sum(q, axis=1)], axis=1)
-    miss: Array = target - here
-    return miss
+    return target - here
 
 
 def _with_second_joint(*choices: float) -> Any:
@@ -195,73 +184,62 @@ def _well_conditioned(robot: Robot, arguments: Any, count: int, rng: np.random.G
     return kept[:count], rng.standard_normal((count, 6))
 
 
-_ROWS: tuple[tuple[str, str, Any, str, Any], ...] = (
-    (
+_planar_2r, _planar_3r = (partial(SERIAL.quantity, joints=n) for n in (2, 3))
+
+
+def _towards(name: str, engine: Any, about: str) -> Quantity:
+    """A quantity of the planar 3R arm on its way to a target."""
+    return _planar_3r(name, "q target", engine, about, sample=_with_target)
+
+
+QUANTITIES = (
+    SERIAL.quantity(
         "link_transforms",
         "q",
         link_transforms,
         "^{i-1}T_i of every DH row in the table's own convention, (n, 4, 4)",
-        None,
     ),
-    ("dh_poses", "q", dh_poses, "poses of the DH frames in the base, (n, 4, 4)", None),
-    ("common_normals", "q", common_normals, "projectors on x_{i-1}, (n, 3, 3)", None),
-    (
+    SERIAL.quantity("dh_poses", "q", dh_poses, "poses of the DH frames in the base, (n, 4, 4)"),
+    SERIAL.quantity("common_normals", "q", common_normals, "projectors on x_{i-1}, (n, 3, 3)"),
+    SERIAL.quantity(
         "angular_jacobian_last",
         "q",
         angular_jacobian_last,
         "angular rows of J in the last link's axes, (3, n)",
-        None,
     ),
-    (
+    _planar_3r(
         "singular_jacobian",
         "q",
         kinematics.jacobian,
         "Jacobian at poses with theta2 = 0 or pi, (6, n)",
-        _with_second_joint(0.0, np.pi),
+        sample=_with_second_joint(0.0, np.pi),
     ),
-    ("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz", None),
-    ("planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy", None),
-    (
-        "isotropy_defect",
-        "q",
-        isotropy_defect,
-        "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy",
-        None,
+    _planar_3r("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz"),
+    _planar_2r(
+        "planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy"
     ),
-    ("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number", None),
-    ("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number", None),
-    (
+    SERIAL.quantity(
+        "isotropy_defect", "q", isotropy_defect, "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy"
+    ),
+    _planar_2r("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number"),
+    _planar_2r("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number"),
+    _planar_2r(
         "isotropic_jacobian",
         "q",
         lambda robot, q: kinematics.jacobian(robot, q, "tool")[:, :2],
         "rows vx, vy in tool axes at theta2 = ±135°, (2, 2)",
-        _with_second_joint(0.75 * np.pi, -0.75 * np.pi),
+        sample=_with_second_joint(0.75 * np.pi, -0.75 * np.pi),
     ),
-    ("newton_step", "q target", newton_step, "next q of a planar 3R arm, (3,)", _with_target),
-    ("newton_stops", "q target", newton_stops, "|x_d - f| and |step|, (2,)", _with_target),
-    ("loss", "q target", loss, "½|x_d - f|², a number", _with_target),
-    ("loss_gradient", "q target", loss_gradient, "its gradient, (3,)", _with_target),
-    ("gradient_step", "q target", gradient_step, "q - 0.1 gradient, (3,)", _with_target),
-    ("least_rates", "q twist", least_rates, "shortest qdot for a twist, (n,)", _well_conditioned),
-)
-
-_JOINTS = {
-    "singular_jacobian": 3,
-    "planar_determinant": 3,
-    "newton_step": 3,
-    "newton_stops": 3,
-    "loss": 3,
-    "loss_gradient": 3,
-    "gradient_step": 3,
-    "planar_position_determinant": 2,
-    "orthogonal_columns_cosine": 2,
-    "equal_columns_cosine": 2,
-    "isotropic_jacobian": 2,
-}
-
-QUANTITIES = tuple(
-    Quantity(
-        name, tuple(arguments.split()), engine, about, SERIAL, sample, joints=_JOINTS.get(name)
-    )
-    for name, arguments, engine, about, sample in _ROWS
+    _towards("newton_step", newton_step, "next q of a planar 3R arm, (3,)"),
+    _towards("newton_stops", newton_stops, "|x_d - f| and |step|, (2,)"),
+    _towards("loss", loss, "½|x_d - f|², a number"),
+    _towards("loss_gradient", loss_gradient, "its gradient, (3,)"),
+    _towards("gradient_step", gradient_step, "q - 0.1 gradient, (3,)"),
+    SERIAL.quantity(
+        "least_rates",
+        "q twist",
+        least_rates,
+        "shortest qdot for a twist, (n,)",
+        sample=_well_conditioned,
+    ),
 )

@@ -8,10 +8,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.serial import SERIAL
-from kinlab.engine import dynamics
-from kinlab.engine import lagrange as mass_derivatives
+from kinlab.engine import dynamics, lagrange
 from kinlab.formulas.record import Function, first_line
 from kinlab.model import urdf_read
 from kinlab.model.robot import Robot
@@ -24,11 +22,12 @@ def yourdfpy_pose(robot: Robot, q: Any) -> Array:
     import io
 
     import yourdfpy
+    from lxml import etree
 
     place = f"robot {robot.name!r}"
     tree = read_tree(urdf_read.parse(robot.urdf, place), place)
-    text = document(tree, list(robot.joint_names))
-    urdf = yourdfpy.URDF.load(io.BytesIO(text.encode()), load_meshes=False, build_scene_graph=True)
+    text = etree.tostring(document(tree, robot.joint_names))
+    urdf = yourdfpy.URDF.load(io.BytesIO(text), load_meshes=False, build_scene_graph=True)
     mine = list(urdf.actuated_joint_names)
     rest = np.zeros(len(mine))
     poses = []
@@ -39,43 +38,40 @@ def yourdfpy_pose(robot: Robot, q: Any) -> Array:
     return np.stack(poses)
 
 
-def terms(robot: Robot, q: Any, v: Any, a: Any) -> Array:
+def terms(robot: Robot, q: Any, v: Any, a: Any) -> Any:
     """M a + C v + g, each from its own algorithm."""
     inertia = np.einsum("aij,aj->ai", dynamics.mass_matrix(robot, q), a)
     velocity = np.einsum("aij,aj->ai", dynamics.coriolis_matrix(robot, q, v), v)
-    total: Array = inertia + velocity + dynamics.gravity_torques(robot, q)
-    return total
+    return inertia + velocity + dynamics.gravity_torques(robot, q)
 
 
-def definite(robot: Robot, q: Any) -> Array:
+def definite(robot: Robot, q: Any) -> Any:
     """1 where M is symmetric and positive definite, 0 elsewhere."""
     matrix = dynamics.mass_matrix(robot, q)
     symmetric = np.max(np.abs(matrix - np.swapaxes(matrix, -1, -2)), axis=(1, 2)) == 0.0
-    sound: Array = (symmetric & (np.linalg.eigvalsh(matrix)[:, 0] > 0.0)).astype(float)
-    return sound
+    return (symmetric & (np.linalg.eigvalsh(matrix)[:, 0] > 0.0)).astype(float)
 
 
-def skew_residue(robot: Robot, q: Any, v: Any) -> Array:
+def skew_residue(robot: Robot, q: Any, v: Any) -> Any:
     """Symmetric part of Mdot - 2C over the size of M times that of the motion, (n, n).
 
     Not over the size of Mdot, which is rounding where M does not depend on q.
     """
-    rate = mass_derivatives.mass_matrix_dot(robot, q, v)
+    rate = lagrange.mass_matrix_dot(robot, q, v)
     twice = 2.0 * dynamics.coriolis_matrix(robot, q, v)
     size = np.max(np.abs(dynamics.mass_matrix(robot, q)), axis=(1, 2)) * np.max(np.abs(v), axis=1)
     part = (rate - twice) + np.swapaxes(rate - twice, -1, -2)
-    share: Array = part / size[:, None, None]
-    return share
+    return part / size[:, None, None]
 
 
-_QUANTITIES: dict[str, tuple[str, Function, float]] = {
-    "fk_yourdfpy": ("q", yourdfpy_pose, 0.0),
-    "terms": ("q v a", terms, 0.0),
-    "mass_matrix_definite": ("q", definite, 0.0),
-    "skew_residue": ("q v", skew_residue, 1.0),
-}
+_ROWS: tuple[tuple[str, str, Function, float], ...] = (
+    ("fk_yourdfpy", "q", yourdfpy_pose, 0.0),
+    ("terms", "q v a", terms, 0.0),
+    ("mass_matrix_definite", "q", definite, 0.0),
+    ("skew_residue", "q v", skew_residue, 1.0),
+)
 
 QUANTITIES = tuple(
-    Quantity(name, tuple(arguments.split()), engine, first_line(engine), SERIAL, scale=scale)
-    for name, (arguments, engine, scale) in _QUANTITIES.items()
+    SERIAL.quantity(name, arguments, engine, first_line(engine), scale=scale)
+    for name, arguments, engine, scale in _ROWS
 )

@@ -19,18 +19,16 @@ from kinlab.cli.fivebar.design import design
 from kinlab.cli.fivebar.linkages import analyse, export, list_fivebars
 from kinlab.cli.fivebar.sizing import size
 
+GROUP = typer.Typer(
+    help="Five-bar linkages: analyse, size the servos, export.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+"""The commands under ``kinlab fivebar``."""
 
-def register(app: typer.Typer) -> None:
-    """Adds the commands of this file under ``kinlab fivebar``."""
-    group = typer.Typer(
-        help="Five-bar linkages: analyse, size the servos, export.",
-        no_args_is_help=True,
-        context_settings={"help_option_names": ["-h", "--help"]},
-    )
-    group.command("list")(list_fivebars)
-    group.command("analyse")(analyse)
-    group.command("size")(size)
-    group.command("servo", hidden=True)(size)
-    group.command("design")(design)
-    group.command("export")(export)
-    app.add_typer(group, name="fivebar")
+GROUP.command("list")(list_fivebars)
+GROUP.command("analyse")(analyse)
+GROUP.command("size")(size)
+GROUP.command("servo", hidden=True)(size)
+GROUP.command("design")(design)
+GROUP.command("export")(export)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import fine_table, screen, styled
+from kinlab.cli.screen import fine_table, screen, styled, wrote
 from kinlab.errors import OptionError
 from kinlab.host.language import _
 
@@ -79,7 +79,6 @@ def design(
     limits = _numbers(limit or [], "--limit", None)
     if pareto is not None and (goal or output):
         raise OptionError("--pareto finds many designs: leave out --goal and --output")
-    console = screen(highlight=False, soft_wrap=True)
     shared = {"l1": l1, "l2": l2, "e": e, "height": height, "limits": limits}
     more = {"payload": payload, "mode": signs, "seed": seed, "resume": resume}
     with Progress(console=screen(stderr=True), transient=True) as bar:
@@ -99,7 +98,7 @@ def design(
         _print_design(found)
     if output is not None:
         found.fivebar.save(output)
-        console.print(_("wrote {file}").format(file=output))
+        wrote(output)
     if picture is not None:
         from kinlab import plots
 
@@ -107,7 +106,7 @@ def design(
             plots.fivebar_front(front) if pareto is not None else plots.fivebar_design(found),
             picture,
         )
-        console.print(_("wrote {file}").format(file=picture))
+        wrote(picture)
 
 
 def _numbers(texts: list[str], option: str, default: float | None) -> dict[str, float]:

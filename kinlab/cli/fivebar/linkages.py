@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import fine_table, screen, styled
+from kinlab.cli.screen import fine_table, screen, styled, wrote
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -90,7 +90,7 @@ def analyse(
         _print_place(fivebar, at, signs)
     if picture is not None:
         save(mechanisms.fivebar(fivebar, signs, assembly), picture)
-        console.print(_("wrote {file}").format(file=picture))
+        wrote(picture)
 
 
 def _print_place(fivebar: FiveBar, at: tuple[float, float], mode: tuple[int, int]) -> None:
@@ -136,4 +136,4 @@ def export(
     fivebar, signs = FiveBar.load(name), read_signs(mode)
     place = at or fivebar.largest_circle(signs, assembly).centre
     for file in fivebar.export(output, place, signs):
-        typer.echo(_("wrote {file}").format(file=file))
+        wrote(file)

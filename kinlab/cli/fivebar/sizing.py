@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from kinlab.cli.screen import Screen, fine_table, screen, styled
+from kinlab.cli.screen import Screen, fine_table, screen, styled, wrote
 from kinlab.errors import OptionError, already_said
 from kinlab.host.language import _
 
@@ -96,7 +96,7 @@ def size(
         _print_cycle(done, console, fastest=fastest)
         if picture is not None:
             save(mechanisms.fivebar_cycle(fivebar, done), picture)
-            console.print(_("wrote {file}").format(file=picture))
+            wrote(picture)
         return
     box = workspace or fivebar.largest_rectangle(signs, max_condition=_CONDITION)
     if workspace is None:

@@ -1,10 +1,10 @@
 """A submission in Python: run in a process of its own, only where the teacher asks for it.
 
-The process starts afresh (it shares no memory with the marks) and gets time, memory and file
-limits of the system, a network of its own with nothing on it where the system lets users make
-one, and an audit hook against files, sockets and other processes. The hook is Python's own and
-can be beaten by one who tries hard; what the system enforces cannot. For work by strangers run
-all of it in a container.
+The process starts afresh (it shares no memory with the marks) and gets limits of the system on
+time, memory, files written and processes, on Linux a network of its own with nothing on it and no
+files to read but the libraries', and an audit hook against all of these. The hook is Python's own
+and can be beaten by one who tries hard; what the system enforces cannot, and the note beside the
+marks says what that was. For work by strangers run all of it in a container.
 """
 
 from __future__ import annotations
@@ -70,10 +70,12 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
 
 _LIMITS = (
     N_("network"),
+    N_("files read"),
     N_("processor time"),
     N_("memory"),
     N_("files written"),
     N_("open files"),
+    N_("processes"),
     N_("core dumps"),
 )
 """What the process says that the system limits."""

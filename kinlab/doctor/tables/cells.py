@@ -356,8 +356,7 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
 def _columns(poses: Array, axis: NDArray[np.intp]) -> Array:
     """Column axis[p] of the rotation of each pose (N, P, 4, 4), (N, P, 3)."""
     index = axis[None, :, None, None]
-    out: Array = np.take_along_axis(poses[..., :3, :3], index, axis=-1)[..., 0]
-    return out
+    return np.take_along_axis(poses[..., :3, :3], index, axis=-1)[..., 0]
 
 
 def _in_order(chain: Chain, columns: Sequence[int]) -> list[tuple[int, int]]:
@@ -388,8 +387,8 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
     """Lengths that make the positions agree where the rotations do, at most so many of them."""
     chain, few = first.chain, target.few
     poses = frames(chain, few.q)
-    turn = np.abs(poses[:, -1, :3, :3] - few.poses[:, :3, :3])
-    if np.max(turn) > target.steady:
+    rotation = np.abs(poses[:, -1, :3, :3] - few.poses[:, :3, :3])
+    if np.max(rotation) > target.steady:
         return []
     wanted = (few.poses[:, :3, 3] - poses[:, -1, :3, 3]).reshape(-1)
     cells = _in_order(chain, (A, D))

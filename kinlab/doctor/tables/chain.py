@@ -142,8 +142,7 @@ def frames(chain: Chain, q: Array) -> Array:
 
 def tool_poses(chain: Chain, q: Array) -> Array:
     """Tool poses, (N, 4, 4)."""
-    out: Array = frames(chain, q)[:, -1]
-    return out
+    return frames(chain, q)[:, -1]
 
 
 def stacked_frames(chains: Sequence[Chain], q: Array) -> Array:
@@ -201,9 +200,9 @@ def _standard(
 def inverse(poses: Array) -> Array:
     """Inverses of rigid transforms (..., 4, 4)."""
     out = np.zeros_like(poses)
-    turn = np.swapaxes(poses[..., :3, :3], -1, -2)
-    out[..., :3, :3] = turn
-    out[..., :3, 3] = -(turn @ poses[..., :3, 3, None])[..., 0]
+    rotation = np.swapaxes(poses[..., :3, :3], -1, -2)
+    out[..., :3, :3] = rotation
+    out[..., :3, 3] = -(rotation @ poses[..., :3, 3, None])[..., 0]
     out[..., 3, 3] = 1.0
     return out
 

@@ -137,8 +137,7 @@ def _foot(point: Array, direction: Array, on: Array, z: Array) -> Array:
     if length < 1e-12:
         return away
     s = float(np.cross(away, z) @ across) / length
-    foot: Array = away + s * direction
-    return foot
+    return away + s * direction
 
 
 def _base_moved(chain: Chain, axes: ReferenceAxes) -> Chain | None:

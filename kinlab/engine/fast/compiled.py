@@ -39,11 +39,11 @@ def kernel(function: Callable[..., Any]) -> Any:
         made = numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # "no locator available": neither the source's folder nor a home
         return numba.njit(**_OPTIONS)(function)
-    made._cache = _Forgiving(made._cache)
+    made._cache = ForgivingCache(made._cache)
     return made
 
 
-class _Forgiving:
+class ForgivingCache:
     """numba's cache of one kernel, where a damaged or full one costs time and not the run."""
 
     def __init__(self, cache: Any) -> None:

@@ -13,18 +13,20 @@ module: what they call the engine is Pinocchio for any number of states.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, truth
+from kinlab.arrays import Array
 from kinlab.engine import dynamics, kinematics
-from kinlab.engine.dynamics import gravity, plain_forward, plain_inverse
+from kinlab.engine.dynamics import gravity
 from kinlab.engine.fast.arrays import chain
-from kinlab.engine.fast.threads import over_rows, thread_count
+from kinlab.engine.fast.threads import STATES_PER_THREAD, over_rows, thread_count
 from kinlab.engine.kinematics import (
+    each_call,
     each_state,
     frame_jacobian,
     frame_pose,
@@ -33,7 +35,7 @@ from kinlab.engine.kinematics import (
     reference,
     wrench_for,
 )
-from kinlab.engine.states import finite_answer, joint_vector, joint_vectors
+from kinlab.engine.states import joint_vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot, model_pool, require_inertia
 
@@ -104,7 +106,7 @@ def gravity_torques(robot: ArmLike, q: ArrayLike) -> Array:
         return gravity(robot, q)
     if len(q) >= PARALLEL_FROM:
         rest = np.zeros_like(q)
-        return _in_parallel(pin.rneaInParallel, robot, q, rest, rest)
+        return _in_parallel(pin.rneaInParallel, robot, pin.rnea, q, rest, rest)
     return each_state(robot, gravity, q)
 
 
@@ -117,22 +119,7 @@ def inverse_dynamics(
     wrench: ArrayLike | None = None,
     friction: bool = False,
 ) -> Array:
-    if type(robot) is not Robot:
-        robot = as_robot(robot)
-    require_inertia(robot)
-    one = plain_inverse(robot, q, v, a) if wrench is None and friction is False else None
-    if one is not None:
-        return one
-    if _long(q, v, a):
-        q, v, a = joint_vectors(robot, q=q, v=v, a=a)
-        if q.ndim == 2:
-            tau = _in_parallel(pin.rneaInParallel, robot, q, v, a)
-            if wrench is not None:
-                tau = tau + statics(robot, q, wrench)
-            if truth(friction, "friction"):
-                tau = tau + dynamics.friction_torques(robot, v)
-            return finite_answer(robot, tau, "inverse_dynamics")
-    return dynamics.inverse_dynamics(robot, q, v, a, wrench, friction)
+    return dynamics.inverse_dynamics(robot, q, v, a, wrench, friction, _ROADS)
 
 
 @_documented(dynamics.forward_dynamics)
@@ -144,22 +131,7 @@ def forward_dynamics(
     wrench: ArrayLike | None = None,
     friction: bool = False,
 ) -> Array:
-    if type(robot) is not Robot:
-        robot = as_robot(robot)
-    require_inertia(robot)
-    one = plain_forward(robot, q, v, tau) if wrench is None and friction is False else None
-    if one is not None:
-        return one
-    if _long(q, v, tau):
-        q, v, tau = joint_vectors(robot, q=q, v=v, tau=tau)
-        if q.ndim == 2:
-            if wrench is not None:
-                tau = tau - statics(robot, q, wrench)
-            if truth(friction, "friction"):
-                tau = tau - dynamics.friction_torques(robot, v)
-            a = _in_parallel(pin.abaInParallel, robot, q, v, tau)
-            return finite_answer(robot, a, "forward_dynamics")
-    return dynamics.forward_dynamics(robot, q, v, tau, wrench, friction)
+    return dynamics.forward_dynamics(robot, q, v, tau, wrench, friction, _ROADS)
 
 
 def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
@@ -178,17 +150,6 @@ def singular_values(robot: Robot, q: Array, rows: Array) -> Array:
     out = np.empty((len(q), min(len(rows), robot.n)))
     _on_threads(singular_value_rows, *chain(robot), q, np.ascontiguousarray(rows), out)
     return out
-
-
-def _long(*values: Any) -> bool:
-    """Whether one may be a stack worth the parallel calls; its shape is looked at later."""
-    for value in values:
-        try:
-            if len(value) >= PARALLEL_FROM:
-                return True
-        except Exception:  # noqa: BLE001  no sequence: the engine's function refuses it by name
-            continue
-    return False
 
 
 # -------- The roads. The arguments are checked: q, v, ... are (N, n), float64, finite, contiguous
@@ -219,16 +180,26 @@ def _jacobians(robot: Robot, q: Array, frame: str) -> Array:
     return out
 
 
-def _in_parallel(call: Any, robot: Robot, *stacks: Array) -> Array:
+def _in_parallel(call: Any, robot: Robot, one: Any, *stacks: Array) -> Array:
+    """Pinocchio's parallel ``call``; short stacks take ``one``, state by state."""
     rows = len(stacks[0])
+    if rows < PARALLEL_FROM:
+        return each_call(robot, one, *stacks)
     out = np.empty((rows, robot.n))
-    if rows:
-        threads = thread_count(rows)
-        # transposed, since Pinocchio wants one state a column; the memory is the same
-        call(threads, model_pool(robot, threads), *(stack.T for stack in stacks), out.T)
+    threads = thread_count(rows)
+    # transposed, since Pinocchio wants one state a column; the memory is the same
+    call(threads, model_pool(robot, threads), *(stack.T for stack in stacks), out.T)
     return out
+
+
+_ROADS = dynamics.Roads(
+    partial(_in_parallel, pin.rneaInParallel), partial(_in_parallel, pin.abaInParallel), statics
+)
 
 
 def _on_threads(function: Any, *arguments: Array) -> None:
     rows = len(arguments[-1])
-    over_rows(function, rows, *arguments, threads=thread_count(rows))
+    if rows < 2 * STATES_PER_THREAD:
+        function(*arguments, 0, rows)
+    else:
+        over_rows(function, rows, *arguments, threads=thread_count(rows))

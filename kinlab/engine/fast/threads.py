@@ -32,7 +32,7 @@ VARIABLE = "KINLAB_THREADS"
 
 _NUMBER = re.compile("[0-9]{1,4}")
 
-_STATES_PER_THREAD = 2048
+STATES_PER_THREAD = 2048
 """A thread that gets fewer states than this, about a millisecond of work, costs more than it
 saves: on a busy machine a batch waits for its last thread to get a core."""
 
@@ -73,7 +73,7 @@ def thread_count(states: int) -> int:
     Raises:
         OptionError: ``KINLAB_THREADS`` is not a whole number above zero.
     """
-    most = max(1, states // _STATES_PER_THREAD)
+    most = max(1, states // STATES_PER_THREAD)
     return 1 if most == 1 else min(most, available())
 
 

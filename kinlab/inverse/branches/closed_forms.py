@@ -100,16 +100,6 @@ def back(a, value, slides, out):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def angle_about_z(a, b):  # type: ignore[no-untyped-def]
-    """The turn about z that brings the rotation of a nearest to that of b."""
-    sine, cosine = 0.0, 0.0
-    for j in range(3):
-        sine += b[4 + j] * a[j] - b[j] * a[4 + j]
-        cosine += b[j] * a[j] + b[4 + j] * a[4 + j]
-    return math.atan2(sine, cosine)
-
-
-@kernel
 def place_point(fixed, slides, centre, goal, out):  # type: ignore[no-untyped-def]
     """(q1, q2, q3) that bring a point behind joint 3 to a goal.
 

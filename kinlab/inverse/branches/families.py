@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.engine.fast.kinematics_kernels import columns, frames
 from kinlab.inverse.branches.rows import miss
-from kinlab.inverse.branches.structures import POINTING, POSITION, Form
+from kinlab.inverse.branches.structures import POINTING, POSITION, Form, jacobian_and_pose
 from kinlab.inverse.kernel import pose_error
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -77,11 +76,7 @@ def families_at(
 
 
 def _jacobian(form: Form, q: Array) -> tuple[Array, Array]:
-    n = form.real
-    axes, pose, jac = np.empty((n, 6)), np.empty(12), np.zeros((6, n))
-    frames(form.arm_fixed, form.arm_prismatic, q, axes, pose)
-    columns(form.arm_prismatic, axes, pose, jac)
-    return jac, pose
+    return jacobian_and_pose(form.arm_fixed, form.arm_prismatic, q)
 
 
 def _rows(form: Form, jac: Array, error: Array, pose: Array) -> tuple[Array, Array]:

@@ -257,23 +257,46 @@ def _beside_axis(axis, centre, goal):  # type: ignore[no-untyped-def]
     return across < (_BESIDE * _BESIDE) * square
 
 
+class Branches(NamedTuple):
+    """Branches of a stack of poses, before names.
+
+    Attributes:
+        q: (N, 16, n); rows from ``counts`` on are not filled.
+        counts: (N,), how many solutions. codes: (N, 16), :func:`posture`.
+        states: (N,), flags; 0 where the set is whole (every solution, and no infinite family).
+        goals: (N, 12), what was met: the targets, put into the plane for an arm of parallel axes.
+    """
+
+    q: Array
+    counts: Any
+    codes: Any
+    states: Any
+    goals: Array
+
+    @classmethod
+    def empty(cls, poses: int, joints: int) -> Branches:
+        """Room for so many poses."""
+        numbers = np.empty((2, poses), dtype=np.int64)
+        codes = np.empty((poses, MOST), dtype=np.int64)
+        q, goals = np.empty((poses, MOST, joints)), np.empty((poses, 12))
+        return cls(q, numbers[0], codes, numbers[1], goals)
+
+
 @kernel
-def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, states, first, last):  # type: ignore[no-untyped-def]
+def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-untyped-def]
     """All branches of rows first to last - 1, each on its own.
 
     Args:
         form: :class:`~kinlab.inverse.branches.structures.Form`.
-        lower, upper, centre: (n,), limits, and where angles are wrapped to.
+        limits: lower, upper, and where angles are wrapped to, (n,) each.
         targets: (N, 12), rows of [R | p].
-        goals: (N, 12), written: the targets, put into the plane for an arm of parallel axes.
-        q: (N, 16, n), written: the branches, ordered by posture and then by q.
-        codes: (N, 16), integers, written: :func:`posture`.
-        counts: (N,), integers, written: how many there are.
-        states: (N,), integers, written: flags; 0 where the set is whole.
+        found: :class:`Branches`, written; those of a pose ordered by posture and then by q.
         first, last: range of rows.
     """
     n, m = form.real, form.prismatic.shape[0]
-    candidates, found, start = np.zeros((MOST, m)), np.empty((8, 6)), np.empty(m)
+    lower, upper, centre = limits
+    q, counts, codes, states, goals = found
+    candidates, closed, start = np.zeros((MOST, m)), np.empty((8, 6)), np.empty(m)
     places, flat = np.empty((4, 3)), np.empty((2, m))
     axes, arm_axes, pose = np.empty((m, 6)), np.empty((n, 6)), np.empty(12)
     jac, order = np.zeros((6, m)), np.empty(6, np.int64)
@@ -293,13 +316,13 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
             kinds = form.turned_prismatic if form.turned else form.prismatic
             if form.family == WRIST:
                 number, state = spherical_wrist(
-                    fixed, kinds, form.centre, form.centre_tool, goal, found
+                    fixed, kinds, form.centre, form.centre_tool, goal, closed
                 )
             else:
-                number, state = three_parallel(fixed, goal, found)
+                number, state = three_parallel(fixed, goal, closed)
             for i in range(number):
                 for j in range(6):
-                    candidates[i, j] = -found[i, 5 - j] if form.turned else found[i, j]
+                    candidates[i, j] = -closed[i, 5 - j] if form.turned else closed[i, j]
         elif form.family == POINT:
             for i in range(3):
                 e[i] = target[4 * i + 3]
@@ -386,23 +409,6 @@ def branch_rows(form, lower, upper, centre, targets, goals, q, codes, counts, st
         states[row] = state
 
 
-class Branches(NamedTuple):
-    """Branches of a stack of poses, before names.
-
-    Attributes:
-        q: (N, 16, n); rows from ``counts`` on are not filled.
-        counts: (N,), how many solutions. codes: (N, 16), :func:`posture`.
-        states: (N,), flags; 0 where the set is whole (every solution, and no infinite family).
-        goals: (N, 12), what was met: the targets, put into the plane for an arm of parallel axes.
-    """
-
-    q: Array
-    counts: Any
-    codes: Any
-    states: Any
-    goals: Array
-
-
 def all_branches(
     form: Form,
     limits: tuple[Array, Array, Array],
@@ -423,25 +429,14 @@ def all_branches(
     Returns:
         The branches, each within 1e-9 m and rad by this chain's own kinematics.
     """
-    count, n = len(targets), form.real
-    answer = Branches(
-        np.empty((count, MOST, n)),
-        np.empty(count, dtype=np.int64),
-        np.empty((count, MOST), dtype=np.int64),
-        np.empty(count, dtype=np.int64),
-        np.empty((count, 12)),
-    )
+    answer = Branches.empty(len(targets), form.real)
     over_rows(
         branch_rows,
-        count,
+        len(targets),
         form,
-        *limits,
+        limits,
         targets,
-        answer.goals,
-        answer.q,
-        answer.codes,
-        answer.counts,
-        answer.states,
+        answer,
         threads=threads,
         grain=1 if form.family == GENERAL else 64,
         then=None if then is None else (lambda first, last: then(answer, first, last)),

@@ -16,10 +16,19 @@ from kinlab.engine.fast.compiled import kernel
 from kinlab.engine.kinematics import tool_poses
 from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
 from kinlab.host.introductions import Introduction, Rows, counted, numbered, shown_cells
-from kinlab.inverse.branches import rows as branch_rows
 from kinlab.inverse.branches.families import IKFamily, families_at
 from kinlab.inverse.branches.names import distinct, words_of
-from kinlab.inverse.branches.rows import DOUBLE, MOST, SLIPPED, TOLERANCE, UNDECIDED, Branches
+from kinlab.inverse.branches.rows import (
+    DOUBLE,
+    MOST,
+    SLIPPED,
+    TOLERANCE,
+    UNDECIDED,
+    Branches,
+    all_branches,
+    branch_rows,
+    miss,
+)
 from kinlab.inverse.branches.structures import GENERAL, Known, known_form
 from kinlab.inverse.request import read_target, read_targets
 from kinlab.model.library import ArmLike, as_robot
@@ -136,9 +145,7 @@ class _Arm(NamedTuple):
     known: Known
     joints: Any
     rest: Array
-    lower: Array
-    upper: Array
-    centre: Array
+    limits: tuple[Array, Array, Array]
     words: tuple[str, ...]
     whole: bool
 
@@ -199,27 +206,8 @@ def ik_branches(
         return _sampled(robot, target, whole(samples, "samples", 1))
     arm = _arm(robot, held)
     form, one = arm.known.form, target[:3].reshape(1, 12)
-    found = Branches(
-        np.empty((1, MOST, form.real)),
-        np.empty(1, np.int64),
-        np.empty((1, MOST), np.int64),
-        np.empty(1, np.int64),
-        np.empty((1, 12)),
-    )
-    branch_rows.branch_rows(
-        form,
-        arm.lower,
-        arm.upper,
-        arm.centre,
-        one,
-        found.goals,
-        found.q,
-        found.codes,
-        found.counts,
-        found.states,
-        0,
-        1,
-    )
+    found = Branches.empty(1, form.real)
+    branch_rows(form, arm.limits, one, found, 0, 1)
     count = int(found.counts[0])
     errors = np.empty((count, 2))
     q = _full(arm, found.q[0, :count])
@@ -299,9 +287,7 @@ def _many(
         _measure(robot, arm, _full(arm, found.q[row, slot]), found.goals, row, measured)
         errors[row, slot] = measured
 
-    found = branch_rows.all_branches(
-        arm.known.form, (arm.lower, arm.upper, arm.centre), flat, threads, verify
-    )
+    found = all_branches(arm.known.form, arm.limits, flat, threads, verify)
     most = int(found.counts.max(initial=0))
     here = slots[:most] < found.counts[:, np.newaxis]
     q = np.full((count, most, robot.n), np.nan)
@@ -441,9 +427,7 @@ def _arm(robot: Robot, held: tuple[tuple[int, float], ...]) -> _Arm:
             known,
             None if len(joints) == robot.n else joints,
             rest,
-            lower,
-            upper,
-            np.clip(0.0, lower, upper),
+            (lower, upper, np.clip(0.0, lower, upper)),
             words_of(known.form),
             free == 0 and known.sure,
         )
@@ -465,7 +449,7 @@ def _misses(task, poses, rows, goals, errors):  # type: ignore[no-untyped-def]
     for i in range(rows.shape[0]):
         for j in range(12):
             pose[j] = poses[i, j // 4, j % 4]
-        errors[i, 0], errors[i, 1] = branch_rows.miss(task, pose, goals[rows[i]], r, e)
+        errors[i, 0], errors[i, 1] = miss(task, pose, goals[rows[i]], r, e)
 
 
 def _measure(robot: Robot, arm: _Arm, q: Array, goals: Array, rows: Any, errors: Array) -> None:

@@ -286,13 +286,20 @@ def _rank_share(arm: ChainArrays, rows: tuple[int, ...], rank: int) -> float:
     n = len(arm.prismatic)
     best = 0.0
     for q in np.random.default_rng(5).uniform(-2.0, 2.0, (6, n)):
-        axes, pose, jac = np.empty((n, 6)), np.empty(12), np.zeros((6, n))
-        frames(arm.fixed, arm.prismatic, q, axes, pose)
-        columns(arm.prismatic, axes, pose, jac)
+        jac, _ = jacobian_and_pose(arm.fixed, arm.prismatic, q)
         values = np.linalg.svd(jac[list(rows)], compute_uv=False)
         if len(values) >= rank and values[0] > 0.0:
             best = max(best, float(values[rank - 1] / values[0]))
     return best
+
+
+def jacobian_and_pose(fixed: Array, prismatic: Any, q: Array) -> tuple[Array, Array]:
+    """Jacobian in the base's axes, (6, n), and tool pose, (12,), of a chain at q (n,)."""
+    n = len(prismatic)
+    axes, pose, jac = np.empty((n, 6)), np.empty(12), np.zeros((6, n))
+    frames(fixed, prismatic, q, axes, pose)
+    columns(prismatic, axes, pose, jac)
+    return jac, pose
 
 
 def _with_wrist(arm: ChainArrays) -> ChainArrays:

@@ -20,12 +20,12 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import revolute
-from kinlab.arrays import Array, frozen
+from kinlab.arrays import Array, frozen, truth
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError
 from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
-from kinlab.inverse.postures.cuspidality import square_task, yes_or_no
+from kinlab.inverse.postures.cuspidality import square_task
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
 
@@ -137,7 +137,7 @@ def aspects(robot: ArmLike, *, limits: bool = True) -> Aspects:
     """
     robot = as_robot(robot)
     space = square_task(robot)
-    limits = yes_or_no(limits)
+    limits = truth(limits, "limits")
     parts = factors(space)
     if parts is None:
         searched = "nothing: the polynomial det J is too large"

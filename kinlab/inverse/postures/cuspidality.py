@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.analysis.singularities.minors import Factor, factors
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, revolute, search_box
-from kinlab.arrays import Array, between, seed_of, shown, whole
+from kinlab.arrays import Array, between, seed_of, truth, whole
 from kinlab.engine.fast.stacks import fk
 from kinlab.engine.states import joint_vector
 from kinlab.errors import OptionError, StateError
@@ -30,7 +30,7 @@ from kinlab.host.evidence import Evidence
 from kinlab.host.progress import pulse, takes_long
 from kinlab.inverse.branches.solutions import ik_branches
 from kinlab.inverse.postures.nonsingular import NonsingularPath, same_sign, show_nonsingular
-from kinlab.inverse.postures.regional import Regional, first_axis, is_regional, singular_points
+from kinlab.inverse.postures.regional import Regional, is_regional, singular_points
 from kinlab.inverse.postures.roadmap import Roadmap
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import Robot
@@ -119,7 +119,7 @@ def is_cuspidal(
     robot = as_robot(robot)
     count, seed = whole(poses, "poses"), seed_of(seed)
     nodes = whole(nodes, "nodes")
-    space, limits = square_task(robot), yes_or_no(limits)
+    space, limits = square_task(robot), truth(limits, "limits")
     parts = factors(space) or ()
     low, high = _range(robot, limits)
     rng = np.random.default_rng(seed)
@@ -137,29 +137,26 @@ def is_cuspidal(
         f", {'within' if limits else 'without'} the joint "
         f"limits; {len(pairs.one)} pairs of solutions on one side of {_named(robot, parts)}"
     )
-    if not len(pairs.one):
-        return _none(space, count, 0, searched, parts)
-    path = _straight(space, pairs, low, high, tell)
-    if path is None:
-        mapped = _by_roadmap(space, parts, pairs, low, high, nodes, rng, tell)
-        searched += f"; straight lines, and roadmaps of {nodes} joint positions"
-        path = mapped
-    if path is None:
-        return _none(space, count, len(pairs.one), searched, parts)
-    evidence = Evidence(
-        searched,
-        proved="two solutions of one pose are joined by a path without a singularity: "
-        + path.evidence.proved,
-    )
+    path, proved, found = None, "", "that no posture changes without a singularity"
+    if len(pairs.one):
+        path = _straight(space, pairs, low, high, tell)
+        if path is None:
+            path = _by_roadmap(space, parts, pairs, low, high, nodes, rng, tell)
+            searched += f"; straight lines, and roadmaps of {nodes} joint positions"
+    else:
+        found += ": no pose was met with two solutions on one side of every factor of det J"
+    if path is not None:
+        joined = "two solutions of one pose are joined by a path without a singularity"
+        proved, found = f"{joined}: {path.evidence.proved}", ""
     return Cuspidality(
         robot.name,
         space.name,
-        CUSPIDAL,
-        fk(robot, path.q[0]),
+        NONE_FOUND if path is None else CUSPIDAL,
+        None if path is None else fk(robot, path.q[0]),
         path,
         count,
         len(pairs.one),
-        evidence,
+        Evidence(searched, proved=proved, found=found),
     )
 
 
@@ -167,7 +164,7 @@ def _near_cusps(robot: Robot, rng: np.random.Generator) -> Array:
     """Joint positions beside the cusps of a 3R arm, where four solutions are near, (M, n)."""
     if not is_regional(robot):
         return np.empty((0, robot.n))
-    found = singular_points(Regional.of(robot, *first_axis(robot))).cusps
+    found = singular_points(Regional.of(robot)).cusps
     rows = np.repeat(found, _BESIDE, axis=0)
     rows = rows + rng.normal(scale=0.3, size=rows.shape)
     return np.concatenate([np.zeros((len(rows), 1)), rows], axis=1)
@@ -196,7 +193,7 @@ def posture_path(
         StateError: q of the wrong shape, or outside the limits. OptionError: as above.
     """
     robot = as_robot(robot)
-    space, limits = square_task(robot), yes_or_no(limits)
+    space, limits = square_task(robot), truth(limits, "limits")
     first, second = joint_vector(robot, one, "one"), joint_vector(robot, two, "two")
     if first.ndim != 1 or second.ndim != 1:
         raise StateError(f"robot {robot.name!r}: give two states of shape ({robot.n},)")
@@ -226,17 +223,6 @@ def changes_without_singularity(robot: Robot, q: Array) -> NonsingularPath | Non
     For answers of :func:`kinlab.ik_path` whose first and last row are two postures of one pose.
     """
     return show_nonsingular(square_task(robot), np.asarray(q, dtype=np.float64))
-
-
-def yes_or_no(limits: bool) -> bool:
-    """Reads the option ``limits``.
-
-    Raises:
-        OptionError: neither True nor False.
-    """
-    if not isinstance(limits, bool | np.bool_):
-        raise OptionError(f"limits is {shown(limits)}; give True or False")
-    return bool(limits)
 
 
 def square_task(robot: Robot) -> TaskSpace:
@@ -374,7 +360,11 @@ def _by_roadmap(
         rows = [i for i, s in enumerate(pairs.sides) if s == side][:_PAIRS]
         goals = [ways_round(space.robot, pairs.one[i], pairs.two[i], low, high) for i in rows]
         given = np.concatenate([pairs.one[rows], *goals])
-        map_ = Roadmap.sample(space, _on(space, parts, side), given, low, high, nodes, rng)
+
+        def inside(q: Array, side: tuple[int, ...] = side) -> Any:
+            return (side_of(space, parts, q) == side).all(axis=1)
+
+        map_ = Roadmap.sample(space, inside, given, low, high, nodes, rng)
         first = len(rows)
         for number, ways in enumerate(goals):
             for way in range(len(ways)):
@@ -383,32 +373,3 @@ def _by_roadmap(
                     return path
             first += len(ways)
     return None
-
-
-def _on(
-    space: TaskSpace, parts: tuple[Factor, ...], side: tuple[int, ...]
-) -> Callable[[Array], Any]:
-    """Which of (N, n) joint positions lie on a side."""
-
-    def inside(q: Array) -> Any:
-        return (side_of(space, parts, q) == side).all(axis=1)
-
-    return inside
-
-
-def _none(
-    space: TaskSpace, poses: int, pairs: int, searched: str, parts: tuple[Factor, ...]
-) -> Cuspidality:
-    found = "that no posture changes without a singularity"
-    if not pairs:
-        found += ": no pose was met with two solutions on one side of every factor of det J"
-    return Cuspidality(
-        space.robot.name,
-        space.name,
-        NONE_FOUND,
-        None,
-        None,
-        poses,
-        pairs,
-        Evidence(searched, found=found),
-    )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -19,7 +21,6 @@ from kinlab.inverse.result import BRANCH, IKResult, IKStatus
 from kinlab.inverse.search import ik
 from kinlab.inverse.setup import setup
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import Robot
 
 NEAR_SINGULAR = 1e-2
 """sigma_min / sigma_max of J, metres over the arm's length, below which a pose is reported."""
@@ -149,28 +150,18 @@ def ik_path(
     largest = number(max_step, "max_step", above=0.0)
     seed = seed_of(seed)
     arm = setup(robot, task, seed)
+    solve = partial(ik, robot, tol_position=tol_position, tol_rotation=tol_rotation)
     answers: list[IKResult] = []
     jumps = []
     for row, target in enumerate(targets):
         if branch is not None:
-            answer = _on_branch(robot, target, branch, here, tol_position, tol_rotation, row)
-            if row and _step(answer, here) > largest:
-                jumps.append(row)
-            answers.append(answer)
-            here = answer.q
-            continue
-        options: dict[str, Any] = {
-            "tol_position": tol_position,
-            "tol_rotation": tol_rotation,
-            "seed": seed,
-            "task": task,
-        }
-        answer = ik(robot, target, here, restarts=0, **options)
-        if not answer.success or _step(answer, here) > largest:
-            other = ik(robot, target, here, **options)
-            if (not other.success, _step(other, here)) < (not answer.success, _step(answer, here)):
-                answer = other
-        if _step(answer, here) > largest:
+            answer = _on_branch(solve, target, branch, here, row)
+        else:
+            answer = solve(target, here, seed=seed, task=task, restarts=0)
+            if not answer.success or _step(answer, here) > largest:
+                other = solve(target, here, seed=seed, task=task)
+                answer = min(answer, other, key=lambda a: (not a.success, _step(a, here)))
+        if _step(answer, here) > largest and (row or branch is None):
             jumps.append(row)
         answers.append(answer)
         here = answer.q
@@ -201,21 +192,15 @@ def _step(answer: IKResult, here: Array) -> float:
 
 
 def _on_branch(
-    robot: Robot,
-    target: Array,
-    branch: str,
-    here: Array,
-    position: float,
-    rotation: float,
-    row: int,
+    solve: Callable[..., IKResult], target: Array, branch: str, here: Array, row: int
 ) -> IKResult:
     """The answer on a named branch; where a later pose lacks it, a failure at the q before."""
     try:
-        return ik(robot, target, here, "lm", position, rotation, branch=branch)
+        return solve(target, here, branch=branch)
     except NameUnknownError:
         if row == 0:
             raise
-    stay = ik(robot, target, here, "lm", position, rotation, restarts=0, max_iterations=1)
+    stay = solve(target, here, restarts=0, max_iterations=1)
     return IKResult(
         here.copy(), False, IKStatus.UNREACHABLE, stay.position_error, stay.rotation_error, 0, 0
     )

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.analysis.singularities.minors import Factor, factors
-from kinlab.analysis.structure.axes import Axes
+from kinlab.analysis.structure.axes import Axes, first_axis
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array
 from kinlab.engine.kinematics import fk
@@ -76,7 +76,7 @@ class Regional:
     parts: tuple[Part, ...]
 
     @classmethod
-    def of(cls, robot: Robot, origin: Array, axis: Array) -> Regional:
+    def of(cls, robot: Robot) -> Regional:
         """Reads the polynomials off samples.
 
         Raises:
@@ -88,6 +88,7 @@ class Regional:
                 f"robot {robot.name!r}: cusps and nodes are for three revolute joints that place a "
                 "point in space"
             )
+        origin, axis = first_axis(robot)
         x = _grid(2)
         q = np.concatenate([np.zeros((len(x), 1)), x], axis=1)
         apart = fk(robot, q)[:, :3, 3] - origin
@@ -140,14 +141,6 @@ def is_regional(robot: Robot) -> bool:
     parallel = np.linalg.norm(np.cross(*Axes.at(robot, np.zeros(3)).direction[:2])) < 1e-9
     task = read_task(robot, "auto")
     return task.rows == (0, 1, 2) and not (parallel and task.m < 3)
-
-
-def first_axis(robot: Robot) -> tuple[Array, Array]:
-    """A point of the first axis, nearest to the base's origin, and its direction, (3,) each."""
-    axes = Axes.at(robot, np.zeros(robot.n))
-    axis, origin = axes.direction[0], axes.point[0]
-    axis = axis * np.sign(axis[int(np.argmax(np.abs(axis)))])  # z points up, however joint 1 turns
-    return origin - axis * float(origin @ axis), axis
 
 
 def singular_points(arm: Regional) -> SingularPoints:

@@ -18,7 +18,6 @@ from kinlab.host.progress import takes_long
 from kinlab.inverse.postures.regional import (
     Regional,
     collapsed_points,
-    first_axis,
     is_regional,
     nodes,
     singular_points,
@@ -45,13 +44,13 @@ class SolutionMap(Answer):
         count: (M, N) of integers: solutions, limits left out. within_limits: those within.
         complete: (M, N), bool: whether a count is of all there are.
         curves: singular configurations' tool positions, short segments (K, 2, 2), limits left out.
+        evidence: what was searched, and what is proved.
         cusps, nodes: points, (c, 2) and (d, 2): three solutions run together; the curve passes
             twice.
+        collapsed: points that a whole line of singular configurations is, (e, 2).
         kind: for three revolute joints in space ``"binary"`` (two solutions at most) or
             ``"quaternary"``; else empty.
         generic: no singular curves cross in joint space; ``None`` where not known.
-        collapsed: points that a whole line of singular configurations is, (e, 2).
-        evidence: what was searched, and what is proved.
     """
 
     robot: str
@@ -62,12 +61,12 @@ class SolutionMap(Answer):
     within_limits: Any
     complete: Any
     curves: Array
-    cusps: Array
-    nodes: Array
-    kind: str
-    generic: bool | None
-    collapsed: Array
     evidence: Evidence = field(repr=False)
+    cusps: Array = field(default_factory=lambda: np.empty((0, 2)))
+    nodes: Array = field(default_factory=lambda: np.empty((0, 2)))
+    collapsed: Array = field(default_factory=lambda: np.empty((0, 2)))
+    kind: str = ""
+    generic: bool | None = None
 
     def introduction(self) -> Introduction:
         """What the map shows, and what it rests on."""
@@ -117,8 +116,7 @@ def solution_map(robot: ArmLike, *, cells: int = 160, angle: float = 0.0) -> Sol
 
 
 def _regional(robot: Robot, cells: int) -> SolutionMap:
-    origin, axis = first_axis(robot)
-    arm = Regional.of(robot, origin, axis)
+    arm = Regional.of(robot)
     segments = singular_segments(arm)
     curves = arm.points(segments.reshape(-1, 2)).reshape(-1, 2, 2)
     special = singular_points(arm)
@@ -126,16 +124,15 @@ def _regional(robot: Robot, cells: int) -> SolutionMap:
     low, high = _bounds(curves)
     low[0] = 0.0
     u, v, flat = _cells(low, high, cells)
-    across = np.linalg.svd(axis[np.newaxis])[2][1]
+    across = np.linalg.svd(arm.axis[np.newaxis])[2][1]
     poses = np.tile(np.eye(4), (len(flat), 1, 1))
-    poses[:, :3, 3] = origin + flat[:, :1] * across + flat[:, 1:] * axis
+    poses[:, :3, 3] = arm.origin + flat[:, :1] * across + flat[:, 1:] * arm.axis
     counts: SolutionCounts = solution_count(robot, poses)
     drawn = np.random.default_rng(0).uniform(-np.pi, np.pi, (_DRAWN, robot.n))
     tried: SolutionCounts = solution_count(robot, fk(robot, drawn))
     most = int(max(counts.count.max(initial=0), tried.count.max(initial=0)))
     cusps = arm.points(special.cusps)
     four = most >= 3 or len(cusps) > 0
-    shape = (len(u), len(v))
     generic = special.generic if special.complete or not special.generic else None
     proved = "each counted solution is one"
     if special.complete:
@@ -143,29 +140,20 @@ def _regional(robot: Robot, cells: int) -> SolutionMap:
             "; every other cusp would lie within 0.02 rad, in joints 2 and 3, of one of these "
             f"{len(cusps)} or of a crossing"
         )
-    return SolutionMap(
-        robot.name,
-        ("rho", "z"),
-        u,
-        v,
-        counts.count.reshape(shape),
-        counts.within_limits.reshape(shape),
-        counts.complete.reshape(shape),
-        curves,
-        cusps,
-        arm.points(crossed[:, :2]),
-        "quaternary" if four else "binary",
-        generic,
-        collapsed_points(arm),
-        Evidence(
-            f"{len(flat)} points of the half section and {_DRAWN} random ones that "
-            "are reached; cusps and crossings in boxes of the whole "
-            "torus of joints 2 and 3",
-            proved=proved + ("; some pose has more than two solutions" if four else ""),
-            found="the nodes"
-            + ("" if four else "; that no pose has more than two solutions")
-            + ("" if special.complete else "; the cusps"),
-        ),
+    evidence = Evidence(
+        f"{len(flat)} points of the half section and {_DRAWN} random ones that are reached; cusps "
+        "and crossings in boxes of the whole torus of joints 2 and 3",
+        proved=proved + ("; some pose has more than two solutions" if four else ""),
+        found="the nodes"
+        + ("" if four else "; that no pose has more than two solutions")
+        + ("" if special.complete else "; the cusps"),
+    )
+    return _mapped(
+        (robot.name, ("rho", "z"), u, v),
+        counts,
+        (curves, evidence, cusps, arm.points(crossed[:, :2]), collapsed_points(arm)),
+        kind="quaternary" if four else "binary",
+        generic=generic,
     )
 
 
@@ -178,28 +166,19 @@ def _planar(robot: Robot, cells: int, angle: float) -> SolutionMap:
     poses[:, :3, :3] = np.eye(3)
     poses[:, :2, :2], poses[:, :2, 3] = turn, flat
     counts: SolutionCounts = solution_count(robot, poses)
-    shape = (len(u), len(v))
     held = "" if robot.n == 2 else f", the tool at {angle:g} rad"
-    return SolutionMap(
-        robot.name,
-        ("x", "y"),
-        u,
-        v,
-        counts.count.reshape(shape),
-        counts.within_limits.reshape(shape),
-        counts.complete.reshape(shape),
-        curves,
-        np.empty((0, 2)),
-        np.empty((0, 2)),
-        "",
-        None,
-        np.empty((0, 2)),
-        Evidence(
-            f"{len(flat)} points of the plane{held}",
-            proved="each counted solution is one",
-            found="that there is no other at any of them",
-        ),
+    evidence = Evidence(
+        f"{len(flat)} points of the plane{held}",
+        proved="each counted solution is one",
+        found="that there is no other at any of them",
     )
+    return _mapped((robot.name, ("x", "y"), u, v), counts, (curves, evidence))
+
+
+def _mapped(plane: Any, counts: SolutionCounts, shown: Any, **kind: Any) -> SolutionMap:
+    numbers = (counts.count, counts.within_limits, counts.complete)
+    grids = (one.reshape(len(plane[2]), len(plane[3])) for one in numbers)
+    return SolutionMap(*plane, *grids, *shown, **kind)
 
 
 def _planar_curves(robot: Robot, angle: float) -> Array:

@@ -127,8 +127,7 @@ def motion_subspace(model: Any, joint: int) -> Array:
     record = model.joints[joint]
     data = record.createData()
     record.calc(data, np.zeros(model.nq))
-    subspace: Array = np.asarray(data.S).reshape(6)
-    return subspace
+    return np.asarray(data.S).reshape(6)
 
 
 def _visual_model(robot: Robot, meshes: bool) -> tuple[Any, set[int], list[str]]:

@@ -51,7 +51,7 @@ class DrawnBodies:
         place = f"robot {robot.name!r}"
         source = urdf_read.parse(robot.urdf, place)
         tree = read_tree(source, place)
-        plain = etree.fromstring(document(tree, list(robot.joint_names)))
+        plain = document(tree, robot.joint_names)
         links = {element.get("name"): element for element in plain.findall("link")}
         paints = {m.get("name"): m for m in source.findall("material")}
         for link in source.findall("link"):

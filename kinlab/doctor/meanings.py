@@ -1,0 +1,128 @@
+"""What a number in a formula may stand for: the robot's, products and sums of these, constants."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
+from itertools import combinations, combinations_with_replacement
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.written import Literal
+from kinlab.tolerances import TOLERANCES
+
+CLOSE = 0.025
+"""Relative change up to which one digit is a rounding."""
+_SIMPLE = 12
+_UNITS = {"": 1.0, "pi": math.pi, "sqrt(2)": math.sqrt(2), "sqrt(3)": math.sqrt(3)}
+_FRACTIONS = tuple(k / n for n in range(1, _SIMPLE + 1) for k in range(1, 2 * _SIMPLE + 1))
+_SHARES = tuple(k / n for n in (1, 2, 3, 4, 6, 12) for k in range(1, 6))
+_PARTS = (1.0, 2.0, 4.0, 1 / 2, 1 / 3, 2 / 3, 4 / 3, 1 / 4, 3 / 4, 3 / 2, 1 / 6, 1 / 8, 1 / 12)
+"""Numbers in front of products of the robot's: m l²/3, m l²/12."""
+RODS = tuple(k / n for n in (3, 6, 12, 24) for k in (1, 2, 4, 7))
+"""Numbers in front of m l² of rods, which nobody writes in full."""
+
+
+@dataclass(frozen=True, eq=False)
+class Meanings:
+    """What the numbers in formulas of one robot may stand for.
+
+    Attributes:
+        own: the robot's numbers by name.
+    """
+
+    own: Mapping[str, float]
+
+    @classmethod
+    def at(cls, values: Mapping[str, Array]) -> Meanings:
+        """From the values of all names at some states."""
+        return cls({name: float(x[0]) for name, x in values.items() if name[0] != "q"})
+
+    @cached_property
+    def products(self) -> Array:
+        """Masses times lengths, squares and g, moments of inertia, and sums of like ones."""
+        kinds: dict[str, list[float]] = {"m": [], "I": [], "g": [], "": []}
+        for name, value in self.own.items():
+            kinds[name[0] if name[0] in kinds else ""].append(abs(value))
+        lengths = kinds[""]
+        heavy = [1.0, *map(sum, _subsets(kinds["m"]))]
+        squares = [a * b for a, b in combinations_with_replacement(lengths, 2)]
+        sums = [a + b for like in (lengths, squares) for a, b in combinations(like[:20], 2)]
+        parts = [1.0, *lengths, *squares]
+        extents = [*np.multiply.outer(parts, _PARTS).ravel(), *sums]
+        made = np.multiply.outer(heavy, np.multiply.outer(extents, [1.0, *kinds["g"]]))
+        return np.unique([*made.ravel(), *map(sum, _subsets(kinds["I"]))])
+
+    @cached_property
+    def values(self) -> Array:
+        """All of them, in ascending order."""
+        irrational = np.multiply.outer(_SHARES, list(_UNITS.values())).ravel()
+        return np.unique([*_FRACTIONS, *irrational, *self.products])
+
+    @cached_property
+    def rods(self) -> list[float]:
+        """m l² of links that are rods by their I = m l²/12, and sums of these."""
+        found = []
+        for name, inertia in self.own.items():
+            m, length = self.own.get(f"m{name[1:]}", 0.0), self.own.get(f"l{name[1:]}", 0.0)
+            rod = m * length * length
+            if name[0] == "I" and rod and abs(12 * inertia - rod) <= TOLERANCES.same_length * rod:
+                found.append(rod)
+        return [*map(sum, _subsets(found)), *(a + b for a, b in combinations(found, 2))]
+
+    def holds(self, value: float) -> bool:
+        """Whether a value is one of them, or zero."""
+        size = abs(value)
+        k = int(np.searchsorted(self.values, size))
+        near = self.values[max(k - 1, 0) : k + 1]
+        return size == 0 or bool(np.any(np.abs(near - size) <= TOLERANCES.same_relation * size))
+
+    def around(self, one: Literal) -> list[float]:
+        """Those that a number may be rounded from: the robot's own first, then the nearest."""
+        low, high = np.searchsorted(self.values, (one.value - one.reach, one.value + one.reach))
+        found = [float(x) for x in self.values[low:high]]
+        return sorted(found, key=lambda x: (self.parameter(x) is None, abs(x - one.value)))
+
+    def parameter(self, value: float) -> str | None:
+        """The robot's number of that value."""
+        near = TOLERANCES.same_relation * abs(value)
+        return next((name for name, x in self.own.items() if abs(x - value) <= near), None)
+
+    def named(self, value: float) -> str:
+        """A number as one would write it exactly: g = 9.81, 1/3, pi/2, sqrt(2)/2."""
+        name = self.parameter(value)
+        if name is not None:
+            return f"{name} = {self.own[name]:.10g}"
+        for word, unit in _UNITS.items():
+            found = Fraction(value / unit).limit_denominator(_SIMPLE)
+            if found and abs(float(found) * unit - value) <= TOLERANCES.same_relation * abs(value):
+                above = word or str(found.numerator)
+                above = f"{found.numerator}*{word}" if word and found.numerator != 1 else above
+                return above if found.denominator == 1 else f"{above}/{found.denominator}"
+        return f"{value:.7g}"
+
+    def credible(self, one: Literal, value: float) -> bool:
+        """Whether so few digits are a rounding at all: 0.3 may be 1/3, but is not 0.25."""
+        name = self.parameter(value)
+        if one.whole:
+            return name is not None
+        gap = abs(value - one.value)
+        if gap > one.half * (1 + TOLERANCES.same_relation):
+            return name is not None and name[0] == "g"
+        close = gap <= CLOSE * abs(value)
+        fine = one.half < 0.01 or one.digits > 1
+        endless = any(
+            abs(value * k - round(value * k)) < TOLERANCES.same_relation for k in (3, 7, 9)
+        )
+        return close or fine or endless
+
+
+def _subsets(values: list[float]) -> Iterator[tuple[float, ...]]:
+    """Neighbours from 1 on, of which sums are taken: m1, m1 + m2, m2 + m3, ..."""
+    for i in range(len(values)):
+        for j in range(i + 1, len(values) + 1):
+            yield tuple(values[i:j])
