@@ -74,7 +74,7 @@ def test_rounded_thirds_inside_a_function_are_right_to_their_digits() -> None:
 
     found = kl.diagnose(arm, "mass_matrix", mass, samples=20)
     assert found.agrees
-    assert "digits" in found.sentence
+    assert "0.3333 stands for 1/3" in found.remarks
     # 0.4 is no third
     assert not kl.diagnose(arm, "mass_matrix", lambda q: mass(q, 0.4), samples=20).agrees
 
@@ -86,6 +86,17 @@ def test_a_small_slip_that_is_no_rounding_is_not_called_right() -> None:
     found = kl.diagnose(ARM, "inverse_dynamics", torques, samples=20)
     assert not found.agrees
     assert found.grade in ("wrong", "not sure")
+
+
+@pytest.mark.parametrize("factor", [1.001, 0.9995])
+def test_a_small_factor_is_neither_right_nor_named(factor) -> None:
+    arm = kl.load("planar2r")
+    found = kl.diagnose(arm, "gravity_torques", lambda q: factor * kl.gravity_torques(arm, q),
+                        samples=20)  # fmt: skip
+    assert not found.agrees
+    assert found.grade == "not sure"
+    assert found.verdict == "nearly agrees, cause unknown"
+    assert "digits only" in found.sentence
 
 
 def with_row(**columns):
