@@ -85,7 +85,7 @@ def examine(
     near = excuse is not None and excuse.form == "near"
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
-    if not near and excuse is None:
+    if excuse is None:
         causes, partial, excuse = _explained(case, engine, written, worst)
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)

@@ -127,6 +127,29 @@ def test_a_number_of_the_robot_is_another(columns, words) -> None:
     assert words in found.sentence
 
 
+def test_statics_from_link_to_link() -> None:
+    rows, tool = ARM.table.links, np.asarray(ARM.table.tool)
+
+    def torques(q, wrench, lever=1.0):
+        ways = [turned([row], [x]) @ np.linalg.inv(tool) for row, x in zip(rows, q, strict=True)]
+        last = ways[0] @ ways[1] @ ways[2]
+        force = last[:3, :3].T @ wrench[:3]
+        moment = last[:3, :3].T @ wrench[3:] + np.cross(tool[:3, 3], force)
+        out = np.zeros(3)
+        for i in (2, 1, 0):
+            out[i] = moment[2]
+            turn, place = ways[i][:3, :3], ways[i][:3, 3]
+            force = turn @ force
+            moment = turn @ moment + lever * np.cross(place, force)
+        return out
+
+    assert kl.diagnose(ARM, "statics", torques, samples=20).agrees
+    found = kl.diagnose(ARM, "statics", lambda q, w: torques(q, w, 0.0), samples=20)
+    assert "leaves P x f out in the moment n" in found.sentence
+    found = kl.diagnose(ARM, "statics", lambda q, w: torques(q, w, -1.0), samples=20)
+    assert "sign" in found.sentence
+
+
 def test_the_rotors_are_left_out() -> None:
     arm = kl.load("puma560")
     rotors = np.asarray(arm.model.armature)
