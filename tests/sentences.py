@@ -222,7 +222,7 @@ def update(folder: str) -> None:
 # -------- What should be marked and is not
 
 _MARKUP = re.compile(r"<[^>]*>?")
-_WORDS = re.compile(r"[A-Za-z]{2,}[,:;.]? +[A-Za-z]{2,}")
+WORDS = re.compile(r"[A-Za-z]{2,}[,:;.]? +[A-Za-z]{2,}")
 """Two words beside each other: what makes a piece of text a sentence."""
 
 
@@ -253,7 +253,7 @@ def unmarked(tree: ast.AST) -> list[tuple[int, str]]:
         if isinstance(node, ast.Constant)
         and isinstance(node.value, str)
         and id(node) not in free
-        and _WORDS.search(_MARKUP.sub("", node.value))
+        and WORDS.search(_MARKUP.sub("", node.value))
     ]
 
 

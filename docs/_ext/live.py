@@ -22,7 +22,7 @@ if TYPE_CHECKING:  # the tests of what is cut out do without Sphinx
     from docutils import nodes
     from sphinx.application import Sphinx
 
-_FRAME = re.compile(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>')
+FRAME = re.compile(r'<iframe srcdoc="([^"]*)"[^>]*></iframe>')
 _SCRIPT = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 _SHARED = ("meshcat.js", "page.js")
 """Names of the page's first two scripts, which are the same in every page; the third is its own."""
@@ -104,7 +104,7 @@ def _cut_out(app: Sphinx, doctree: nodes.document) -> None:
 
     for node in doctree.findall(nodes.raw):
         if node.get("format") == "html" and "<iframe srcdoc=" in node.astext():
-            shown = _FRAME.sub(linked, node.astext())
+            shown = FRAME.sub(linked, node.astext())
             node.rawsource, node.children = shown, []
             node += nodes.Text(shown)
 

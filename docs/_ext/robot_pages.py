@@ -46,7 +46,7 @@ def write(docs: Path) -> None:
         if old.stem not in kept:
             old.unlink()
     every = [*arms.values(), *bars.values()]
-    _renew(folder / "cards.txt", every, shared, partial(_cards, list(arms), list(bars)))
+    _renew(folder / "cards.txt", every, shared, partial(cards, list(arms), list(bars)))
 
 
 def _renew(page: Path, sources: list[Path], shared: str, make: Callable[[], str]) -> None:
@@ -453,7 +453,7 @@ def _bar_singularities(bar: kl.FiveBar) -> str:
 # -------- The overview
 
 
-def _cards(arms: list[str], bars: list[str]) -> str:
+def cards(arms: list[str], bars: list[str]) -> str:
     """Two grids of thumbnails that link to the pages."""
     parts = ["## Arms", "::::{grid} 1 2 3 3\n:gutter: 3"]
     for name in arms:

@@ -59,6 +59,7 @@ class Cause:
         error_after: relative error that is left once it is repaired; at most 1e-9.
         cost: how far-fetched it is; causes are ranked by it.
         corrected: the right formulas by entry, where they are known.
+        typed: those of them that their writer would type in another way: as LaTeX, MATLAB, ...
     """
 
     sentence: str
@@ -67,6 +68,12 @@ class Cause:
     error_after: float
     cost: float
     corrected: dict[str, str] = field(default_factory=dict)
+    typed: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def shown(self) -> dict[str, str]:
+        """The right formulas by entry, as their writer would type them."""
+        return {**self.corrected, **self.typed}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -197,7 +204,7 @@ class Diagnosis(Answer):
             lines = [best.sentence, errors]
             lines += [
                 _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}")
-                for name, text in best.corrected.items()
+                for name, text in best.shown.items()
             ]
             lines += [_("or: {slip}").format(slip=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
@@ -237,7 +244,7 @@ class Diagnosis(Answer):
                     "kinds": list(c.kinds),
                     "places": list(c.places),
                     "error_after": _finite(c.error_after),
-                    "corrected": c.corrected,
+                    "corrected": c.shown,
                 }
                 for c in self.causes
             ],

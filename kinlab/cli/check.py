@@ -338,7 +338,7 @@ def _print_diagnosis(console: Screen, found: Diagnosis) -> None:
         before, after = size(found.error_before), size(found.error_after)
         told = _("relative error before {before}, after {after}")
         line("  " + told.format(before=before, after=after))
-        for name, text in found.causes[0].corrected.items():
+        for name, text in found.causes[0].shown.items():
             line("  " + _("correct: {formula}").format(formula=f"{shown_entry(name)} = {text}"))
     for text in found.others:
         line("  " + _("or: {slip}").format(slip=text))

@@ -439,6 +439,7 @@ def _slip_cause(slips: tuple[Slip, ...]) -> Cause:
         max(s.error for s in slips),
         sum(s.cost for s in slips),
         {s.entry: s.corrected for s in slips if s.corrected},
+        {s.entry: s.typed for s in slips if s.typed},
     )
 
 

@@ -19,8 +19,9 @@ from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.written import Written, literal
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
-from kinlab.formulas import tree
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse
+from kinlab.formulas import tree, typed
+from kinlab.formulas.retyped import Typing
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse, tidied
 from kinlab.formulas.tree import Node
 from kinlab.host.files import read_text, read_toml
 from kinlab.host.language import _
@@ -180,13 +181,14 @@ def _by_quantity(
 
 
 def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
-    """The file with ``g`` for each decimal that is g rounded, as 9.8, and what is to be said of it.
+    """The file with a name for g for each decimal that is g rounded, and what is to be said of it.
 
     A slip is told beside a rounded number only where the number is read as what it stands for.
     """
     words = vocabulary(robot.table).values if robot.table is not None else {}
     size = words.get("g", 0.0)
     said: dict[str, str] = {}
+    numbers: dict[str, str] = {}
 
     def named(found: re.Match[str]) -> str:
         if not size or not _stands_for(found[0], size):
@@ -194,7 +196,9 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
         if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
             told = _("{written} stands for {meant}")
             said[found[0]] = told.format(written=found[0], meant=f"g = {size:.10g}")
-        return "g"
+        name = f"g_{found[0].replace('.', '_')}"
+        numbers[name] = found[0]
+        return name
 
     texts = {entry: _DECIMAL.sub(named, text) for entry, text in file.texts.items()}
     if not said:
@@ -203,7 +207,17 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
         entry: formula if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
         for entry, formula in file.formulas.items()
     }
-    return replace(file, texts=texts, formulas=formulas), said
+    return (
+        replace(
+            file,
+            texts=texts,
+            formulas=formulas,
+            numbers=numbers,
+            symbols=file.symbols | dict.fromkeys(numbers, tree.sym("g")),
+            symbol_texts=file.symbol_texts | dict.fromkeys(numbers, "g"),
+        ),
+        said,
+    )
 
 
 def _read_better(
@@ -467,7 +481,24 @@ def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written
                 )
     inside = tree.names(file.formulas[entry])
     used = [note for name, note in rounded.items() if name in inside]
-    return Written(entry, file.texts[entry], node, texts, known, tuple(used))
+    written = file.texts[entry]
+    return Written(
+        entry, written, node, texts, known, tuple(used), file.numbers, typing_of(entry, file)
+    )
+
+
+def typing_of(entry: str, file: FormulaFile) -> Typing | None:
+    """An entry as it was typed; None where that is its plain text."""
+    given = file.as_typed[entry]
+    core, dollars = typed.bare(given), typed.is_latex(given)
+
+    def reads(line: str) -> str:
+        return typed.plain_formula(f"${line}$" if dollars else line, entry, file.writing)
+
+    plain = tidied(reads(core))
+    if tidied(core) == plain:
+        return None
+    return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
 
 
 def _entry_of(label: str, titles: dict[str, str]) -> str:

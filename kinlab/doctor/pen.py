@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -63,10 +63,10 @@ class Change:
     everywhere: tuple[tuple[str, str], ...] = ()
     pieces: Mapping[str, str] = field(default_factory=dict)
 
-    @property
-    def sentence(self) -> str:
-        """What is wrong there, in words."""
-        return _(self.told).format(**{name: brief(text) for name, text in self.pieces.items()})
+    def sentence(self, typed: Callable[[str], str]) -> str:
+        """What is wrong there, in words; ``typed`` says how the writer types a piece."""
+        pieces = {name: brief(typed(text)) for name, text in self.pieces.items()}
+        return _(self.told).format(**pieces)
 
 
 @dataclass(frozen=True)
@@ -222,6 +222,8 @@ class Line:
         told, pieces = self._told(
             place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
         )
+        if pieces.get("term") == old:
+            told = N_("{old} should be {new}")
         pieces |= {"old": old, "new": new}
         self.put(place, value, Change(start, end, new, kind, cost, told, pieces=pieces))
 
@@ -317,7 +319,8 @@ class Line:
             "12": 12.0,
             "0.5": 0.5,
         }.items():
-            if size != float(self.segment(place)):
+            idle = size == 1.0 and place.above is not None and _is_product(place.above.node)
+            if size != float(self.segment(place)) and not idle:
                 self.instead(place, shown, np.full(self.count, size), "factor", 1.25)
         if "." in self.segment(place):  # a length's number, mistaken: 0.41 for l2 = 0.4
             for word, value in self.atoms.items():
@@ -417,13 +420,14 @@ class Line:
             return
         extra = 0.3 if _is_sum(node) else 0.0
         body = wrapped if _is_sum(node) else piece
+        numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
         for shown, size in _FACTORS.items():
             new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
-            cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra
+            cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
             self.instead(place, new, size * place.value, "factor", cost)
         signed = place.above is not None and isinstance(place.above.node, ast.BinOp)
         if not signed or place.role == 0:
-            self.instead(place, f"-{body}", -place.value, "sign", 1.0 + extra)
+            self.instead(place, self._turned(place), -place.value, "sign", 1.0 + extra)
         for name, value in self.atoms.items():
             for power, more in ((1, 0.0), (2, 0.4)):
                 word = name if power == 1 else f"{name}**{power}"
@@ -455,6 +459,26 @@ class Line:
             )
             self.put(place, times, change)
 
+    def _turned(self, place: _Place) -> str:
+        """A piece with the opposite sign, without a sign in front of a sign."""
+        if not _is_sum(place.node):
+            piece = self.segment(place)
+            return piece[1:].lstrip() if piece.startswith("-") else f"-{piece}"
+        left, right = self._siblings[id(place)]
+        gap = self.source[left.span[1] : right.span[0]]
+        sign = next(c for c in gap if c in "+-")
+        start, end = place.span
+        behind = self.source[left.span[1] : end].replace(sign, {"+": "-", "-": "+"}[sign], 1)
+        if self.source[start : left.span[0]].strip():  # brackets: -(a + b) - c
+            inner = self.source[start : left.span[1]] + ")" * gap[: gap.index(sign)].count(")")
+            return f"-{inner}{behind[behind.index({'+': '-', '-': '+'}[sign]) :]}"
+        return self._turned(left) + behind
+
+    @cached_property
+    def gap(self) -> str:
+        """What the writer puts around a sign between terms."""
+        return "" if re.search(r"\S[-+]\S", self.source) else " "
+
     def _as_term(self, place: _Place) -> None:
         """Terms that are missing in a sum between parentheses."""
         node = place.node
@@ -470,7 +494,7 @@ class Line:
                 change = Change(
                     place.span[1],
                     place.span[1],
-                    f" {sign} {piece}",
+                    f"{self.gap}{sign}{self.gap}{piece}",
                     "missing term",
                     cost,
                     N_("the term {term} is missing in {sum}"),
@@ -509,7 +533,7 @@ class Line:
             change = Change(
                 end,
                 end,
-                f" {sign} {body}",
+                f"{self.gap}{sign}{self.gap}{body}",
                 "missing term",
                 1.3,
                 N_("the term {term} is missing"),
@@ -548,9 +572,10 @@ class Line:
                 N_("sin and cos are exchanged throughout"),
                 {},
             )
-        if words.count("g") > 1:
+        weight = self.spelling.get("g", "g")
+        if words.count(weight) > 1:
             told = N_("gravity has the opposite sign: every g should be -g")
-            self._global((("g", "(-g)"),), "gravity sign", 1.5, told, {})
+            self._global(((weight, f"(-{weight})"),), "gravity sign", 1.5, told, {})
 
     def _global(
         self,
@@ -674,6 +699,7 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
         text = text[: change.start] + change.new + text[change.end :]
     text = re.sub(r"^\s*\+\s*", "", text.strip())
     text = re.sub(r"\(\s*\+\s*", "(", text)
+    text = re.sub(r"(^|\()\s*-\s+", r"\1-", re.sub(r"  +", " ", text))
     try:
         ast.parse(text, mode="eval")
     except SyntaxError:
@@ -709,6 +735,10 @@ def _words(text: str) -> list[str]:
 
 def _is_sum(node: ast.expr) -> bool:
     return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
+
+
+def _is_product(node: ast.expr) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Mult, ast.Div))
 
 
 def _is_exponent(place: _Place) -> bool:

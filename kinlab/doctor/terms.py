@@ -134,6 +134,7 @@ class Slip:
             entry repaired (for a text), at the states of the comparison.
         repaired: whether ``values`` are the user's repaired ones.
         error: relative error that is left with the slip repaired.
+        typed: the right formula as the writer would type it, where otherwise, or ``""``.
     """
 
     entry: str
@@ -144,6 +145,7 @@ class Slip:
     values: Array
     repaired: bool
     error: float = np.inf
+    typed: str = ""
 
     def with_error(self, error: float) -> Slip:
         """The slip with its evidence."""
@@ -211,11 +213,14 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
 def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     form = _("{entry}: {slip} ({kind})")
     told = _("; ").join(
-        form.format(entry=written.entry, slip=c.sentence, kind=_(c.kind)) for c in found.changes
+        form.format(entry=written.entry, slip=c.sentence(written.told), kind=_(c.kind))
+        for c in found.changes
     )
     kinds = tuple(c.kind for c in found.changes)
     values = replace(written, text=found.text).values(here)
-    return Slip(written.entry, kinds, told, found.text, found.cost, values, True)
+    text = written.restored(found.text)
+    typed = written.typing.corrected(text) if written.typing is not None else ""
+    return Slip(written.entry, kinds, told, text, found.cost, values, True, typed=typed)
 
 
 def in_function(

@@ -19,6 +19,7 @@ from kinlab.arrays import Array
 from kinlab.formulas import tree
 from kinlab.formulas.arithmetic import read
 from kinlab.formulas.evaluate import combined
+from kinlab.formulas.retyped import Typing
 from kinlab.formulas.text import canonical
 from kinlab.formulas.tree import Node
 
@@ -87,6 +88,8 @@ class Written:
         symbols: what the writer's own names stand for: text over other names, or digits.
         known: the writer's names that stand for a number of the robot: ``L`` is ``l1``.
         rounded: what is to be said of names whose number is one of the robot's, rounded.
+        numbers: names that stand in the text for a number that was written.
+        typing: how it was typed, where that is not the text.
     """
 
     entry: str
@@ -95,6 +98,17 @@ class Written:
     symbols: Mapping[str, str] = field(default_factory=dict)
     known: Mapping[str, Node] = field(default_factory=dict)
     rounded: tuple[str, ...] = ()
+    numbers: Mapping[str, str] = field(default_factory=dict)
+    typing: Typing | None = None
+
+    def told(self, piece: str) -> str:
+        """A piece of the text, or of what comes instead, as the writer types it."""
+        piece = self.restored(piece)
+        return self.typing.piece(piece) if self.typing is not None else piece
+
+    def restored(self, text: str) -> str:
+        """The text with the numbers that were written."""
+        return re.sub(r"\w+", lambda m: self.numbers.get(m[0], m[0]), text)
 
     @cached_property
     def _trees(self) -> dict[str, ast.expr]:

@@ -12,6 +12,8 @@ module          what it holds
 ``marks``       Where a formula and its corrected form differ, for the eye
 ``numbers``     Numbers and angles written as text: ``"pi/2"``, ``"-90 deg"``, ``"sqrt(2)*0.3"``
 ``record``      The record of one hand formula, and the decorators that make it
+``retyped``     A corrected formula in its writer's own typing: LaTeX stays LaTeX, ``q(2)``
+                stays ``q(2)``
 ``text``        Formulas as text, read by a whitelist over Python's syntax tree. Nothing is ever
                 evaluated
 ``tree``        Formulas as small trees that keep the writer's own form, so that a repair can

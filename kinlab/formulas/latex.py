@@ -7,6 +7,7 @@ two meanings to ``\cos q_2 \sin q_1``, and works out ``9^{9^{9^{9}}}`` until it 
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
 
@@ -42,7 +43,16 @@ _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 
 
-def expression(text: str, place: str = "expression") -> str:
+@dataclass(frozen=True)
+class Leaf:
+    """A name, number, function or sign: what it is in plain text, and where it was typed."""
+
+    plain: str
+    start: int
+    end: int
+
+
+def expression(text: str, place: str = "expression", leaves: list[Leaf] | None = None) -> str:
     """Plain text of a LaTeX formula: ``m_1 l_1^2 \\ddot{q}_1`` gives ``m1*l1**2*qdd1``.
 
     Args:
@@ -50,6 +60,7 @@ def expression(text: str, place: str = "expression") -> str:
             ``\\sin \\cos \\tan`` with parentheses or one name behind, names with subscripts,
             ``\\mathrm`` and its like, ``\\dot`` and ``\\ddot`` over q or theta.
         place: what to put in front of a message.
+        leaves: gets every leaf, in the order of the text.
 
     Raises:
         ExpressionError: too long, nested too deep, a command that is none of these, or what two
@@ -59,6 +70,7 @@ def expression(text: str, place: str = "expression") -> str:
         raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
     tokens: list[str] = []
     tight: list[bool] = []
+    spans: list[tuple[int, int]] = []
     depth = at = 0
     glued = False
     while at < len(text):
@@ -74,11 +86,14 @@ def expression(text: str, place: str = "expression") -> str:
             raise ExpressionError(f"{place}: nested deeper than {_NESTING}")
         tokens.append(token)
         tight.append(glued)
+        spans.append(found.span())
         glued = True
-    reader = _Reader(tokens, tight, place)
+    reader = _Reader(tokens, tight, spans, place)
     result = reader.sum()
     if reader.next:
         raise reader.unread()
+    if leaves is not None:
+        leaves += reader.leaves
     return result
 
 
@@ -90,9 +105,13 @@ def _raised(exponent: str) -> str:
 class _Reader:
     """Walks the tokens from left to right, one method for each level of binding."""
 
-    def __init__(self, tokens: list[str], tight: list[bool], place: str) -> None:
+    def __init__(
+        self, tokens: list[str], tight: list[bool], spans: list[tuple[int, int]], place: str
+    ) -> None:
         self.tokens = tokens
         self.tight = tight
+        self.spans = spans
+        self.leaves: list[Leaf] = []
         self.place = place
         self.at = 0
         self.depth = 0
@@ -115,6 +134,14 @@ class _Reader:
         self.at += 1
         return token
 
+    def leaf(self, plain: str, first: int) -> str:
+        """Notes a leaf that the tokens from ``first`` to here were."""
+        self.leaves.append(Leaf(plain, self.spans[first][0], self.spans[self.at - 1][1]))
+        return plain
+
+    def single(self) -> str:
+        return self.leaf(self.take(), self.at - 1)
+
     def unread(self, wanted: str = "") -> ExpressionError:
         found = repr(self.next) if self.next else "the end"
         allowed = r"names, numbers, + - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
@@ -132,13 +159,15 @@ class _Reader:
         whole = list(self.next)
         self.tokens[self.at : self.at + 1] = whole
         self.tight[self.at : self.at + 1] = [self.tight[self.at]] + [True] * (len(whole) - 1)
+        start = self.spans[self.at][0]
+        self.spans[self.at : self.at + 1] = [(start + k, start + k + 1) for k in range(len(whole))]
 
     def sum(self) -> str:
-        text = self.take() if self.next in ("+", "-") else ""
+        text = self.single() if self.next in ("+", "-") else ""
         text += self.product()
         while self.next in ("+", "-"):
             bare = self.bare == self.at
-            sign, product = self.take(), self.product()
+            sign, product = self.single(), self.product()
             if bare and _ANGLE.fullmatch(product):
                 raise self.unsure(
                     f"a function without parentheses before {sign} {product}",
@@ -211,7 +240,7 @@ class _Reader:
             return self.group()
         if self.next[:1].isdigit() and len(self.next) > 1:  # \frac12 is one half
             self.split()
-            return self.take()
+            return self.single()
         return self.atom()
 
     def group(self) -> str:
@@ -231,9 +260,11 @@ class _Reader:
     def _atom(self) -> str:
         token = self.next
         if token in _PAIRS:
+            opened = self.at
             inside = self.group()
             if token == "{" and self.next == "_" and _NAME.fullmatch(inside):  # {\dot q}_1
-                return f"{inside}{self.subscript()}"
+                self.leaves.pop()
+                return self.leaf(f"{inside}{self.subscript()}", opened)
             return f"({inside})"
         if token in _FRACTIONS:
             self.take()
@@ -241,15 +272,16 @@ class _Reader:
             return f"(({above})/({self.argument()}))"
         if token in (r"\sqrt", "sqrt"):
             self.take()
+            self.leaf("sqrt", self.at - 1)
             if self.next == "[":
                 raise ExpressionError(f"{self.place}: LaTeX: only square roots can be read")
             return f"sqrt({self.argument()})"
         if self.called():
             return self.function()
         if token[:1].isdigit():
-            return self.take()
+            return self.single()
         if token == r"\pi":
-            return self.take()[1:]
+            return self.leaf(self.take()[1:], self.at - 1)
         return self.name()
 
     def called(self) -> str:
@@ -261,6 +293,7 @@ class _Reader:
     def function(self) -> str:
         name = self.called()
         self.take()
+        self.leaf(name, self.at - 1)
         exponent = self.argument() if self.raised() else ""
         if exponent and (name not in _RAISED or exponent.lstrip("(").startswith("-")):
             raise self.unsure(
@@ -283,7 +316,7 @@ class _Reader:
         if self.next in _FRACTIONS:
             inside = self.atom()
         else:
-            number = f"{self.take()}*" if self.next[:1].isdigit() else ""
+            number = f"{self.single()}*" if self.next[:1].isdigit() else ""
             inside = number + self.name()
         if "**" in inside or self.next == "^":
             raise self.unsure(
@@ -294,7 +327,7 @@ class _Reader:
         return inside
 
     def name(self) -> str:
-        dots = ""
+        dots, first = "", self.at
         if self.next in _DOTS:
             dots = _DOTS[self.take()]
             braced = self.next == "{"
@@ -310,14 +343,18 @@ class _Reader:
         if dots and head not in ("q", "theta"):
             raise ExpressionError(f"{self.place}: LaTeX: a dot over {head}; only over q and theta")
         if self.next == "^" and not below:  # l^2_1 is l_1^2
-            mark = self.at
+            mark, noted = self.at, len(self.leaves)
             self.take()
             exponent = self.argument()
             below = self.subscript()
             if below:
-                return f"{head}{dots}{below}{_raised(exponent)}"
+                behind, self.leaves[noted:] = self.leaves[noted:], []
+                base = self.leaf(f"{head}{dots}{below}", first)
+                self.leaves += behind
+                return f"{base}{_raised(exponent)}"
             self.at = mark
-        return f"{head}{dots}{below}"
+            del self.leaves[noted:]
+        return self.leaf(f"{head}{dots}{below}", first)
 
     def letter(self) -> str:
         token = self.next

@@ -22,7 +22,7 @@ import ast
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any
 
@@ -66,6 +66,9 @@ class FormulaFile:
         symbols: the user's own names: a number, or text over other names.
         formulas: entry name to expression, in the order of the file.
         texts: the formulas as they are written, for plain evaluation.
+        as_typed: the same as they were typed: LaTeX, MATLAB, ...
+        writing: what all of them say about the writing.
+        numbers: names in the texts that stand for a number that was written.
         symbol_texts: the same for symbols; a number as its digits.
     """
 
@@ -75,6 +78,9 @@ class FormulaFile:
     formulas: dict[str, Node]
     texts: dict[str, str]
     symbol_texts: dict[str, str]
+    as_typed: dict[str, str]
+    writing: typed.Hand
+    numbers: Mapping[str, str] = field(default_factory=dict)
 
 
 def formula_file(
@@ -117,7 +123,8 @@ def formula_file(
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
-    entries, symbols = _plain(entries, symbols, place, writing)
+    as_typed, writing = _opened(entries, symbols, place, writing)
+    entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
         place,
         robot,
@@ -128,6 +135,8 @@ def formula_file(
             name: tidied(value if isinstance(value, str) else repr(float(value)))
             for name, value in symbols.items()
         },
+        as_typed,
+        writing,
     )
 
 
@@ -372,20 +381,28 @@ def _symbol(value: Any, place: str) -> Node:
     return tree.num(Fraction(repr(float(value))))
 
 
-def _plain(
+def _opened(
     entries: dict[str, Any], symbols: dict[str, Any], place: str, writing: typed.Hand | None
-) -> tuple[dict[str, str], dict[str, Any]]:
-    """Formulas and symbols as typed, made plain; a matrix as its entries."""
+) -> tuple[dict[str, str], typed.Hand]:
+    """Formulas as typed, a matrix as its entries; and what they say about the writing."""
     given = {key: _text(value, f"{place}: {key}") for key, value in entries.items()}
-    meant = {name: value for name, value in symbols.items() if isinstance(value, str)}
-    writing = writing or typed.hand([*given.values(), *meant.values()], symbols)
+    meant = [value for value in symbols.values() if isinstance(value, str)]
+    writing = writing or typed.hand([*given.values(), *meant], symbols)
+    return typed.opened(given, place, writing), writing
+
+
+def _plain(
+    entries: dict[str, str], symbols: dict[str, Any], place: str, writing: typed.Hand
+) -> tuple[dict[str, str], dict[str, Any]]:
+    """Formulas and symbols as typed, made plain."""
     formulas = {}
-    for name, value in typed.opened(given, place, writing).items():
+    for name, value in entries.items():
         formulas[name] = typed.plain_formula(value, f"{place}: {name}", writing)
         typed.refuse_omega(formulas[name], f"{place}: {name}", symbols)
     explained = {
         name: typed.plain_formula(value, f"{place}: symbol {name!r}", writing)
-        for name, value in meant.items()
+        for name, value in symbols.items()
+        if isinstance(value, str)
     }
     return formulas, symbols | explained
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import unicodedata
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
@@ -132,8 +133,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
     text = bare(text)
-    alone = not typeset and (not text.isascii() or _BESIDE.search(text))
-    if alone and _ALONE.fullmatch(text):  # m₁l₁² cos θ₂, m_1 l_1
+    if not typeset and _side_by_side(text):
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:
@@ -142,6 +142,42 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
         text = _plain_signs(text, place)
         text = _without_indices(text, place, writing)
     return _capitals(text, place, writing)
+
+
+_OF_ONE_LETTER = r"sin|cos|tan|sqrt|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
+_OF_LETTERS = (
+    r"(?:(?:np|numpy|math|sp|sympy)\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
+    r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?"
+)
+_REST = r"|[⁰¹²³⁴-⁹]|\d+\.?\d*(?:[eE][+-]?\d+)?|[-+−–]"
+
+
+def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex.Leaf]:
+    """The leaves of a formula as typed: names, numbers, functions and signs, with their places.
+
+    Args:
+        text: without dollars or a left side; what :func:`plain_formula` can read.
+        place, writing: as there.
+        typeset: whether there were dollars around it.
+    """
+    found: list[latex.Leaf] = []
+    typeset = typeset or _side_by_side(text)
+    if typeset and text.isascii():
+        latex.expression(text.replace("**", " ^"), place, found)
+        return found
+    for piece in re.finditer((_OF_ONE_LETTER if typeset else _OF_LETTERS) + _REST, text):
+        plain = piece.group().translate(_ABOVE)
+        if not plain.isdigit():
+            with suppress(ExpressionError):  # a function's name alone is no formula
+                plain = plain_formula(plain.translate(_SIGNS), place, writing)
+        found.append(latex.Leaf(plain, *piece.span()))
+    return found
+
+
+def _side_by_side(text: str) -> bool:
+    """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 l_1."""
+    unlike = not text.isascii() or _BESIDE.search(text)
+    return bool(unlike and _ALONE.fullmatch(text))
 
 
 def is_latex(text: str) -> bool:

@@ -24,14 +24,14 @@ def shown():
 
 
 def test_what_a_notebook_shows_is_found_and_is_the_page(shown):
-    found = live._FRAME.fullmatch(shown)
+    found = live.FRAME.fullmatch(shown)
     assert found
     page = html.unescape(found.group(1))
     assert page.startswith("<!DOCTYPE html>") and page.rstrip().endswith("</html>")
 
 
 def test_a_page_and_its_shared_scripts_make_the_whole_page_again(shown):
-    whole = html.unescape(live._FRAME.fullmatch(shown).group(1))
+    whole = html.unescape(live.FRAME.fullmatch(shown).group(1))
     page, shared = live.split_page(whole)
     assert len(page) < 0.15 * len(whole)
     assert len(shared) == 2
@@ -43,7 +43,7 @@ def test_a_page_and_its_shared_scripts_make_the_whole_page_again(shown):
 
 
 def test_the_policy_lets_the_pages_own_script_run_and_no_other(shown):
-    page, _ = live.split_page(html.unescape(live._FRAME.fullmatch(shown).group(1)))
+    page, _ = live.split_page(html.unescape(live.FRAME.fullmatch(shown).group(1)))
     allowed = re.search(r"script-src ([^;]*);", page).group(1).split()
     (own,) = re.findall(r"<script>(.*?)</script>", page, re.DOTALL)
     digest = base64.b64encode(hashlib.sha256(own.encode()).digest()).decode()
@@ -53,7 +53,7 @@ def test_the_policy_lets_the_pages_own_script_run_and_no_other(shown):
 def test_pages_share_their_scripts_on_disk(shown, tmp_path):
     other = kl.viewer.Scene("planar3r")._repr_html_()
     names = {
-        live.write_page(html.unescape(live._FRAME.fullmatch(text).group(1)), tmp_path)
+        live.write_page(html.unescape(live.FRAME.fullmatch(text).group(1)), tmp_path)
         for text in (shown, other, shown)
     }
     assert len(names) == 2

@@ -78,7 +78,7 @@ def test_angles_are_written_as_parts_of_pi_where_they_are(value, text):
 
 
 def test_every_robot_has_a_card_and_a_page_is_whole(tmp_path):
-    cards = robot_pages._cards(["scara", "planar2r"], ["isotropic"])
+    cards = robot_pages.cards(["scara", "planar2r"], ["isotropic"])
     assert cards.count("grid-item-card") == 3 and "RRPR" in cards
     for name in ("scara", "planar2r", "isotropic"):
         assert f"generated/{name}\n" in cards

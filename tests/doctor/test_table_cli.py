@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import umsgpack
 from browser import chromium, open_file, tab, world  # noqa: F401  fixtures
+from scenes import paths, told
 from typer.testing import CliRunner
 
 import kinlab as kl
@@ -105,21 +105,20 @@ def test_joint_names_without_one_in_common_are_noted():
 
 def test_the_scene_lights_the_wrong_row_and_draws_the_other_arm():
     scene = against_scene(MINE, kl.to_urdf(PANDA))
-    paths = {umsgpack.unpackb(c)["path"] for c in scene._recorder.commands()}
-    assert any(path.endswith("lit_3/rod") for path in paths)
-    assert not any("lit_4" in path for path in paths)
-    spec = scene._spec
+    assert any(path.endswith("lit_3/rod") for path in paths(scene))
+    assert not any("lit_4" in path for path in paths(scene))
+    spec = told(scene)
     assert len(spec["followers"]) == 7 and "reference" in spec["shown"] and "wrong" in spec["shown"]
     assert "row 3: alpha has the wrong sign" in spec["notes"][0]
     agreeing = against_scene(PANDA, kl.to_urdf(PANDA))
-    assert "wrong" not in agreeing._spec["shown"] and "agrees" in agreeing._spec["notes"][0]
+    assert "wrong" not in told(agreeing)["shown"] and "agrees" in told(agreeing)["notes"][0]
 
 
 def test_poses_are_drawn_with_the_repaired_arm():
     q = np.random.default_rng(0).uniform(-1, 1, (20, 7))
     scene = against_scene(MINE, (q, PANDA.fk(q)[:, -1]))
-    paths = {umsgpack.unpackb(c)["path"] for c in scene._recorder.commands()}
-    assert any(path.endswith("/poses") for path in paths) and len(scene._spec["followers"]) == 7
+    assert any(path.endswith("/poses") for path in paths(scene))
+    assert len(told(scene)["followers"]) == 7
 
 
 def test_the_command_view_writes_the_page(files):
@@ -135,7 +134,7 @@ def test_both_arms_follow_the_sliders_in_a_browser(tab, tmp_path):  # noqa: F811
     q = np.array([0.3, -0.4, 0.5, -1.2, 0.2, 1.1, 0.4])
     page.evaluate("q => page.setJoints(q)", q.tolist())
     robot = kl.Robot.from_dh(PANDA)
-    path = scene._spec["followers"][-1]["path"]
+    path = told(scene)["followers"][-1]["path"]
     import pinocchio as pin
 
     data = robot.model.createData()

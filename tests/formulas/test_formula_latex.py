@@ -68,7 +68,7 @@ def test_in_a_file(tmp_path):
     assert examine_file(file)[0].agrees
     file.write_text(text.replace(r" + \theta_2", ""))
     found = examine_file(file)[0]
-    assert "cos(theta1) should be cos(theta1 + theta2)" in found.sentence  # in the writer's names
+    assert r"\cos(\theta_1) should be \cos(\theta_1 + \theta_2)" in found.sentence  # the writer's
     file.write_text(text + "[formulas]\ng2 = 'm2'\n")
     with pytest.raises(FileError, match="'g2' is given twice"):
         examine_file(file)

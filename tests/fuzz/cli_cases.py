@@ -75,11 +75,11 @@ source = {source}
 """
 
 
-def _quoted(text: str) -> str:
+def quoted(text: str) -> str:
     return json.dumps(text)
 
 
-def _attribute(text: str) -> str:
+def attribute(text: str) -> str:
     safe = "".join(c if c >= " " or c in "\t\n\r" else "" for c in text)
     for old, new in (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;")):
         safe = safe.replace(old, new)
@@ -104,7 +104,7 @@ def named(seed: int, count: int) -> list[tuple[str, Any]]:
                 ]
             )
             plain[place] = name
-            quote = _quoted if kind == "table" else _attribute
+            quote = quoted if kind == "table" else attribute
             text = (TABLE if kind == "table" else URDF).format(
                 **{k: quote(v) for k, v in plain.items()}
             )
@@ -118,11 +118,11 @@ def named(seed: int, count: int) -> list[tuple[str, Any]]:
                 seen = name
         elif kind == "formulas":
             place = rng.choice(["symbol", "entry", "text"])
-            fill = {"symbol": "k", "entry": "g2", "text": _quoted("m2*g*l2*cos(q1)")}
-            fill[place] = _quoted(name)
+            fill = {"symbol": "k", "entry": "g2", "text": quoted("m2*g*l2*cos(q1)")}
+            fill[place] = quoted(name)
             text, file, words = FORMULAS.format(**fill), "f.toml", ["check", "f.toml"]
         elif kind == "python":
-            text = PYTHON.format(source=_quoted(name), latex=_quoted(name))
+            text = PYTHON.format(source=quoted(name), latex=quoted(name))
             file, words, place = (
                 "f.py",
                 [
@@ -133,11 +133,11 @@ def named(seed: int, count: int) -> list[tuple[str, Any]]:
                 "source",
             )
         elif kind == "five":
-            text = FIVE.format(name=_quoted(name), source=_quoted(name))
+            text = FIVE.format(name=quoted(name), source=quoted(name))
             file, words, place = "five.toml", ["fivebar", "analyse", "five.toml"], "name"
         else:
             file = name.replace("/", "_") + ".toml"
-            text = TABLE.format(**{k: _quoted(v) for k, v in plain.items()})
+            text = TABLE.format(**{k: quoted(v) for k, v in plain.items()})
             words, place = [rng.choice(["info", "check", "dh"]), "./" + file], "file name"
         out.append((f"#{n} {place} {name!r}: {' '.join(words)!r}", ({file: text}, words, seen)))
     return out

@@ -25,7 +25,7 @@ def python(code: str, seconds: float, folder: Path | None = None, **more: str) -
     try:
         return _ended(process, seconds)
     finally:
-        _kill_group(process.pid)
+        kill_group(process.pid)
 
 
 def kinlab(
@@ -49,20 +49,20 @@ def kinlab(
     try:
         return _ended(process, seconds)
     finally:
-        _kill_group(process.pid)
+        kill_group(process.pid)
 
 
 def _ended(process: subprocess.Popen[str], seconds: float) -> tuple[int, str]:
     try:
         out, _ = process.communicate(timeout=seconds)
     except subprocess.TimeoutExpired:
-        _kill_group(process.pid)
+        kill_group(process.pid)
         out, _ = process.communicate()
         return -1000, out
     return process.returncode, out
 
 
-def _kill_group(group: int) -> None:
+def kill_group(group: int) -> None:
     import contextlib
     import signal
 

@@ -149,7 +149,7 @@ def sound(rng: random.Random) -> dict[str, Any]:
 Case = tuple[str, str, Any]
 
 
-def _toml_text(text: str) -> str:
+def toml_text(text: str) -> str:
     out = "".join(c if c >= " " and c not in '"\\\x7f' else f"\\u{ord(c):04X}" for c in text)
     return f'"{out}"'
 
@@ -212,11 +212,11 @@ def _write_toml(table: dict[str, Any], texts: dict[Any, str]) -> str:
         lines += ["[[links]]", f'joint = "{link["joint"]}"', f"flip = {str(link['flip']).lower()}"]
         for key in ("a", "alpha", "d", "theta", "mass", "armature", "lower", "upper"):
             where = (i, key, None)
-            word = _toml_text(texts[where]) if where in texts else repr(link[key])
+            word = toml_text(texts[where]) if where in texts else repr(link[key])
             lines.append(f"{key} = {word}")
         for key, names in (("com", None), ("inertia", ("ixx", "iyy", "izz"))):
             words = [
-                _toml_text(texts[i, key, k]) if (i, key, k) in texts else repr(link[key][k])
+                toml_text(texts[i, key, k]) if (i, key, k) in texts else repr(link[key][k])
                 for k in range(3)
             ]
             if names is None:

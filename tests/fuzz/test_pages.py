@@ -112,7 +112,7 @@ def _formulas(folder: Path, text: str) -> list[str]:
 
 
 def _table(folder: Path, text: str) -> list[str]:
-    quote = cli_cases._quoted
+    quote = cli_cases.quoted
     (folder / "t.toml").write_text(
         cli_cases.TABLE.format(
             name=quote("arm"), source=quote(text), tool=quote("tip"), joint=quote(text)
@@ -122,7 +122,7 @@ def _table(folder: Path, text: str) -> list[str]:
 
 
 def _urdf(folder: Path, text: str) -> list[str]:
-    quote = cli_cases._attribute
+    quote = cli_cases.attribute
     (folder / "r.urdf").write_text(
         cli_cases.URDF.format(
             name=quote(text),
@@ -139,14 +139,14 @@ def _view_table(folder: Path, text: str) -> list[str]:
 
 
 def _view_five(folder: Path, text: str) -> list[str]:
-    quote = cli_cases._quoted
+    quote = cli_cases.quoted
     (folder / "five.toml").write_text(cli_cases.FIVE.format(name=quote(text), source=quote(text)))
     return ["view", "five.toml", "--save", "out.html"]
 
 
 def _symbols(folder: Path, text: str) -> list[str]:
     (folder / "f.toml").write_text(
-        f'robot = "planar2r"\nsource = {cli_cases._quoted(text)}\n[latex]\ng2 = {cli_cases._quoted(text)}\n'
+        f'robot = "planar2r"\nsource = {cli_cases.quoted(text)}\n[latex]\ng2 = {cli_cases.quoted(text)}\n'
     )
     return ["check", "f.toml", "--report", "out.html"]
 
@@ -373,7 +373,7 @@ def test_ctrl_c_during_the_start_ends_it(delay):
     except subprocess.TimeoutExpired:
         pytest.fail("it did not end")
     finally:
-        helpers._kill_group(process.pid)
+        helpers.kill_group(process.pid)
     assert process.returncode in ((0, 130) if delay is None else (0, 130, 1, -signal.SIGINT))
     if delay is None:  # before that Python itself may still be importing
         assert "Traceback" not in out, out[-300:]

@@ -172,7 +172,7 @@ def _sweep_until_signal(number, folder):
             time.sleep(0.1)
         left = [pid for pid in [process.pid, *workers] if _alive(pid)]
     finally:
-        helpers._kill_group(process.pid)
+        helpers.kill_group(process.pid)
     error = process.communicate()[1]
     return (
         left,

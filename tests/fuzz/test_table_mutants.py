@@ -26,7 +26,7 @@ def test_every_hostile_spelling_once():
     for _i, (text, value) in enumerate(table_cases.HOSTILE):
         toml = (
             'name = "t"\nconvention = "standard"\n[[links]]\njoint = "revolute"\na = '
-            + table_cases._toml_text(text)
+            + table_cases.toml_text(text)
             + "\nalpha = 0\nd = 0\ntheta = 0\nmass = 1\ninertia = { ixx = 1, iyy = 1, izz = 1 }\n"
             "lower = -1\n"
         )

@@ -29,7 +29,6 @@ COVERED = (
     "cli/__init__.py",
     "cli/against.py",
     "cli/analysis.py",
-    "cli/analysis_pictures.py",
     "cli/analysis_tables.py",
     "cli/check.py",
     "cli/derive.py",
@@ -149,18 +148,23 @@ def test_a_catalogue_is_read_as_gettext_writes_it():
     ]
 
 
-def test_english_reads_no_catalogue():
+@pytest.mark.parametrize(("name", "folder"), language.LANGUAGES.items())
+def test_a_language_reads_its_own_catalogues_and_english_reads_none(name, folder):
     code = (
-        "import sys, kinlab as kl; from kinlab.host import language;"
-        "language.read_catalogue = None;"  # whoever called it would fail
-        "print(kl.fk(kl.load('planar2r'), [0, 0])[0, 3]);"
-        "print(language._('agrees'), language.ngettext('one', 'more', 2), 'gettext' in sys.modules)"
+        "import sys; read = []; from pathlib import Path;"
+        "sys.addaudithook(lambda event, told: event == 'open' and read.append(str(told[0])));"
+        "import kinlab as kl; from kinlab.host.language import _;"
+        "print(kl.fk(kl.load('planar2r'), [0, 0])[0, 3], file=sys.stderr); _('joint');"
+        "print(*{Path(name).parts[-3] for name in read if name.endswith('.po')})"
     )
-    environment = {**os.environ, "KINLAB_LANG": "en"}
     done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, "KINLAB_LANG": name},
     )
-    assert done.stdout.split("\n")[1].split()[:2] == ["agrees", "more"]
+    assert done.stdout == f"{folder}\n"
 
 
 # -------- every sentence is translated
@@ -218,7 +222,7 @@ def test_every_sentence_of_the_page_s_script_is_marked():
     assert len(marked) >= 15 and "Draw all rows" in marked
     quoted = re.findall(r'"([^"\n]*)"|`([^`]*)`', script)
     texts = {re.sub(r"<[^>]*>|\$\{[^}]*\}", "", one or other) for one, other in quoted}
-    told = {text for text in texts if sentences._WORDS.search(text)}
+    told = {text for text in texts if sentences.WORDS.search(text)}
     code = {"use strict", "line legend", "translate(px, px)", "R = Rz(yaw) Ry(pitch) Rx(roll)"}
     assert told - marked <= code
 

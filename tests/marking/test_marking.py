@@ -376,6 +376,77 @@ def test_an_endless_program_is_ended(monkeypatch):
     assert "processor time" in enforced
 
 
+READS = """
+import readline
+readline.read_history_file({path!r})
+raise ValueError(readline.get_history_item(1))
+"""
+LIBRARY = "import xml.etree.ElementTree\nimport math\ndef q1(q): return .5*math.cos(q[0]) + .4*math.cos(q[0] + q[1])"
+
+
+def test_what_a_program_reads_is_bounded_by_the_system(tmp_path):
+    """The audit hook does not see what a library in C opens."""
+    other = tmp_path / "other.txt"
+    other.write_text("q1: l1*c1\n")
+    sheet = sheet_of(SHEET, "s")
+    program = Submission("a.py", "ada", program=READS.format(path=str(other)))
+    outcomes, enforced = judge_program(sheet, program, "cause")
+    assert outcomes[0].verdict == "could not be read"
+    assert "Permission denied" in outcomes[0].remark or "files read" not in enforced
+    found, _ = judge_program(sheet, Submission("b.py", "bob", program=LIBRARY), "cause")
+    assert found[0].right
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict"),
+    [
+        ("g*((m1 + m2)*l1 + m2*l2)", "right"), ("23.0535", "right"), ("23.05", "right with rounded numbers"),
+        ("9.8*((m1 + m2)*l1 + m2*l2)", "right with rounded numbers"), ("23.06", "wrong"), ("23", "wrong"),
+        ("9.7*((m1 + m2)*l1 + m2*l2)", "wrong"), ("(2.1 + m2)*g*l1 + m2*g*l2", "wrong"),
+    ],
+)  # fmt: skip
+def test_an_own_model_answer_is_met_to_the_digits_written(answer, verdict):
+    question = {
+        "id": "q1",
+        "entry": "F",
+        "answer": "(m1 + m2)*g*l1 + m2*g*l2",
+        "slips": {"factor": 1},
+    }
+    found = marked({"q1": answer}, questions=[question], slips={"rounded": 0.25})["q1"]
+    assert (found.verdict, found.points) == (
+        verdict,
+        {"right": 1.0, "wrong": 0.0}.get(verdict, 0.75),
+    )
+    assert "23.0535" not in found.remark
+
+
+def test_an_entry_may_be_called_by_its_letter():
+    question = {"id": "q1", "quantity": "jacobian[0,0]"}
+    assert marked({"q1": "J11 = -l1*s1 - l2*s12"}, questions=[question])["q1"].right
+    assert (
+        "asks for J11" in marked({"q1": "J21 = -l1*s1 - l2*s12"}, questions=[question])["q1"].remark
+    )
+
+
+def test_a_line_that_answers_no_question_is_told(tmp_path):
+    sheet = sheet_of(SHEET, "s")
+    (tmp_path / "a.txt").write_text("student: ada\nx = l1*c1 + l2*c12\ntau7 = 3\n")
+    (tmp_path / "b.txt").write_text(
+        "student: bob\n" + "".join(f"{k}: {v}\n" for k, v in RIGHT.items()) + "a = 3\n"
+    )
+    marks = kl.mark(sheet, tmp_path, workers=1)
+    assert marks["ada"].note == "lines that answer no question: tau7"
+    assert marks["bob"].note == ""  # every question has an answer, so the rest is no answer astray
+
+
+def test_a_student_is_not_told_where_the_class_is_kept(tmp_path):
+    (tmp_path / "a.txt").write_bytes(b"q1: l1 \xfc\n")
+    (tmp_path / "b.txt").write_text("a" * 300_000)
+    marks = kl.mark(SHEET, tmp_path, workers=1)
+    told = [one.remark for mark in marks.marks for one in mark.outcomes]
+    assert len(told) == 8 and all(text.startswith(("a.txt: ", "b.txt: ")) for text in told)
+
+
 @pytest.mark.parametrize(
     "answer",
     ["m1*g*l1*abs(sin(q1))", "m1*g*l1*sqrt(sin(q1)**2)", "m1*g*l1*sin(abs(q1))",

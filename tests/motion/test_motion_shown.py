@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from console import kinlab as run
+from scenes import told
 
 import kinlab as kl
 from kinlab.errors import KinlabError, OptionError
@@ -22,20 +22,15 @@ ELBOW = kl.load("planar2r")
 MOTION = kl.motion.joint(ELBOW, [[0.4, 0.9], [1.0, -0.6]], acceleration=8)
 
 
-def given(page):
-    """What the page's script starts with."""
-    return json.loads(re.search(r"kinlab\.start\((.*)\);", page.html())[1])
-
-
 def test_the_page_plays_a_motion_and_marks_what_it_meets(monkeypatch):
     monkeypatch.setattr(show, "in_notebook", lambda: True)  # no server
     scene = kl.view(ELBOW, motion=MOTION)
-    shown = given(scene)["animation"]
+    shown = told(scene)["animation"]
     assert np.array_equal(shown["q"], MOTION.q) and np.array_equal(shown["times"], MOTION.t)
     assert shown["name"] == "Motion: quintic" and scene.q.tolist() == [0.4, 0.9]
-    assert "singularity, t = 0.576 s" in str(given(scene)["labels"])
+    assert "singularity, t = 0.576 s" in str(told(scene)["labels"])
     ran = kl.simulate(ELBOW, [0.1, 0.2], duration=0.1)
-    assert given(kl.view("planar2r", motion=ran))["animation"]["name"] == "Simulated motion"
+    assert told(kl.view("planar2r", motion=ran))["animation"]["name"] == "Simulated motion"
     with pytest.raises(OptionError, match="one arm"):
         kl.view(kl.FiveBar.load("isotropic"), motion=MOTION)
     with pytest.raises(KinlabError, match="expected"):

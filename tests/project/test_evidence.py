@@ -98,7 +98,7 @@ def test_a_design_does_not_call_its_lengths_proved():
 
 def test_an_edge_is_not_decided_by_one_form_where_limits_take_more_rank():
     """A joint on its limit takes a second direction away: the form of one direction is silent."""
-    from kinlab.analysis.singularities.edge import _form
+    from kinlab.analysis.singularities.edge import second_order_form
     from kinlab.analysis.structure.task_space import read_task
 
     links = [kl.DHLink(a=0.5, lower=-0.5 * k, upper=0.5 * k, mass=1.0) for k in (6, 1, 6, 6)]
@@ -106,9 +106,9 @@ def test_an_edge_is_not_decided_by_one_form_where_limits_take_more_rank():
     space = read_task(robot, "xytheta")
     inside = np.array([0.1, 0.0, 0.0, 0.0])
     lost = np.linalg.svd(space.jacobian(inside, space.scale))[0][:, -1]
-    assert _form(space, inside, lost) != (0.0, 0.0)
+    assert second_order_form(space, inside, lost) != (0.0, 0.0)
     shut = [kl.DHLink(a=0.5, lower=0.0, upper=1.0, mass=1.0) for _ in range(4)]
     robot = kl.Robot.from_dh(kl.DHTable(name="shut", convention="standard", links=shut))
     space = read_task(robot, "xytheta")
     corner = np.array([0.3, 0.0, 0.0, 0.0])
-    assert _form(space, corner, lost) == (0.0, 0.0)
+    assert second_order_form(space, corner, lost) == (0.0, 0.0)

@@ -58,7 +58,7 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
         lost: the lost directions, (m, m - rank), entries in metres over ``space.scale``.
     """
     single = lost.shape[1] == 1
-    least, most = _form(space, q, lost[:, 0]) if single else (0.0, 0.0)
+    least, most = second_order_form(space, q, lost[:, 0]) if single else (0.0, 0.0)
     sign = TOLERANCES.form_has_sign
     if least < -sign and most > sign:
         return Edge(True, Evidence(_SECOND, proved="the tool passes on to both sides"))
@@ -93,7 +93,7 @@ def edge(space: TaskSpace, q: Array, lost: Array) -> Edge:
     return Edge(None, Evidence(searched, max(near), _STARTS, found="no solution on one side"))
 
 
-def _form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
+def second_order_form(space: TaskSpace, q: Array, direction: Array) -> tuple[float, float]:
     """Least and greatest eigenvalue of v -> u . (dJ/dt) v on J v = 0, limits respected.
 
     Zeros where joints on their limits leave J more directions to lose than u: then one form

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import relative_errors
+from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of
@@ -21,8 +21,10 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
+from kinlab.doctor.rounding import stand_ins
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.verdicts import together
+from kinlab.doctor.written import Written
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
@@ -193,7 +195,7 @@ class _Key:
 
     def __init__(self, robot: Robot, file: FormulaFile) -> None:
         self.robot, self.file = robot, file
-        self.texts = (id(robot), *file.texts.items(), *file.symbol_texts.items())
+        self.texts = (id(robot), *file.as_typed.items(), *file.symbol_texts.items())
 
     def __hash__(self) -> int:
         return hash(self.texts)
@@ -223,22 +225,20 @@ def _of_diagnoses(
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
-    forms = {one.form for one in asked}
-    kind = next((form for form in ("unusual", "rounded") if form in forms), "")
-    verdict = _GRADES[kind]
-    share = question.slips.get(kind, 0.0) if kind else 0.0
     remarks = [remark for one in asked for remark in one.remarks]
     remark = _("; ").join(dict.fromkeys(remarks))
-    points = round(question.points * (1.0 - share), 6)
-    return Outcome(
-        question.id,
-        verdict,
-        points,
-        question.points,
-        (kind,) if kind else (),
-        formulas=_as_read(file) if file is not None else (),
-        remark=remark,
-    )
+    return _graded(question, {one.form for one in asked}, _as_read(file) if file else (), remark)
+
+
+def _graded(
+    question: Question, forms: set[str], formulas: tuple[tuple[str, str], ...], remark: str = ""
+) -> Outcome:
+    """A right answer: as the sheet has it, or right in another way, which may cost something."""
+    kind = next((form for form in ("unusual", "rounded") if form in forms), "")
+    share = question.slips.get(kind, 0.0) if kind else 0.0
+    points, kinds = round(question.points * (1.0 - share), 6), (kind,) if kind else ()
+    got = (question.id, _GRADES[kind], points, question.points, kinds)
+    return Outcome(*got, formulas=formulas, remark=remark)
 
 
 def _as_read(file: FormulaFile) -> tuple[tuple[str, str], ...]:
@@ -271,7 +271,7 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
     places, formulas = _places(found, best, file, robot)
     answer: list[str] = []
     if best is not None:
-        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
+        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.shown.items())]
     return Outcome(
         question.id,
         WRONG,
@@ -366,10 +366,14 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
         if name not in file.formulas:
             said = _("{question}: {entry} is not given")
             raise ExpressionError(said.format(question=question.id, entry=name))
-    formulas = [equation(name, file.formulas[name]) for name in model.formulas]
+    formulas = tuple(equation(name, file.formulas[name]) for name in model.formulas)
+    forms: set[str] = set()
     for name, right in model.formulas.items():
         error, kinds = _gap(file, model, name, right, words)
-        if error > question.tolerance:
+        if error <= question.tolerance:
+            continue
+        forms.update(kinds)
+        if kinds != ("rounded",):
             points = _points(question, kinds)
             place = name if len(model.formulas) > 1 else _("the formula as a whole")
             right_one = (f"{name} = {right}",)
@@ -383,9 +387,9 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
                 place,
                 told(kinds),
                 right_one,
-                tuple(formulas),
+                formulas,
             )
-    return Outcome(question.id, RIGHT, question.points, question.points, formulas=tuple(formulas))
+    return _graded(question, forms, formulas)
 
 
 def _model(sheet: Sheet, question: Question) -> FormulaFile:
@@ -415,7 +419,7 @@ def check_answers(sheet: Sheet) -> None:
 def _gap(
     file: FormulaFile, model: FormulaFile, name: str, right: Node, words: Mapping[str, float]
 ) -> tuple[float, tuple[str, ...]]:
-    """How far a formula is from the model's, and whether a sign or a factor explains it.
+    """How far a formula is from the model's, and whether rounding, a sign or a factor explains it.
 
     Joints stand on both sides of zero: |q1| is not q1. States at which the model itself has no
     value (a root of a negative number) say nothing.
@@ -439,6 +443,10 @@ def _gap(
             raise SheetError(f"{name}: the sheet's own answer has no value at any state")
         hand, truth = hand[there], truth[there]
         error = float(np.max(relative_errors(hand, truth)))
+        at = {one: stack[there] for one, stack in at.items()}
+        written = Written(name, file.texts[name], mine, file.symbol_texts)
+        if error and stand_ins(written, at, truth, error_sizes(truth)) is not None:
+            return error, ("rounded",)
         ratio = hand / truth
     steady = np.all(np.isfinite(ratio)) and np.ptp(ratio) <= 1e-9 * abs(ratio[0])
     if steady and abs(ratio[0] + 1.0) <= 1e-9:

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from kinlab.check.diagnosis import ENTRY_LETTERS
+from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.terms import split_name
@@ -122,9 +122,9 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     lines = list(_lines(text, "%" if suffix == ".tex" else ""))
     student, name = _people(lines)
     pieces = _of_latex(text) if suffix == ".tex" else _of_text(lines, sheet)
-    answers, problems = _sorted(pieces, sheet)
+    answers, problems, unasked = _sorted(pieces, sheet)
     who = student or _safe(stem)
-    return Submission(shown, who, name, answers, {}, problems, _note(student))
+    return Submission(shown, who, name, answers, {}, problems, _note(student, unasked))
 
 
 def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str) -> Submission:
@@ -146,17 +146,21 @@ def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str
             ]
         else:
             given.append((key, value))
-    answers, problems = _sorted(given, sheet)
+    answers, problems, unasked = _sorted(given, sheet)
     if isinstance(student, bool) or not isinstance(student, (str, int)):
         student = ""
     known = _safe(str(student))
     who = known or _safe(stem)
     called = _safe(name) if isinstance(name, str) else ""
-    return Submission(shown, who, called, answers, symbols, problems, _note(known))
+    return Submission(shown, who, called, answers, symbols, problems, _note(known, unasked))
 
 
-def _note(student: str) -> str:
-    return "" if student else _("no student id in the file; its name is taken")
+def _note(student: str, unasked: Sequence[str] = ()) -> str:
+    notes = [] if student else [_("no student id in the file; its name is taken")]
+    if unasked:
+        said = _("lines that answer no question: {names}")
+        notes.append(said.format(names=_(", ").join(unasked[:3])))
+    return _("; ").join(notes)
 
 
 def _safe(text: str) -> str:
@@ -261,8 +265,12 @@ def _rows(formula: str) -> list[str]:
 
 def _sorted(
     pieces: Sequence[tuple[str, Any]], sheet: Sheet
-) -> tuple[dict[str, dict[str, str]], dict[str, str]]:
-    """Formulas by question: by its id, or by the name on the left side."""
+) -> tuple[dict[str, dict[str, str]], dict[str, str], list[str]]:
+    """Formulas by question (by its id, or by the name on the left side), and what is wrong.
+
+    The last are left sides of no question; they are told where a question has no answer.
+    """
+    unasked: list[str] = []
     answers: dict[str, dict[str, str]] = {}
     problems: dict[str, str] = {}
     ids = {question.id.lower(): question for question in sheet.questions}
@@ -274,6 +282,7 @@ def _sorted(
             left = key or _left(value)
             question, name = _asked(left, sheet, writing)
         if question is None:
+            unasked.append(_safe(left or str(value))[:20])
             continue
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             value = repr(value)
@@ -287,7 +296,8 @@ def _sorted(
             problems[question.id] = said.format(entry=name or question.id)
         else:
             answers.setdefault(question.id, {})[name] = value
-    return answers, problems
+    whole = len({*answers, *problems}) == len(sheet.questions)
+    return answers, problems, [] if whole else unasked
 
 
 def _left(value: Any) -> str:
@@ -306,7 +316,7 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
     if not name:
         return None, ""
     for question in sheet.questions:
-        if name in (question.entry, question.id, *question.answer):
+        if name in (question.entry, question.id, shown_entry(question.quantity), *question.answer):
             return question, name
     try:
         plain, index = split_name(quantity_of(name, sheet.robot.table))
@@ -341,14 +351,15 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
     for name, text in given.items():
         left, right = sides(text, question.id)
         said = entry_name(left, question.id) if left else name
-        if said in ("", question.id, question.entry, default, _head(question)):
+        shown = shown_entry(question.entry)
+        if said in ("", question.id, question.entry, default, shown, _head(question)):
             named[default] = right
             continue
         found, _name = _asked(said, sheet, hand([]))
         if said not in question.answer and (found is None or found.id != question.id):
             if question.quantity != quantity_of(said, sheet.robot.table):
                 other = _("the line begins with {name} =, and the question asks for {entry}")
-                raise ExpressionError(other.format(name=said, entry=question.entry))
+                raise ExpressionError(other.format(name=said, entry=shown))
             said = default
         named[said] = right
     return named
