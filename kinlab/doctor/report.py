@@ -76,7 +76,7 @@ def diagnose(
     """
     if isinstance(formula, str):
         arm = SERIAL.load(robot)
-        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "the text")
+        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         return next((one for one in judged if not one.agrees), judged[0])
     need_function(formula)

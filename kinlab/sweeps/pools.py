@@ -109,19 +109,15 @@ def spread(
             # a broken pool ends all its futures at once: collect them before it is renewed
             for future in wait(running, None, ALL_COMPLETED if broken else FIRST_COMPLETED).done:
                 run = running.pop(future)
-                try:
-                    columns = future.result()
-                except BrokenExecutor:
+                error = future.exception()
+                if error is None:
+                    crashes = 0
+                    yield run, future.result()
+                elif isinstance(error, BrokenExecutor):
                     broken = True
                     waiting.appendleft(run)
-                except Exception as error:
-                    # whichever worker is faster: the error of the first run that has one
-                    earlier = [f for f in sorted(flying, key=flying.__getitem__) if flying[f] < run]
-                    told = [e for f in earlier if (e := f.exception()) is not None]
-                    raise next((e for e in told if not isinstance(e, BrokenExecutor)), error)
                 else:
-                    crashes = 0
-                    yield run, columns
+                    raise _first_error(run, error, running)
             if broken and not running:
                 crashes += 1
                 pool.renew(crashes, sorted(waiting))
@@ -129,6 +125,17 @@ def spread(
         for future in running:
             future.cancel()
         pool.close()
+
+
+def _first_error(
+    run: Run, error: BaseException, running: dict[Future[Columns], Run]
+) -> BaseException:
+    """The error of the first run that has one, whichever worker is faster."""
+    earlier = [
+        future for future in sorted(running, key=running.__getitem__) if running[future] < run
+    ]
+    errors = [future.exception() for future in earlier]
+    return next((e for e in errors if e and not isinstance(e, BrokenExecutor)), error)
 
 
 class Pool:
