@@ -109,19 +109,17 @@ def spread(
             # a broken pool ends all its futures at once: collect them before it is renewed
             for future in wait(running, None, ALL_COMPLETED if broken else FIRST_COMPLETED).done:
                 run = running.pop(future)
-                try:
-                    columns = future.result()
-                except BrokenExecutor:
+                error = future.exception()
+                if error is None:
+                    crashes = 0
+                    yield run, future.result()
+                elif isinstance(error, BrokenExecutor):
                     broken = True
                     waiting.appendleft(run)
-                except Exception as error:
-                    # whichever worker is faster: the error of the first run that has one
-                    earlier = [f for f in sorted(flying, key=flying.__getitem__) if flying[f] < run]
-                    told = [e for f in earlier if (e := f.exception()) is not None]
-                    raise next((e for e in told if not isinstance(e, BrokenExecutor)), error)
-                else:
-                    crashes = 0
-                    yield run, columns
+                else:  # whichever worker is faster: the error of the first run that has one
+                    earlier = sorted((r, f) for f, r in running.items() if r < run)
+                    told = [f.exception() for _run, f in earlier]
+                    raise next((e for e in told if e and not isinstance(e, BrokenExecutor)), error)
             if broken and not running:
                 crashes += 1
                 pool.renew(crashes, sorted(waiting))
