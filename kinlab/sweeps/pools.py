@@ -116,10 +116,8 @@ def spread(
                 elif isinstance(error, BrokenExecutor):
                     broken = True
                     waiting.appendleft(run)
-                else:  # whichever worker is faster: the error of the first run that has one
-                    earlier = sorted((r, f) for f, r in running.items() if r < run)
-                    told = [f.exception() for _run, f in earlier]
-                    raise next((e for e in told if e and not isinstance(e, BrokenExecutor)), error)
+                else:
+                    raise _first_error(run, error, running)
             if broken and not running:
                 crashes += 1
                 pool.renew(crashes, sorted(waiting))
@@ -127,6 +125,17 @@ def spread(
         for future in running:
             future.cancel()
         pool.close()
+
+
+def _first_error(
+    run: Run, error: BaseException, running: dict[Future[Columns], Run]
+) -> BaseException:
+    """The error of the first run that has one, whichever worker is faster."""
+    earlier = [
+        future for future in sorted(running, key=running.__getitem__) if running[future] < run
+    ]
+    errors = [future.exception() for future in earlier]
+    return next((e for e in errors if e and not isinstance(e, BrokenExecutor)), error)
 
 
 class Pool:

@@ -25,7 +25,7 @@ from kinlab.doctor.rounding import stand_ins
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.verdicts import together
 from kinlab.doctor.written import Written
-from kinlab.errors import ExpressionError, KinlabError
+from kinlab.errors import ExpressionError, KinlabError, near
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
 from kinlab.formulas.text import FormulaFile, canonical, formula_file, parse
@@ -45,6 +45,7 @@ _GRADES = {
     "unusual": N_("right but written unusually"),
 }
 _WRITTEN = 400
+_DIGITS = "0123456789"
 _STATES = 60
 
 
@@ -409,11 +410,26 @@ def check_answers(sheet: Sheet) -> None:
     """Reads the sheet's own model answers.
 
     Raises:
-        SheetError: one cannot be read.
+        SheetError: one cannot be read, or has the third mass of an arm with two.
     """
+    words = vocabulary(sheet.robot.table).values if sheet.robot.table is not None else {}
+    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in range(1, sheet.robot.n + 1))}
+    letters = {name.rstrip(_DIGITS) for name in own if name[-1] in _DIGITS}
     for question in sheet.questions:
-        if question.answer:
-            _model(sheet, question)
+        if not question.answer:
+            continue
+        model = _model(sheet, question)
+        met = {
+            n
+            for name, node in model.formulas.items()
+            for n in tree.names(_opened(node, model, name))
+        }
+        for name in sorted(met - own):
+            if name[-1] in _DIGITS and name.rstrip(_DIGITS) in letters:
+                raise SheetError(
+                    f"{sheet.place}: {question.id}: answer: {sheet.robot.name} has no {name!r}; "
+                    f"{near(name, own)}"
+                )
 
 
 def _gap(

@@ -32,6 +32,7 @@ from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.examine import prepare
 from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.words import KINDS
 from kinlab.doctor.terms import split_name
@@ -242,6 +243,11 @@ def _asked(row: Mapping[str, Any], entry: str, robot: Robot, place: str) -> str:
         raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")
     if find_quantity(plain).domain is not SERIAL:
         raise SheetError(f"{place}: {plain} is no quantity of a serial arm; give an answer")
+    try:
+        prepare(robot, plain, index, 10, 0)
+    except IndexError:
+        asked = entry or quantity
+        raise SheetError(f"{place}: {robot.name} of {robot.n} joints has no {asked}") from None
     return quantity
 
 
