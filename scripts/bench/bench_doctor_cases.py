@@ -224,7 +224,7 @@ def same(arm: Any, quantity: str, function: Any) -> bool:
             right = kl.jacobian(arm, *state, quantity.removeprefix("jacobian_"))
         else:
             right = plain(quantity)(arm, *state)
-        wrong = np.asarray(function(*state))
+        wrong, right = np.asarray(function(*state)), np.asarray(right)
         if wrong.shape != right.shape:
             return False
         if np.max(np.abs(wrong - right)) > 1e-9 * (np.max(np.abs(right)) or 1.0):
