@@ -25,8 +25,8 @@ from .analysis.workspace.boundary import planar_boundary as planar_boundary
 from .analysis.workspace.sections import workspace_section as workspace_section
 from .check.compare import Comparison as Comparison
 from .check.compare import compare as compare
-from .doctor.examine import diagnose as diagnose
 from .doctor.marking.run import mark as mark
+from .doctor.report import diagnose as diagnose
 from .doctor.tables.diagnosis import diagnose_table as diagnose_table
 from .drives.arm import size_servos as size_servos
 from .engine.dynamics import coriolis_matrix as coriolis_matrix

@@ -214,16 +214,16 @@ def _formula_files(what: list[str], samples: int, seed: int, found: _Found) -> l
     rest = []
     for path in what:
         try:
-            document = formula_document(path)
+            lines = formula_document(path)
         except KinlabError as problem:
             found.unread.append(Unread(path, problem))
             continue
-        if document is None:
+        if lines is None:
             rest.append(path)
             continue
         from kinlab.doctor.report import of_document
 
-        judged, unread = of_document(document, path, samples, seed)
+        judged, unread = of_document(lines.document, path, samples, seed, lines.problems)
         found.judged += judged
         found.unread += unread
     return rest

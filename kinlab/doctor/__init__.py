@@ -18,7 +18,8 @@ module              what it holds
 ``pen``             Slips of the pen in a text, found and mended in the line itself
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
-``report``          Diagnoses for a report: with the formulas typeset and the differences marked
+``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,
+                    typeset and marked
 ``rounding``        Rounded numbers: what a written number may stand for, and whether that explains
                     a difference
 ``search``          Finds the one or two edits that turn one formula into another, by their effect

@@ -6,7 +6,7 @@ named too, the simplest first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations, product
 from typing import Any
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import need_function, relative_errors, some_rows
+from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import rounding, terms, verdicts
@@ -26,11 +26,10 @@ from kinlab.doctor.confusions.derivations import (
 )
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.terms import AnswerEntry, Slip, entries, split_name
+from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.verdicts import Excuse
 from kinlab.doctor.written import Written
 from kinlab.errors import KinlabError, OptionError
-from kinlab.formulas.record import function_name, state_by_state
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -55,35 +54,6 @@ _LIST = 3
 _WHOLE_TERMS = {"extra term", "missing term"}
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
-
-
-def diagnose(
-    robot: Any, quantity: str, function: Callable[..., Any], samples: int = 200, seed: int = 0
-) -> Diagnosis:
-    """Says whether a hand-derived function is what it claims to be, and if not, what is wrong.
-
-    Args:
-        robot: a Robot, DHTable, name or path.
-        quantity: what the function claims to be, such as ``"inverse_dynamics"``; an index picks
-            entries: ``"inverse_dynamics[0]"``.
-        function: takes one state, the quantity's arguments in order: ``f(q, v, a)``.
-        samples: how many random states must be explained.
-        seed: the same seed gives the same states.
-
-    Returns:
-        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
-
-    Raises:
-        NameUnknownError: no such robot or quantity.
-        OptionError: samples below 10.
-        FormulaError: the function failed.
-    """
-    need_function(function)
-    plain, index = split_name(quantity)
-    case, engine = prepare(robot, plain, index, samples, seed)
-    stacked = state_by_state(function)
-    hand = np.asarray(stacked(None, *case.arguments.values()))
-    return examine(case, hand, engine, quantity, function_name(function), {})
 
 
 def examine(
@@ -288,7 +258,7 @@ def prepare(
     """The case of a comparison, without an answer yet, and what the engine says.
 
     Raises:
-        NameUnknownError, OptionError: as :func:`diagnose`.
+        NameUnknownError, OptionError: as :func:`kinlab.diagnose`.
     """
     samples, seed = whole(samples, "samples", 10), seed_of(seed)
     found = find_quantity(plain)

@@ -6,7 +6,6 @@ import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -20,10 +19,11 @@ from kinlab.doctor.terms import split_name
 from kinlab.doctor.written import Written, literal
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
 from kinlab.formulas import tree, typed
+from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.retyped import Typing
 from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse, tidied
 from kinlab.formulas.tree import Node
-from kinlab.host.files import read_text, read_toml
+from kinlab.host.files import read_text
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.library import load
@@ -107,20 +107,17 @@ Answers = tuple[Case, Array, list[str], dict[str, Written], dict[str, Array]]
 """A case, the engine's answers, every place there is, and the formulas with their values."""
 
 
-def formula_document(path: str | Path) -> dict[str, Any] | None:
-    """The TOML document of a file of formulas (it names a robot); None of any other file.
+def formula_document(path: str | Path) -> Lines | None:
+    """What a file of formulas holds (it names a robot); None of any other file.
 
     Raises:
         FileError: the file cannot be read.
     """
     if Path(path).suffix.lower() != ".toml":
         return None
-    try:
-        document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), ExpressionError)
-    except ExpressionError:
-        return None
-    holds = "links" not in document and ("robot" in document or "formulas" in document)
-    return document if holds else None
+    lines = read_lines(read_text(path, limit=_FILE_LIMIT), str(path))
+    known = {*lines.document, *(key for key, _problem in lines.problems)}
+    return lines if "links" not in known and known & {"robot", "formulas", "latex"} else None
 
 
 def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
@@ -134,8 +131,10 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
         FileError, ExpressionError: the file, an expression or a name cannot be read.
         NameUnknownError: no such robot.
     """
-    document = read_toml(read_text(path, limit=_FILE_LIMIT), str(path), FileError)
-    file = formula_file(document, str(path))
+    lines = read_lines(read_text(path, limit=_FILE_LIMIT), str(path))
+    for _key, problem in lines.problems:
+        raise problem
+    file = formula_file(lines.document, str(path))
     return examine_formulas(file, robot_of(file), samples, seed)
 
 

@@ -1,15 +1,18 @@
-"""Diagnoses for a report: with the formulas typeset and the differences marked."""
+"""Diagnoses by every door: of a function, a text, a file, a row of a report, typeset and marked."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from kinlab.arrays import seed_of, whole
 from kinlab.check.catalogue import Row
+from kinlab.check.compare import need_function
 from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
+from kinlab.check.quantities.registry import quantities
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import Task
@@ -23,10 +26,10 @@ from kinlab.doctor.file import (
     robot_of,
 )
 from kinlab.doctor.terms import split_name
-from kinlab.errors import KinlabError
+from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
-from kinlab.formulas.record import AnswerShapeError
+from kinlab.formulas.record import AnswerShapeError, function_name, state_by_state
 from kinlab.formulas.text import (
     SHORTHAND,
     FormulaFile,
@@ -48,6 +51,51 @@ _SHORT = 40
 """Terms up to which a derived formula is worth showing."""
 
 
+def diagnose(
+    robot: Any, quantity: str, formula: Callable[..., Any] | str, samples: int = 200, seed: int = 0
+) -> Diagnosis:
+    """Says whether a hand-derived formula is what it claims to be, and if not, what is wrong.
+
+    Args:
+        robot: a Robot, DHTable, name or path.
+        quantity: what the formula claims to be, such as ``"inverse_dynamics"``, or a book's name of
+            an entry, ``"tau2"``; an index picks entries: ``"inverse_dynamics[0]"``.
+        formula: a function of one state, the quantity's arguments in order: ``f(q, v, a)``; or the
+            formula as text, LaTeX, MATLAB or Python.
+        samples: how many random states must be explained.
+        seed: the same seed gives the same states.
+
+    Returns:
+        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
+
+    Raises:
+        NameUnknownError: no such robot or quantity.
+        OptionError: samples below 10.
+        ExpressionError: a text that is no formula.
+        FormulaError: the function failed.
+    """
+    if isinstance(formula, str):
+        arm = SERIAL.load(robot)
+        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "formula")
+        judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
+        return next((one for one in judged if not one.agrees), judged[0])
+    need_function(formula)
+    plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
+    case, engine = prepare(robot, plain, index, samples, seed)
+    hand = np.asarray(state_by_state(formula)(None, *case.arguments.values()))
+    return examine(case, hand, engine, quantity, function_name(formula), {})
+
+
+def _in_full(quantity: str, robot: Any) -> str:
+    """The quantity that a book's name stands for: ``tau2`` is ``inverse_dynamics[1]``."""
+    if quantity in quantities():
+        return quantity
+    try:
+        return quantity_of(quantity, SERIAL.load(robot).table)
+    except ExpressionError:
+        return quantity  # refused with the names that there are
+
+
 def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagnosis]:
     """Judges a file of formulas; see :func:`kinlab.doctor.file.examine_formulas`.
 
@@ -64,7 +112,11 @@ def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagno
 
 
 def of_document(
-    document: Mapping[str, Any], path: str, samples: int = 200, seed: int = 0
+    document: Mapping[str, Any],
+    path: str,
+    samples: int = 200,
+    seed: int = 0,
+    problems: Sequence[tuple[str, KinlabError]] = (),
 ) -> tuple[list[Diagnosis], list[Unread]]:
     """Judges a TOML document of formulas, and goes on without the entries that cannot be read.
 
@@ -72,14 +124,26 @@ def of_document(
         document: as :func:`kinlab.formulas.text.formula_file` has it.
         path: the file.
         samples, seed: as for :func:`of_file`.
+        problems: lines that could not be read, from :func:`kinlab.formulas.lines.read_lines`.
 
     Returns:
         The diagnoses; and the entries, or the file, that could not be judged.
     """
+    unread = [Unread(f"{path}: {key}" if key else path, problem) for key, problem in problems]
+    judged: list[Diagnosis] = []
+    if not unread or (entries_of(document) and "robot" in document):
+        judged, more = _of_sound(document, path, samples, seed)
+        unread += more
+    return judged, unread
+
+
+def _of_sound(
+    document: Mapping[str, Any], path: str, samples: int, seed: int
+) -> tuple[list[Diagnosis], list[Unread]]:
     try:
         return of_file(formula_file(document, path), samples, seed), []
     except KinlabError as problem:
-        whole = Unread(path, problem)
+        lost = Unread(path, problem)
     bad = []
     left = document
     for entry in entries_of(document):
@@ -94,7 +158,7 @@ def of_document(
             bad.append(Unread(f"{path}: {entry}", problem))
             left = with_entries(left, set(entries_of(left)) - {entry})
     if not bad or not entries_of(left):
-        return [], bad if len(bad) > 1 else [whole]
+        return [], bad if len(bad) > 1 else [lost]
     try:
         return of_file(formula_file(left, path), samples, seed), bad
     except KinlabError as problem:

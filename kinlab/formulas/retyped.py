@@ -85,8 +85,8 @@ class Typing:
             shown = self.typed[slice(*span)].strip() if span else ""
             if shown and self._reads_as(shown, goal):
                 return head + shown
-        shown = (self._retold(body), self._anew(body))
-        return head + next((one for one in shown if self._reads_as(one, goal)), body)
+        ways = (self._retold(body), self._anew(body))
+        return head + next((one for one in ways if self._reads_as(one, goal)), body)
 
     @cached_property
     def _same_text(self) -> bool:

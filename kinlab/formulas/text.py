@@ -412,7 +412,7 @@ def _text(value: Any, place: str) -> str:
         raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
     if len(value) > _LENGTH:
         raise ExpressionError(f"{place}: {len(value)} characters; at most {_LENGTH}")
-    return value
+    return value.translate(typed.WIDE)
 
 
 def _short(text: str) -> str:

@@ -59,7 +59,9 @@ def latexless(text: str) -> str:
 
 _BELOW = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 _ABOVE = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789")
-_SIGNS = str.maketrans(
+WIDE = {code: chr(code - 0xFEE0) for code in range(0xFF01, 0xFF5F)} | {0x3000: " ", 0x3002: "."}
+"""Signs, digits and letters of a Chinese keyboard, and the plain ones."""
+_SIGNS = WIDE | str.maketrans(
     {"·": "*", "⋅": "*", "×": "*", "−": "-", "–": "-", "÷": "/", "√": " sqrt", "½": "(1/2)"}
 )
 _LETTERS = (

@@ -131,7 +131,7 @@ def locus(robot: Robot, start: Array) -> ShownMotion:
     walk = [q]
     for _step in range(3 * _STEPS):
         heading = _slide(det, q, heading)
-        q = _settle(det, q + 0.02 * heading)
+        q = _onto_singularity(det, q + 0.02 * heading)
         outside = (q < robot.lower) | (q > robot.upper)
         if outside.any():  # bounce off the limit
             heading = np.where(outside, -heading, heading)
@@ -258,7 +258,7 @@ def _slide(det: Callable[[Array], Array], q: Array, heading: Array) -> Array:
     return along
 
 
-def _settle(det: Callable[[Array], Array], q: Array) -> Array:
+def _onto_singularity(det: Callable[[Array], Array], q: Array) -> Array:
     """Back onto det J = 0 by Newton steps along its gradient."""
     for _step in range(4):
         normal = _slope(det, q)

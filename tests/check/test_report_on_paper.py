@@ -120,7 +120,7 @@ def test_what_should_be_keeps_the_notation(tmp_path, written, wanted, other):
     """A derived formula, where no slip explains the written one."""
     file = tmp_path / "mine.toml"
     file.write_text(f'robot = "planar2r"\n[formulas]\nM12 = "{written}"\n', encoding="utf-8")
-    (found,), unread = of_document(formula_document(str(file)), str(file))
+    (found,), unread = of_document(formula_document(str(file)).document, str(file))
     assert not unread and not found.known
     ((_name, right),) = found.corrected
     assert wanted in right and other not in right

@@ -426,8 +426,10 @@ def check_answers(sheet: Sheet) -> None:
         }
         for name in sorted(met - own):
             if name[-1] in _DIGITS and name.rstrip(_DIGITS) in letters:
-                said = f"{sheet.place}: {question.id}: answer: {sheet.robot.name} has no {name!r}"
-                raise SheetError(f"{said}; {near(name, own)}")
+                raise SheetError(
+                    f"{sheet.place}: {question.id}: answer: {sheet.robot.name} has no {name!r}; "
+                    f"{near(name, own)}"
+                )
 
 
 def _gap(

@@ -387,8 +387,8 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
     """Lengths that make the positions agree where the rotations do, at most so many of them."""
     chain, few = first.chain, target.few
     poses = frames(chain, few.q)
-    turn = np.abs(poses[:, -1, :3, :3] - few.poses[:, :3, :3])
-    if np.max(turn) > target.steady:
+    rotation = np.abs(poses[:, -1, :3, :3] - few.poses[:, :3, :3])
+    if np.max(rotation) > target.steady:
         return []
     wanted = (few.poses[:, :3, 3] - poses[:, -1, :3, 3]).reshape(-1)
     cells = _in_order(chain, (A, D))

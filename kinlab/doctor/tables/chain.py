@@ -200,9 +200,9 @@ def _standard(
 def inverse(poses: Array) -> Array:
     """Inverses of rigid transforms (..., 4, 4)."""
     out = np.zeros_like(poses)
-    turn = np.swapaxes(poses[..., :3, :3], -1, -2)
-    out[..., :3, :3] = turn
-    out[..., :3, 3] = -(turn @ poses[..., :3, 3, None])[..., 0]
+    rotation = np.swapaxes(poses[..., :3, :3], -1, -2)
+    out[..., :3, :3] = rotation
+    out[..., :3, 3] = -(rotation @ poses[..., :3, 3, None])[..., 0]
     out[..., 3, 3] = 1.0
     return out
 

@@ -177,13 +177,13 @@ def _solve_cell(chain: Chain, row: int, column: int, target: Target) -> float:
     for _step in range(6):
         current = chain.with_cell(row, column, value)
         poses = frames(current, target.q)
-        slope = _slopes(current, poses)[:, 4 * row + column]
+        derivative = _slopes(current, poses)[:, 4 * row + column]
         rest = _rest(poses[:, -1], target)
         weight = np.array([1.0 / target.size**2] * 3 + [1.0] * 3)
-        size = float(np.sum(weight * slope * slope))
+        size = float(np.sum(weight * derivative * derivative))
         if size < 1e-20:
             break
-        step = float(np.sum(weight * slope * rest)) / size
+        step = float(np.sum(weight * derivative * rest)) / size
         value += step
         if abs(step) < 1e-12:
             break
@@ -229,8 +229,8 @@ def _told(
     cells = np.argwhere(one.chain.cells != chain.cells)
     if len(cells):
         row, column = (int(k) for k in cells[0])
-        slope = _slopes(one.chain, frames(one.chain, target.q))[:, 4 * row + column]
-        weighed = slope / np.repeat(sigma, 3)
+        derivative = _slopes(one.chain, frames(one.chain, target.q))[:, 4 * row + column]
+        weighed = derivative / np.repeat(sigma, 3)
         size = float(np.sum(weighed * weighed))
         if size == 0.0:
             return None, 0
@@ -279,16 +279,16 @@ def _rest(poses: Array, target: Target) -> Array:
     """Twist from the poses to the target's, (..., N, 6)."""
     out = np.zeros((*poses.shape[:-2], 6))
     out[..., :3] = target.poses[..., :3, 3] - poses[..., :3, 3]
-    turn = target.poses[..., :3, :3] @ np.swapaxes(poses[..., :3, :3], -1, -2)
+    rotation = target.poses[..., :3, :3] @ np.swapaxes(poses[..., :3, :3], -1, -2)
     sine = 0.5 * np.stack(
         [
-            turn[..., 2, 1] - turn[..., 1, 2],
-            turn[..., 0, 2] - turn[..., 2, 0],
-            turn[..., 1, 0] - turn[..., 0, 1],
+            rotation[..., 2, 1] - rotation[..., 1, 2],
+            rotation[..., 0, 2] - rotation[..., 2, 0],
+            rotation[..., 1, 0] - rotation[..., 0, 1],
         ],
         axis=-1,
     )
-    cosine = 0.5 * (np.trace(turn, axis1=-2, axis2=-1) - 1.0)
+    cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
     size = np.linalg.norm(sine, axis=-1)
     angle = np.arctan2(size, cosine)
     scale = np.where(size > 1e-9, angle / np.where(size > 1e-9, size, 1.0), 1.0)

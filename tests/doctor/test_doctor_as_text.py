@@ -1,0 +1,41 @@
+"""A formula as text from Python: the same door as a function."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.errors import ExpressionError, KinlabError
+
+TAU2 = "m2*l1*l2*c2*qdd1 + m2*l1*l2*s2*qd1**2 + m2*l2*g*c12 + m2*l2**2*(qdd1 + qdd2)"
+
+
+@pytest.mark.parametrize("quantity", ["tau2", "inverse_dynamics[1]", r"\tau_2"])
+def test_a_text_is_judged(quantity):
+    assert kl.diagnose("planar2r", quantity, TAU2, samples=30).agrees
+    wrong = kl.diagnose("planar2r", quantity, TAU2.replace("qd1**2", "qd1"), samples=30)
+    assert not wrong.agrees
+    assert list(wrong.causes[0].shown.values()) == [TAU2]
+
+
+def test_a_text_of_a_robot_that_is_loaded():
+    arm = kl.load("planar2r")
+    latex = r"\begin{pmatrix} -l_1 s_1 - l_2 s_{12} & l_2 s_{12} \end{pmatrix}"
+    found = kl.diagnose(arm, "J12", "l2*s12", samples=30)
+    assert found.causes[0].shown == {"J12": "-l2*s12"}
+    assert kl.diagnose(arm.table, "V", r"m_1 g l_1 s_1 + m_2 g (l_1 s_1 + l_2 s_{12})").agrees
+    assert kl.diagnose(arm, "J", latex).causes[0].shown == {"J12": "-l_2 s_{12}"}
+
+
+def test_a_function_may_have_a_books_name():
+    assert kl.diagnose("planar2r", "g2", lambda q: 5.886 * np.cos(q[0] + q[1])).agrees
+    with pytest.raises(KinlabError, match="nothing"):
+        kl.diagnose("planar2r", "nothing", lambda q: 0.0)
+
+
+def test_what_is_no_formula_is_refused():
+    with pytest.raises(ExpressionError, match="tau2"):
+        kl.diagnose("planar2r", "tau2", "m2 l2 +")
+    with pytest.raises(KinlabError, match="cannot be called"):
+        kl.diagnose("planar2r", "tau2", 3.0)
