@@ -66,7 +66,8 @@ def diagnose(
         seed: the same seed gives the same states.
 
     Returns:
-        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
+        The diagnosis. A cause is named only if it accounts for every state to 1e-9, or to what the
+        finite differences of a function leave.
 
     Raises:
         NameUnknownError: no such robot or quantity.
@@ -82,7 +83,9 @@ def diagnose(
     need_function(formula)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
-    hand = np.asarray(state_by_state(formula)(None, *case.arguments.values()))
+    stacked = state_by_state(formula)
+    case = replace(case, again=lambda states: np.asarray(stacked(None, *states.values())))
+    hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(formula), {})
 
 
