@@ -183,14 +183,14 @@ def in_text(
     right = derived.tree(poly)
     extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    found: list[Mended] = []
     own = {name: values[:_POINTS] for name, values in here.items()}
+    lines = []
     for at in (as_rods(anywhere(names), written, derived), own):
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        line = pen.Line(written, names, at, np.array(target), extra, numeric=at is own)
-        found = pen.mended(line)
-        if found:
-            break
+        lines.append(pen.Line(written, names, at, np.array(target), extra, numeric=at is own))
+    numbers = any("." in one.text for one in written.literals)
+    tried = [(line, 1) for line in lines if numbers] + [(line, 3) for line in lines]
+    found: list[Mended] = next(filter(None, (pen.mended(*way) for way in tried)), [])
     return [_mended(written, one, here) for one in found]
 
 
