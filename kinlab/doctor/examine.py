@@ -25,7 +25,7 @@ from kinlab.doctor.confusions.derivations import (
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.derived import derivation
+from kinlab.doctor.derived import derivation, searchable
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.verdicts import Excuse
 from kinlab.doctor.written import Written
@@ -385,12 +385,28 @@ def _slips(
         if sum(not found for found in per_entry) >= _PATIENCE:
             break
     if not all(per_entry):
-        return [], tuple(found[0].sentence for found in per_entry if found)
+        known = [found[0].sentence for found in per_entry if found]
+        return [], (*known, *_proved(case, off, written, per_entry))
     # alternatives are told for one entry at a time; all of all would be a flood
     if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
         return [], tuple(found[0].sentence for found in per_entry)
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [_slip_cause(chosen) for chosen in sets], ()
+
+
+def _proved(
+    case: Case, off: list[AnswerEntry], written: dict[str, Written], found: list[list[Slip]]
+) -> Iterator[str]:
+    """What can be said of entries as text in which no slip was found."""
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    for entry, slips in zip(off, found, strict=False):
+        text = written.get(entry.label)
+        if derived is not None and text is not None and not slips:
+            poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+            told = terms.proved(text, derived, poly) if searchable(poly) else ""
+            if told:
+                yield told
 
 
 def _varied(found: list[Slip]) -> list[Slip]:

@@ -21,9 +21,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.edits import Names
 from kinlab.doctor.meanings import Meanings
-from kinlab.doctor.search import pairs_adding_up
+from kinlab.doctor.search import Names, pairs_adding_up
 from kinlab.doctor.written import Written, operands
 from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
@@ -677,6 +676,16 @@ def _covers(line: Line, effects: Array, wanted: Array, allowed: float) -> list[t
         pairs = pairs_adding_up(effects, wanted - effects[first], allowed)
         found += [tuple(sorted((int(first), *pair))) for pair in pairs if first not in pair]
     return _cheapest(line, found)
+
+
+def together(line: Line, changes: tuple[Change, ...]) -> list[Mended]:
+    """Changes that were found one by one, as one repair, if they are."""
+    line.changes += changes
+    behind = len(line.changes)
+    found = [tuple(range(behind - len(changes), behind))]
+    done = list(_checked(line, found))
+    del line.changes[behind - len(changes) :]
+    return done
 
 
 def _checked(line: Line, found: list[tuple[int, ...]]) -> Iterator[Mended]:
