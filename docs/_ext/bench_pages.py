@@ -169,27 +169,44 @@ def branches(data: Record) -> list[str]:
 
 def doctor(data: Record) -> list[str]:
     """Mistakes that were made on purpose: how many are named."""
-    kinds = {
-        "text": "one slip, as text",
-        "function": "one slip, as a function",
-        "readings": "one confusion, as a function",
-        "double": "two slips",
-    }
-    lines = []
-    for key, name in kinds.items():
-        sums = {
-            count: sum(one[count] for one in data[key].values())
-            for count in ("total", "first", "tied", "wrong", "unknown")
-        }
-        exact = (sums["first"] + sums["tied"]) / sums["total"]
-        counts = [sums[count] for count in ("total", "tied", "wrong", "unknown")]
-        lines.append([name, str(counts[0]), f"{exact:.1%}", *map(str, counts[1:])])
-    longest = max(one["longest"] for one in data["seconds"].values())
+    lines, strange = [], ""
+    for name, tallies in data["groups"].items():
+        sums: dict[str, int] = {}
+        for tally in tallies.values():
+            for verdict, count in tally.items():
+                sums[verdict] = sums.get(verdict, 0) + count
+        named = sum(sums.get(one, 0) for one in ("first", "tied", "right"))
+        false = sums.get("wrong", 0) + sums.get("false alarm", 0)
+        other = sums.get("other", 0)
+        silent = sums["cases"] - named - other - false
+        if name == "nothing explains it":
+            strange = f"Of {sums['cases']} functions that nothing explains {false} were explained."
+            continue
+        counts = [
+            sums["cases"],
+            f"{named / sums['cases']:.0%}",
+            sums.get("tied", 0),
+            other,
+            false,
+            silent,
+        ]
+        lines.append([name, *map(str, counts)])
+    right, seconds = sum(data["right"].values()), data["all seconds"]
+    heads = [
+        "mistakes",
+        "number",
+        "named",
+        "of these tied",
+        "mended otherwise",
+        "named wrongly",
+        "not named",
+    ]
     return [
-        *table(["mistakes", "number", "named", "tied", "wrong", "unknown"], lines),
+        *table(heads, lines),
         "",
-        f"False alarms in {data['compared']:,} comparisons of correct formulas in other algebraic "
-        f"forms: {data['false_alarms']}. The longest diagnosis took {longest:.1f} s.",
+        f"Right formulas in other forms, with numbers for names or rounded numbers: {right:,}, of "
+        f"which {len(data['alarms'])} were called wrong. A diagnosis took {seconds['median']:.1f} "
+        f"s of processor time in the median, {seconds['longest']:.1f} s at most. {strange}",
     ]
 
 

@@ -35,7 +35,7 @@ def solve(
     x = np.array(start, dtype=np.float64)
     if not len(x):
         return x, np.empty(0)
-    residual, slope = system(x)
+    residual, derivative = system(x)
     norm = np.linalg.norm(residual, axis=1)
     damping = np.full(len(x), 1e-2)
     stalled = np.zeros(len(x), dtype=np.int64)
@@ -44,27 +44,27 @@ def solve(
         active = np.flatnonzero((norm > goal) & (stalled < 8))
         if not len(active):
             break
-        step = _step(residual[active], slope[active], damping[active] * norm[active])
+        step = _step(residual[active], derivative[active], damping[active] * norm[active])
         trial = x[active] + step
         trial_residual, trial_slope = system(trial)
         trial_norm = np.linalg.norm(trial_residual, axis=1)
         better = trial_norm < norm[active]
-        won, lost = active[better], active[~better]
-        x[won], residual[won], slope[won] = (
+        accepted, lost = active[better], active[~better]
+        x[accepted], residual[accepted], derivative[accepted] = (
             trial[better],
             trial_residual[better],
             trial_slope[better],
         )
-        norm[won] = trial_norm[better]
-        damping[won] *= 0.2
+        norm[accepted] = trial_norm[better]
+        damping[accepted] *= 0.2
         damping[lost] *= 6.0
-        stalled[won] = 0
+        stalled[accepted] = 0
         stalled[lost] += 1
     return x, norm
 
 
-def _step(residual: Array, slope: Array, damping: Array) -> Array:
-    left, values, right = np.linalg.svd(slope, full_matrices=False)
+def _step(residual: Array, derivative: Array, damping: Array) -> Array:
+    left, values, right = np.linalg.svd(derivative, full_matrices=False)
     # the floor only keeps 0/0 away; values this small carry no direction
     floor = 1e-15 * np.maximum(values[:, :1], 1e-300)
     gain = values / (values**2 + damping[:, np.newaxis] + floor**2)

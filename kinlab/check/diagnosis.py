@@ -23,11 +23,13 @@ _VERDICTS = {
     "": N_("agrees"),
     "rounded": N_("agrees, with rounded numbers"),
     "unusual": N_("agrees, written unusually"),
+    "digits": N_("agrees to its digits"),
 }
 _GRADES = {
     "": N_("right"),
     "rounded": N_("right with rounded numbers"),
     "unusual": N_("right but written unusually"),
+    "digits": N_("right to its digits"),
 }
 ENTRY_LETTERS = {
     "inverse_dynamics": "tau",
@@ -56,7 +58,8 @@ class Cause:
         sentence: what is wrong, in plain words.
         kinds: the names of the confusions or slips in it.
         places: the links, rows or entries they are at.
-        error_after: relative error that is left once it is repaired; at most 1e-9.
+        error_after: relative error that is left once it is repaired; at most 1e-9, or what the
+            finite differences of a function leave (1e-5).
         cost: how far-fetched it is; causes are ranked by it.
         corrected: the right formulas by entry, where they are known.
         typed: those of them that their writer would type in another way: as LaTeX, MATLAB, ...
@@ -92,9 +95,13 @@ class Diagnosis(Answer):
         hand, engine: both answers there.
         source: the file the formula is from, where it is from one.
         form: how a right formula is right: ``""`` (as the engine has it), ``"rounded"`` (with
-            rounded numbers) or ``"unusual"`` (another valid one).
+            rounded numbers), ``"unusual"`` (another valid one) or ``"digits"`` (to so many digits
+            that no slip is known to be so small). Of a formula that nothing explains ``"near"``:
+            so close that rounded constants may be all that is wrong with it.
         remarks: what is to be said of a right formula: which numbers are rounded, for which robot
             alone it holds, in what it is unusual.
+        proved: of a formula that nothing explains, what of it is right all the same: kinds of term
+            (gravity, velocities, accelerations) and entries, in sentences.
         given, corrected: for a report, the formulas as written, and as they should be where that
             is known.
     """
@@ -112,6 +119,7 @@ class Diagnosis(Answer):
     engine: Array | None = field(default=None, repr=False)
     form: str = ""
     remarks: tuple[str, ...] = ()
+    proved: tuple[str, ...] = ()
     source: str = field(default="", repr=False)
     given: tuple[Typeset, ...] = field(default=(), repr=False)
     corrected: tuple[Typeset, ...] = field(default=(), repr=False)
@@ -139,7 +147,8 @@ class Diagnosis(Answer):
         worst = _("Worst entry {entry} at {state}").format(
             entry=self._worst, state=self._at_worst(200)
         )
-        return (*(_("Explained: {slip}").format(slip=text) for text in self.partial), worst)
+        explained = (_("Explained: {slip}").format(slip=text) for text in self.partial)
+        return (*self.proved, *explained, worst)
 
     @property
     def verdict(self) -> str:
@@ -148,6 +157,8 @@ class Diagnosis(Answer):
         """
         if self.agrees:
             return _VERDICTS[self.form]
+        if self.form == "near":
+            return N_("nearly agrees, cause unknown")
         return N_("differs") if self.causes else N_("differs, cause unknown")
 
     @property
@@ -155,6 +166,8 @@ class Diagnosis(Answer):
         """As a teacher says it: ``"right"``, ``"right with rounded numbers"``, ``"right but written
         unusually"`` or ``"wrong"``.
         """
+        if self.form == "near":
+            return N_("not sure")
         return _GRADES[self.form] if self.agrees else N_("wrong")
 
     @property
@@ -165,9 +178,16 @@ class Diagnosis(Answer):
             return _("; ").join((said, *self.remarks))
         if self.causes:
             return self.causes[0].sentence
-        return _("{function} is not {quantity} of {robot}; no known slip explains it").format(
-            **self._names
-        )
+        if self.form == "near":
+            said = _(
+                "{function} is {quantity} of {robot} to {digits} digits only: rounded constants, "
+                "or a small slip?"
+            ).format(digits=max(1, int(-np.log10(2 * self.error_before))), **self._names)
+        else:
+            said = _("{function} is not {quantity} of {robot}; no known slip explains it").format(
+                **self._names
+            )
+        return _("; ").join((said, *self.proved))
 
     @property
     def _worst(self) -> str:
@@ -208,7 +228,8 @@ class Diagnosis(Answer):
             ]
             lines += [_("or: {slip}").format(slip=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
-        lines = [_("explained: {slip}").format(slip=text) for text in self.partial]
+        lines = [*self.proved]
+        lines += [_("explained: {slip}").format(slip=text) for text in self.partial]
         lines.append(
             _("relative error {error:.3g}; worst entry {entry} at {state}").format(
                 error=self.error_before,
@@ -248,6 +269,7 @@ class Diagnosis(Answer):
                 }
                 for c in self.causes
             ],
+            "proved": list(self.proved),
             "explained_entries": list(self.partial),
             "worst_entry": self.worst_entry,
             "worst_state": {name: np.ravel(v).tolist() for name, v in self.worst_state.items()},

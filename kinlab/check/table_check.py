@@ -40,13 +40,13 @@ def finite_differences(arm: Arm, q: Array) -> Array:
     here = tool_pose(arm, q)[..., :3, :3]
     columns = []
     for unit in np.eye(arm.n):
-        slope = np.zeros((len(q), 4, 4))
+        derivative = np.zeros((len(q), 4, 4))
         for k, weight in _STENCIL:
             ahead, behind = (tool_pose(arm, q + sign * k * _STEP * unit) for sign in (1, -1))
-            slope += weight / _STEP * (ahead - behind)
-        spin = slope[:, :3, :3] @ np.swapaxes(here, -1, -2)
-        omega = [spin[:, 2, 1], spin[:, 0, 2], spin[:, 1, 0]]
-        columns.append(np.concatenate([slope[:, :3, 3], np.stack(omega, axis=-1)], axis=-1))
+            derivative += weight / _STEP * (ahead - behind)
+        rate = derivative[:, :3, :3] @ np.swapaxes(here, -1, -2)
+        omega = [rate[:, 2, 1], rate[:, 0, 2], rate[:, 1, 0]]
+        columns.append(np.concatenate([derivative[:, :3, 3], np.stack(omega, axis=-1)], axis=-1))
     return np.stack(columns, axis=-1)
 
 

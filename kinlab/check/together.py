@@ -117,14 +117,14 @@ def run_together(
     for k, task in enumerate(todo):
         places.setdefault(task.name, []).append(k) if task.ships else own.append(k)
     line = deque(sorted(places, key=lambda name: -len(places[name])))
-    heard: SimpleQueue[tuple[Any, ...]] = SimpleQueue()
+    replies: SimpleQueue[tuple[Any, ...]] = SimpleQueue()
     busy = 0
     if helpers is not None:
 
         def question(name: str) -> Any:
             return name, [todo[k].record.key for k in places[name]], samples, seed
 
-        busy = helpers.take(line, question, lambda *told: heard.put(told))
+        busy = helpers.take(line, question, lambda *told: replies.put(told))
 
     def here(numbers: list[int]) -> Iterator[tuple[int, Any]]:
         with answers_kept():
@@ -132,8 +132,8 @@ def run_together(
                 yield k, one(todo[k])
 
     while line or busy:
-        while busy and not (line and heard.empty()):
-            told = heard.get()
+        while busy and not (line and replies.empty()):
+            told = replies.get()
             if not told:
                 busy -= 1
             elif told[1] is None:

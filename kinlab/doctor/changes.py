@@ -8,13 +8,14 @@ other convention), the arguments (degrees), the engine's question (another frame
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 Stage = Literal["robot", "arguments", "engine", "answer"]
 Arguments = dict[str, Array]
@@ -53,6 +54,8 @@ class Case:
         arguments: the states, by name, (N, ...).
         hand: the hand formula's answers, (N, ...).
         index: which entries of the quantity the hand formula is.
+        slack: relative error up to which an explanation fits.
+        again: the hand formula's answers at other states, (N, ...), where it can be asked.
     """
 
     robot: Robot
@@ -60,6 +63,8 @@ class Case:
     arguments: Arguments
     hand: Array
     index: tuple[Any, ...] = ()
+    again: Callable[[Arguments], Any] | None = None
+    slack: float = TOLERANCES.formula_agrees
 
     def engine(self, robot: Robot, arguments: Arguments) -> Array:
         """The engine's whole answer."""
@@ -69,7 +74,7 @@ class Case:
     def few(self, count: int) -> Case:
         """The first states only."""
         short = {name: stack[:count] for name, stack in self.arguments.items()}
-        return Case(self.robot, self.quantity, short, self.hand[:count], self.index)
+        return replace(self, arguments=short, hand=self.hand[:count])
 
     def answer(self, readings: tuple[Confusion, ...]) -> Array:
         """What the engine says under the readings; entries outside the index are cut away."""

@@ -6,7 +6,7 @@ named too, the simplest first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from itertools import combinations, product
 from typing import Any
@@ -18,14 +18,17 @@ from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import rounding, terms, verdicts
-from kinlab.doctor.changes import Case, Confusion, table_of
+from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
+    one_for_each_kind,
     several_taken_otherwise,
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.derived import derivation, searchable
+from kinlab.doctor.confusions.numbers import other_numbers
+from kinlab.doctor.confusions.parts import proved
+from kinlab.doctor.derived import derivation
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.verdicts import Excuse
 from kinlab.doctor.written import Written
@@ -39,6 +42,8 @@ _NAMED = 8
 """Causes that are kept."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
+_LOOSE, _PART = 1e-5, 1e-4
+"""Relative error that finite differences leave; share of what was off that may be left."""
 _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
@@ -65,7 +70,7 @@ def examine(
         OptionError: the answers are not real numbers.
     """
     values = _read(hand, engine, name, quantity)
-    case = Case(case.robot, case.quantity, case.arguments, values, case.index)
+    case = replace(case, hand=values, again=case.again or _texts_again(case, engine, written))
     same = values.shape == engine.shape
     errors = relative_errors(values, engine) if same else np.full(len(values), np.inf)
     worst = float(np.max(errors))
@@ -92,15 +97,28 @@ def examine(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
+    rough: list[Cause] = []
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
-        derived = [] if written and causes else [*_by_derivation(case, signs)]
-        causes = _outranked(causes, [*_singly(case, tried), *derived])
+        loose = case if written else replace(case, slack=_LOOSE)
+        derived = [] if written and causes else [*_by_derivation(loose, signs)]
+        every = [*_singly(loose, tried), *derived]
+        exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
+        rough = [] if exact else _roughly(every, worst)
+        causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
+    if not causes and same and not written and not signs:
+        changed = list(other_numbers(case))
+        causes = [*_singly(case, changed)] or rough
+        near = None if causes else verdicts.to_digits(worst)
+        if near is not None:
+            right = Diagnosis(quantity, label, name, True, worst)
+            return replace(right, form=near.form, remarks=near.remarks)
     if not causes and not signs:
-        causes = [_as_steps(found) for found in several_taken_otherwise(case)]
+        found_ = one_for_each_kind(case) or several_taken_otherwise(case)
+        causes = [_as_steps(found) for found in found_]
     if not causes:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
@@ -110,6 +128,8 @@ def examine(
     if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
         partial = (meant,)
     ranked = _ranked(causes)
+    right_parts = proved(case, engine) if same and not ranked else ()
+    close = same and not ranked and not written and worst <= verdicts.NEAR
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
@@ -124,7 +144,30 @@ def examine(
         {n: stack[k] for n, stack in case.arguments.items()},
         values[(k, *furthest)],
         engine[(k, *furthest)],
+        "near" if close else "",
+        proved=right_parts,
     )
+
+
+def _texts_again(
+    case: Case, engine: Array, written: dict[str, Written]
+) -> Callable[[Arguments], Array] | None:
+    """The values of texts at other states, where every entry is a text."""
+    if not written:
+        return None
+    every = entries(replace(case, hand=engine), engine)
+    texts = [(entry.local, written.get(entry.label)) for entry in every]
+
+    def again(states: Arguments) -> Array:
+        at = verdicts.numbers_at(replace(case, arguments=states))
+        out = np.empty((len(next(iter(states.values()))), *engine.shape[1:]))
+        for local, text in texts:
+            assert text is not None
+            place: Any = (slice(None), *local)
+            out[place] = text.values(at)
+        return out
+
+    return again if all(text is not None for _local, text in texts) else None
 
 
 def _without_value(case: Case, engine: Array) -> Cause | None:
@@ -144,6 +187,18 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
         "the formula gives no number at {missing} of {count} states; elsewhere it is right"
     ).format(missing=missing, count=count)
     return Cause(told, ("no value",), ("",), error, 1.0)
+
+
+def _roughly(causes: list[Cause], worst: float) -> list[Cause]:
+    """Explanations that leave what finite differences leave, and far less than was off."""
+    near = [cause for cause in causes if cause.error_after <= _PART * worst]
+    least = min((cause.error_after for cause in near), default=0.0)
+    said = _("{slip} (what is left, {left:.0e}, is that of finite differences)")
+    return [
+        replace(cause, sentence=said.format(slip=cause.sentence, left=cause.error_after))
+        for cause in near
+        if cause.error_after <= 10 * least
+    ]
 
 
 def _ranked(causes: list[Cause]) -> list[Cause]:
@@ -219,11 +274,13 @@ def _hidden(
 
 def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
     """Why answers that are not the engine's are right, if they are."""
-    odd = verdicts.unusual(case, engine)
+    odd = verdicts.unusual(case, engine, 0.0 if written else _LOOSE)
     if odd is not None:
         return odd
     for said_of_all in rounding.roundings(case, engine, not written):
         return Excuse("rounded", said_of_all)
+    if not written:
+        return verdicts.of_coefficients(case, engine)
     off = [entry for entry in entries(case, engine) if not entry.agrees]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
@@ -243,12 +300,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
                 return None
             remarks += [*text.rounded, *rounding.rounding_remarks(changed, at)]
             continue
-        if written or derived is None:
-            return None
-        found_here = verdicts.of_function(entry, derived, case)
-        if found_here is None:
-            return None
-        remarks += found_here
+        return None
     return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
 
 
@@ -297,7 +349,7 @@ def _matches(case: Case, chosen: tuple[Confusion, ...]) -> float | None:
     if answer.shape != case.hand.shape:
         return None
     error = float(np.max(relative_errors(case.hand, answer)))
-    return error if error <= TOLERANCES.formula_agrees else None
+    return error if error <= case.slack else None
 
 
 def _singly(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
@@ -385,28 +437,12 @@ def _slips(
         if sum(not found for found in per_entry) >= _PATIENCE:
             break
     if not all(per_entry):
-        known = [found[0].sentence for found in per_entry if found]
-        return [], (*known, *_proved(case, off, written, per_entry))
+        return [], tuple(found[0].sentence for found in per_entry if found)
     # alternatives are told for one entry at a time; all of all would be a flood
     if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
         return [], tuple(found[0].sentence for found in per_entry)
     sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
     return [_slip_cause(chosen) for chosen in sets], ()
-
-
-def _proved(
-    case: Case, off: list[AnswerEntry], written: dict[str, Written], found: list[list[Slip]]
-) -> Iterator[str]:
-    """What can be said of entries as text in which no slip was found."""
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
-    for entry, slips in zip(off, found, strict=False):
-        text = written.get(entry.label)
-        if derived is not None and text is not None and not slips:
-            poly = derived.polys[entry.index] if entry.index else derived.polys.item()
-            told = terms.proved(text, derived, poly) if searchable(poly) else ""
-            if told:
-                yield told
 
 
 def _varied(found: list[Slip]) -> list[Slip]:
@@ -470,9 +506,9 @@ def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Ite
             continue
         if reading.kind == "factor":
             undone = case.hand * (case.hand / np.where(undone, undone, 1.0))
-        changed = Case(case.robot, case.quantity, case.arguments, undone, case.index)
+        changed = replace(case, hand=undone, again=None)
         off = [e for e in entries(changed, engine) if not e.agrees]
-        if len(off) >= max(before, 2):
+        if len(off) >= max(before, 2) or len(off) > _RIVALS:
             continue
         for cause in _slips(changed, off, {})[0]:
             yield Cause(

@@ -66,7 +66,8 @@ def diagnose(
         seed: the same seed gives the same states.
 
     Returns:
-        The diagnosis. A cause is named only if it accounts for every state to 1e-9.
+        The diagnosis. A cause is named only if it accounts for every state to 1e-9, or to what the
+        finite differences of a function leave.
 
     Raises:
         NameUnknownError: no such robot or quantity.
@@ -76,13 +77,15 @@ def diagnose(
     """
     if isinstance(formula, str):
         arm = SERIAL.load(robot)
-        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "the text")
+        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         return next((one for one in judged if not one.agrees), judged[0])
     need_function(formula)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
-    hand = np.asarray(state_by_state(formula)(None, *case.arguments.values()))
+    stacked = state_by_state(formula)
+    case = replace(case, again=lambda states: np.asarray(stacked(None, *states.values())))
+    hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(formula), {})
 
 

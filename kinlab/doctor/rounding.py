@@ -21,6 +21,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
+from kinlab.doctor.confusions.numbers import rounded_robots
 from kinlab.doctor.confusions.robots import with_gravity
 from kinlab.doctor.meanings import CLOSE, RODS, Meanings
 from kinlab.doctor.written import Literal, Written, literal
@@ -31,6 +32,8 @@ from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 _STEPS = 12
+_ROUGH = 0.03
+"""Share of a function's answer that rounded constants may change: g = 10 is 2 %."""
 _FREE = 120
 """Literals of one formula above which they are not fitted."""
 _FITS = 200
@@ -232,15 +235,36 @@ def roundings(case: Case, engine: Array, function: bool) -> Iterator[tuple[str, 
         answer = replace(case, robot=full[0]).answer(())
         if answer.shape == case.hand.shape and same_values(case.hand, answer, engine):
             yield full[1]
-    weighed = gravity_rounded(case, engine) if function else None
+    if not function or case.hand.shape != engine.shape:
+        return
+    weighed = gravity_rounded(case, engine)
     if weighed is not None:
         yield weighed
+    gap = np.where(np.isfinite(case.hand), np.abs(case.hand - engine), np.inf)
+    if np.max(gap) <= _ROUGH * np.max(np.abs(engine)):
+        yield from _other_robots(case, engine)
 
 
-def same_values(one: Array, two: Array, size: Array) -> bool:
-    """Whether two answers are one, relative to the size of a third."""
+def _other_robots(case: Case, engine: Array) -> Iterator[tuple[str, ...]]:
+    """Angles, or all numbers of the robot, rounded; and g with them."""
+    few = case.few(2)
+    for robot, said in rounded_robots(case.robot):
+        other = replace(few, robot=robot)
+        answer = other.answer(())
+        if not same_values(few.hand, answer, engine[:2]) and not gravity_rounded(other, answer):
+            continue
+        other = replace(case, robot=robot)
+        answer = other.answer(())
+        if same_values(case.hand, answer, engine):
+            yield said
+        elif (also := gravity_rounded(other, answer)) is not None:
+            yield (*said, *also)
+
+
+def same_values(one: Array, two: Array, size: Array, slack: float = 0.0) -> bool:
+    """Whether two answers are one, relative to the size of a third, to rounding or a slack."""
     gap = np.max(np.abs((one - two).reshape(len(one), -1)), axis=1)
-    return bool(np.max(gap / error_sizes(size)) <= TOLERANCES.formula_agrees)
+    return bool(np.max(gap / error_sizes(size)) <= max(slack, TOLERANCES.formula_agrees))
 
 
 def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
@@ -326,10 +350,10 @@ def short(value: float, against: float) -> Literal | None:
     return one if one.digits > 1 or gap <= CLOSE * abs(against) else None
 
 
-def coefficients_rounded(
+def coefficients(
     hand: Array, engine: Array, scale: Array, words: list[Node], at: dict[str, Array]
-) -> list[str] | None:
-    """Coefficients of a function that are the derived ones to a few digits, in words, or None.
+) -> tuple[Array, Array] | None:
+    """A function's coefficients and the engine's, (W,) each, where the words are all of it.
 
     Args:
         hand, engine: an entry at the states, (N,).
@@ -344,6 +368,11 @@ def coefficients_rounded(
     theirs, *_rest = np.linalg.lstsq(columns, engine, rcond=None)
     if np.max(np.abs(columns @ mine - hand) / scale) > TOLERANCES.formula_agrees:
         return None
+    return mine, theirs
+
+
+def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> list[str] | None:
+    """Coefficients that are the derived ones to a few digits, in words, or None."""
     meanings, size = Meanings.at(at), float(np.max(np.abs(theirs)))
     said = []
     for one, two in zip(mine.tolist(), theirs.tolist(), strict=True):

@@ -204,34 +204,30 @@ def in_text(
 
 
 _MOTION = re.compile(r"(qdd?)\d+")
-_PARTS = {
-    N_("the terms in accelerations"): ("qd", "g"),
-    N_("the terms in velocities"): ("qdd", "g"),
-    N_("the gravity terms"): ("qd", "qdd"),
-}
-"""Parts that a formula of the motion adds up from, and what is zero for each."""
+_PARTS = (("qd", "g"), ("qdd", "g"), ("qd", "qdd"))
+"""What is zero where a formula is one of its parts alone: accelerations, velocities, gravity."""
 _SLIPS = 4
 """Slips in all parts together above which a list of them is no diagnosis."""
 
 
-def parts(right: Node, at: dict[str, Array]) -> dict[str, dict[str, Array]]:
+def parts(right: Node, at: dict[str, Array]) -> list[dict[str, Array]]:
     """The names' values at which a formula is one of its parts, for those that it has."""
     met = {found[1] if (found := _MOTION.fullmatch(n)) else n for n in tree.names(right)}
     if len(met & {"qd", "qdd", "g"}) < 2:
-        return {}
-    found_here = {}
-    for part, gone in _PARTS.items():
+        return []
+    alone = []
+    for gone in _PARTS:
         zero = [n for n in at if n in gone or ((m := _MOTION.fullmatch(n)) and m[1] in gone)]
         inside = at | {n: np.zeros_like(at[n]) for n in zero}
         if np.max(np.abs(tree.evaluate(right, inside))) > 0:
-            found_here[part] = inside
-    return found_here if len(found_here) > 1 else {}
+            alone.append(inside)
+    return alone if len(alone) > 1 else []
 
 
 def _part_by_part(line: pen.Line, right: Node) -> list[Mended]:
     """One or two slips in each of several parts, each found where the other parts are zero."""
     ways: list[list[Mended]] = []
-    for at in parts(right, dict(line.at)).values():
+    for at in parts(right, dict(line.at)):
         target = np.array(np.broadcast_to(tree.evaluate(right, at), line.target.shape))
         part = pen.Line(line.text, line.names, at, target, line.terms)
         if np.max(np.abs(part.root.value - target)) <= TOLERANCES.effect_matches * line.scale:
@@ -243,24 +239,6 @@ def _part_by_part(line: pen.Line, right: Node) -> list[Mended]:
         if len(changes) <= _SLIPS:
             good += pen.together(line, changes)
     return sorted(good, key=lambda m: m.cost)[:_WAYS]
-
-
-def proved(written: Written, derived: Derivation, poly: Poly) -> str:
-    """Which parts of a formula are right where no slip explains the rest; empty where none is."""
-    right = derived.tree(poly)
-    at = as_rods(anywhere(Names(derived.arm.trig.parameters, derived.arm.n, ())), written, derived)
-    told: dict[bool, list[str]] = {True: [], False: []}
-    for part, inside in parts(right, at).items():
-        target = tree.evaluate(right, inside)
-        gap = np.max(np.abs(written.values(inside) - target))
-        told[bool(gap <= TOLERANCES.effect_matches * np.max(np.abs(target)))].append(_(part))
-    if not told[True] or not told[False]:
-        return ""
-    said = _("{entry}: {right} are right; {wrong} are not")
-    listed = _(" and ")
-    return said.format(
-        entry=written.entry, right=listed.join(told[True]), wrong=listed.join(told[False])
-    )
 
 
 def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
@@ -9,11 +10,16 @@ from itertools import product
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.changes import Case
-from kinlab.doctor.derived import LETTERS, Derivation, searchable
+from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.derived import LETTERS, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.rounding import coefficients_rounded, data_rounded, same_values
-from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, names_for
+from kinlab.doctor.rounding import (
+    coefficients,
+    coefficients_rounded,
+    data_rounded,
+    same_values,
+)
+from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
 from kinlab.doctor.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -27,6 +33,11 @@ _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
 _FREE = 120
 """Literals of one formula above which they are not fitted."""
+NEAR = 2e-3
+"""Relative error up to which a function may be right with rounded constants inside."""
+_SAME_DIGITS = 1e-4
+"""Relative error below which a function that no slip explains is right to its digits: constants
+of four digits and forward differences reach it, no term that is left out does."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -35,7 +46,7 @@ class Excuse:
     """Why a formula that is not the engine's, digit for digit, is right.
 
     Attributes:
-        form: ``"rounded"`` or ``"unusual"``; ``""`` where there is only a remark.
+        form: ``"rounded"``, ``"unusual"`` or ``"digits"``; ``""`` where there is only a remark.
         remarks: in plain words.
     """
 
@@ -125,21 +136,22 @@ def _free_fit(
 # -------- Valid formulas that are not the engine's
 
 
-def unusual(case: Case, engine: Array) -> Excuse | None:
+def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
     """Another valid formula of the same thing: a C with the same C qd, a potential's other zero.
 
     Args:
         case: with the hand formula's answers, of the engine's shape.
         engine: the engine's answers.
+        slack: relative error that finite differences may leave, beside rounding.
     """
     name, hand = case.quantity.name, case.hand
     if hand.shape != engine.shape or not np.isfinite(hand).all():
         return None
     if name == "coriolis_matrix" and len(case.index) <= 1:
-        return _another_split(case, engine)
+        return _another_split(case, engine, slack)
     if name == "christoffel" and not case.index:
         symmetric = 0.5 * (hand + np.swapaxes(hand, 2, 3))
-        if same_values(symmetric, engine, engine):
+        if same_values(symmetric, engine, engine, slack):
             said = _(
                 "it is not symmetric in the last two indices, as Christoffel's symbols are; the "
                 "sums over qd_j qd_k are the same"
@@ -148,7 +160,7 @@ def unusual(case: Case, engine: Array) -> Excuse | None:
     if name in _ENERGIES:
         gap = hand - engine
         constant = gap[:1]
-        if same_values(gap, np.broadcast_to(constant, gap.shape), engine):
+        if same_values(gap, np.broadcast_to(constant, gap.shape), engine, slack):
             size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
             said = _(
                 "the potential has another zero (the difference is {size:.6g} J everywhere), "
@@ -158,16 +170,17 @@ def unusual(case: Case, engine: Array) -> Excuse | None:
     return None
 
 
-def _another_split(case: Case, engine: Array) -> Excuse | None:
+def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
     speeds = case.arguments["v"]
     torques = np.einsum("n...j,nj->n...", engine, speeds)
-    if not same_values(np.einsum("n...j,nj->n...", case.hand, speeds), torques, torques):
+    mine = np.einsum("n...j,nj->n...", case.hand, speeds)
+    if not same_values(mine, torques, torques, slack):
         return None
     if case.index:
         return Excuse("unusual", (_("C*qd is right, but C is not Christoffel's"),))
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
-    skew = same_values(rest, np.zeros_like(rest), slope)
+    skew = same_values(rest, np.zeros_like(rest), slope, slack)
     if skew:
         said = _(
             "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
@@ -242,15 +255,65 @@ def _kept(
     return found
 
 
-def of_function(entry: AnswerEntry, derived: Derivation, case: Case) -> list[str] | None:
-    """Rounded coefficients of a function's entry, in words, or None."""
+def to_digits(error: float) -> Excuse | None:
+    """A function that nothing explains, and that is right to so many digits that no slip is."""
+    if error > _SAME_DIGITS:
+        return None
+    said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
+    return Excuse("digits", (said.format(digits=_digits(error)),))
+
+
+def _digits(error: float) -> int:
+    return max(1, math.floor(-math.log10(2 * error)))
+
+
+def of_coefficients(case: Case, engine: Array) -> Excuse | None:
+    """A function whose coefficients are the derived ones, rounded, in every entry; or None.
+
+    Where the digits of each cannot be told (a sum of rounded numbers), it is right to digits.
+    """
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None:
+        return None
+    remarks: list[str] = []
+    largest = 0.0
+    for entry in entries(case, engine):
+        if entry.agrees:
+            continue
+        found = _of_function(entry, derived, case)
+        if found is None:
+            return None
+        remarks += found[0]
+        largest = max(largest, found[1])
+    if not largest:
+        return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
+    said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
+    return Excuse("digits", (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)))
+
+
+def _of_function(
+    entry: AnswerEntry, derived: Derivation, case: Case
+) -> tuple[list[str], float] | None:
+    """Rounded coefficients of a function's entry, in words; else how far they are off, relative."""
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
     if not searchable(poly) or not len(poly):
         return None
     right = derived.tree(poly)
     words = joint_functions([right], names_for(derived, case.quantity.arguments))
     at = numbers_at(case)
-    return coefficients_rounded(entry.hand, entry.engine, entry.scale, words, at)
+    both = coefficients(entry.hand, entry.engine, entry.scale, words, at)
+    if both is None:
+        return None
+    told = coefficients_rounded(*both, at)
+    if told is not None:
+        return told, 0.0
+    mine, theirs = both
+    size = float(np.max(np.abs(theirs)))
+    known = np.abs(theirs) > TOLERANCES.no_share * size
+    gap = float(np.max(np.abs(mine - theirs)[known] / np.abs(theirs)[known]))
+    stray = float(np.max(np.abs(mine[~known]), initial=0.0))
+    return ([], gap) if stray <= TOLERANCES.formula_agrees * size and gap <= NEAR else None
 
 
 def of_data(text: Written, entry: AnswerEntry, derived: Derivation, case: Case) -> str | None:

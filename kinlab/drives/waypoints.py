@@ -171,8 +171,8 @@ class Cycle:
 
     def _run(self, moves: Sequence[tuple[Waypoint, Waypoint]]) -> Path:
         """From stop to stop, from time 0, at its limits."""
-        ways = np.array([np.subtract(end.at, start.at) for start, end in moves], dtype=float)
-        lengths = np.linalg.norm(ways, axis=1)
+        vectors = np.array([np.subtract(end.at, start.at) for start, end in moves], dtype=float)
+        lengths = np.linalg.norm(vectors, axis=1)
         fast = np.array([self.v_max if end.speed is None else end.speed for _, end in moves])
         hard = np.array(
             [self.a_max if end.acceleration is None else end.acceleration for _, end in moves]
@@ -184,14 +184,14 @@ class Cycle:
         t = _nodes(np.concatenate([begins, begins + spans]))
         start = np.array(moves[0][0].at, dtype=float)
         fine = np.interp(np.arange(_FINER * (len(t) - 1) + 1) / _FINER, np.arange(len(t)), t)
-        dense = superpose(start, ways, begins, spans, fine)  # its peaks are those of the motion
+        dense = superpose(start, vectors, begins, spans, fine)  # its peaks are those of the motion
         at_work = (fine[:, None] >= begins) & (fine[:, None] <= begins + spans)
         v_limit = np.where(at_work, fast, 0.0).max(axis=1)
         a_limit = np.where(at_work, hard, 0.0).max(axis=1)
         speed = np.max(np.linalg.norm(dense.v, axis=1) / v_limit)
-        push = np.max(np.linalg.norm(dense.a, axis=1) / a_limit)
-        slower = float(max(speed, np.sqrt(push)))
-        return superpose(start, ways, begins, spans, t).stretched(slower)
+        excess = np.max(np.linalg.norm(dense.a, axis=1) / a_limit)
+        slower = float(max(speed, np.sqrt(excess)))
+        return superpose(start, vectors, begins, spans, t).stretched(slower)
 
 
 def _nodes(kinks: Array) -> Array:

@@ -60,7 +60,7 @@ def _newton(
     """Newton until the residual is ``goal``; None if it leaves the branch or does not get there."""
     before = np.inf
     for _ in range(_STEPS):
-        value, slope = residual(x)
+        value, derivative = residual(x)
         left = float(np.linalg.norm(value - goal))
         if left <= 1e-3 * tolerance:
             return x
@@ -68,7 +68,7 @@ def _newton(
             return x if left <= tolerance else None
         before = left
         try:
-            x = x - np.linalg.solve(slope, value - goal)
+            x = x - np.linalg.solve(derivative, value - goal)
         except np.linalg.LinAlgError:  # singular to the last bit
             return None
         if not inside(x):
@@ -383,11 +383,11 @@ def build(linkage: FiveBar) -> ClosedChain:
         crank = model.addJoint(0, pin.JointModelRZ(), base, JOINTS[2 * leg])
         rod = model.addJoint(crank, pin.JointModelRZ(), elbow, JOINTS[2 * leg + 1])
         for joint, part in ((crank, "crank"), (rod, "rod")):
-            mass, com, spin = (
+            mass, com, inertia = (
                 float(getattr(linkage, f"{part}_{what}")[leg])
                 for what in ("mass", "com", "inertia")
             )
-            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), spin * np.eye(3))
+            body = pin.Inertia(mass, np.array([com, 0.0, 0.0]), inertia * np.eye(3))
             model.appendBodyToJoint(joint, body, pin.SE3.Identity())
         model.armature[model.joints[crank].idx_v] = linkage.reflected_inertia[leg]
         ends.append((rod, pin.SE3(np.eye(3), np.array([l2[leg], 0.0, 0.0]))))

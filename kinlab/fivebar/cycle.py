@@ -214,7 +214,7 @@ def _shift(linkage: FiveBar, path: Path, mode: Mode) -> str:
     few = slice(None, None, max(1, len(path.t) // 200))
     points, still = path.points[few], np.zeros_like(path.points[few])
     angles = np.linspace(-np.pi, np.pi, 48, endpoint=False)
-    ways = np.stack([np.cos(angles), np.sin(angles)], axis=1)
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
 
     def works(shift: Array) -> bool:
         try:
@@ -225,7 +225,7 @@ def _shift(linkage: FiveBar, path: Path, mode: Mode) -> str:
 
     size = float(np.sum(linkage.l1) + np.sum(linkage.l2))
     for distance in np.geomspace(1e-3, 1.0, 40) * size:
-        for way in ways:
+        for way in directions:
             if works(distance * way):
                 x, y = (round(float(value), 9) + 0.0 for value in distance * way)
                 return f"moved as a whole by ({x:.3g}, {y:.3g}) m it can be done"

@@ -49,11 +49,11 @@ class RodModel:
 def exact_rods(linkage: FiveBar) -> RodModel:
     """alpha_B = m(1-rho)² + I/l2², alpha_C = m rho² + I/l2², kappa = m rho(1-rho) - I/l2²."""
     mass, rho = linkage.rod_mass, _fraction(linkage)
-    spin = linkage.rod_inertia / linkage.l2**2
+    inertia = linkage.rod_inertia / linkage.l2**2
     return RodModel(
-        elbow=mass * (1.0 - rho) ** 2 + spin,
-        coupling=mass * rho * (1.0 - rho) - spin,
-        tool=mass * rho**2 + spin,
+        elbow=mass * (1.0 - rho) ** 2 + inertia,
+        coupling=mass * rho * (1.0 - rho) - inertia,
+        tool=mass * rho**2 + inertia,
         elbow_weight=mass * (1.0 - rho),
         tool_weight=mass * rho,
     )

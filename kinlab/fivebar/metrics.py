@@ -243,29 +243,29 @@ def _solved(
     jumped = _newton(linkage, points, mode, size, factor)
     points = np.concatenate([points, jumped])
     points = points[condition_number(linkage, points, mode) - 1.0 < 1e-9]
-    _, slope = _conditions(linkage, points, mode, 1e-6 * size, factor)
-    sharpness = np.asarray(np.linalg.svd(size * slope, compute_uv=False)[:, -1], dtype=float)
+    _, derivative = _conditions(linkage, points, mode, 1e-6 * size, factor)
+    sharpness = np.asarray(np.linalg.svd(size * derivative, compute_uv=False)[:, -1], dtype=float)
     return points, sharpness
 
 
 def _descend(linkage: FiveBar, points: Array, mode: Mode, size: float, factor: int) -> Array:
     """Levenberg-Marquardt on the two conditions from all points at once."""
     damping = np.full(len(points), 1e-3)
-    value, slope = _conditions(linkage, points, mode, 1e-6 * size, factor)
-    slope = slope * size  # steps in parts of the size
+    value, derivative = _conditions(linkage, points, mode, 1e-6 * size, factor)
+    derivative = derivative * size  # steps in parts of the size
     for _ in range(_DESCENT_STEPS):
-        normal = slope.swapaxes(1, 2) @ slope + damping[:, None, None] * np.eye(2)
-        pull = np.einsum("nji,nj->ni", slope, value)
-        step = np.linalg.solve(normal, -pull[..., None])[..., 0]
+        normal = derivative.swapaxes(1, 2) @ derivative + damping[:, None, None] * np.eye(2)
+        gradient = np.einsum("nji,nj->ni", derivative, value)
+        step = np.linalg.solve(normal, -gradient[..., None])[..., 0]
         step *= np.minimum(1.0, 0.05 / np.maximum(np.linalg.norm(step, axis=1), 1e-300))[:, None]
         trial = points + size * step
         inside = solve_pose(linkage, trial, mode, "mask", regular="I II").ok
         trial = np.where(inside[:, None], trial, points)
-        new_value, new_slope = _conditions(linkage, trial, mode, 1e-6 * size, factor)
+        new_value, new_derivative = _conditions(linkage, trial, mode, 1e-6 * size, factor)
         better = inside & (np.sum(new_value**2, axis=1) < np.sum(value**2, axis=1))
         points = np.where(better[:, None], trial, points)
         value = np.where(better[:, None], new_value, value)
-        slope = np.where(better[:, None, None], size * new_slope, slope)
+        derivative = np.where(better[:, None, None], size * new_derivative, derivative)
         damping = np.clip(np.where(better, 0.1 * damping, 10.0 * damping), 1e-14, 1e6)
     return points
 
@@ -273,8 +273,8 @@ def _descend(linkage: FiveBar, points: Array, mode: Mode, size: float, factor: i
 def _newton(linkage: FiveBar, points: Array, mode: Mode, size: float, factor: int) -> Array:
     """Newton by pseudo-inverse; points that leave the workspace are dropped."""
     for _ in range(_NEWTON_STEPS):
-        value, slope = _conditions(linkage, points, mode, 1e-6 * size, factor)
-        points = points - np.einsum("nij,nj->ni", np.linalg.pinv(slope, rcond=1e-7), value)
+        value, derivative = _conditions(linkage, points, mode, 1e-6 * size, factor)
+        points = points - np.einsum("nij,nj->ni", np.linalg.pinv(derivative, rcond=1e-7), value)
         points = points[solve_pose(linkage, points, mode, "mask", regular="I II").ok]
     return points
 

@@ -219,10 +219,10 @@ def largest_circle(
     if clear[best[0]] <= 0.0:
         raise _no_free_region(linkage, mode, assembly)
     centres, radii, step = points[best], clear[best], float(x[1] - x[0])
-    ways = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]])
+    directions = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [1, -1], [-1, 1], [-1, -1]])
     while step > 1e-7 * float(np.sum(linkage.l1)):
-        moved = centres[:, None] + step * ways
-        found = free.clearance(moved.reshape(-1, 2)).reshape(len(centres), len(ways))
+        moved = centres[:, None] + step * directions
+        found = free.clearance(moved.reshape(-1, 2)).reshape(len(centres), len(directions))
         pick = found.argmax(axis=1)
         rows = np.arange(len(centres))
         better = found[rows, pick] > radii
@@ -275,7 +275,7 @@ def largest_rectangle(
         raise _no_free_region(linkage, mode, assembly)
     top, bottom, left, right = _largest_block(cells)
     box = Rectangle(float(x[left]), float(x[right]), float(y[top]), float(y[bottom]))
-    return box if max_condition < np.inf else _grown(free, box, float(x[1] - x[0]))
+    return box if max_condition < np.inf else _enlarged(free, box, float(x[1] - x[0]))
 
 
 def _largest_block(cells: Mask) -> tuple[int, int, int, int]:
@@ -296,12 +296,12 @@ def _largest_block(cells: Mask) -> tuple[int, int, int, int]:
     return block
 
 
-def _grown(free: FreeRegion, box: Rectangle, step: float) -> Rectangle:
+def _enlarged(free: FreeRegion, box: Rectangle, step: float) -> Rectangle:
     """Moves one side, or two against each other, while the area grows and stays in the region."""
-    ways = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 4), axis=-1).reshape(-1, 4)
+    directions = np.stack(np.meshgrid(*[[-1.0, 0.0, 1.0]] * 4), axis=-1).reshape(-1, 4)
     least = 1e-6 * float(np.sum(free.linkage.l1))
     while step > least:
-        trials = [Rectangle(*(np.asarray(box) + step * way).tolist()) for way in ways]
+        trials = [Rectangle(*(np.asarray(box) + step * way).tolist()) for way in directions]
         trials = [t for t in trials if t.area > box.area and free.contains_rectangle(t)]
         if trials:
             box = max(trials, key=lambda t: t.area)

@@ -1,4 +1,4 @@
-"""Motions of an arm: planned between joint positions or along ways of the tool, and judged.
+"""Motions of an arm: planned between joint positions or along paths of the tool, and judged.
 
 ================  ================================================================================
 module            what it holds
@@ -13,6 +13,8 @@ module            what it holds
                   time-optimal
 ``limits``        Limits of a motion: read at the door, held exactly, and what would hold them
                   where they break
+``paths``         Paths of the tool in space: lines and arcs from pose to pose, blended where they
+                  meet
 ``record``        ``Motion``: joint positions, velocities and accelerations over time, exact
                   between the samples
 ``simulation``    Motion under torques: an arm or a five-bar in time, with friction, and its balance
@@ -21,16 +23,14 @@ module            what it holds
                   ``motion``)
 ``tool_space``    Motions of the tool: straight lines with slerp, arcs, blends; joints by inverse
                   kinematics
-``ways``          Ways of the tool in space: lines and arcs from pose to pose, blended where they
-                  meet
 ================  ================================================================================
 """
 
 from kinlab.motion.checks import Finding, MotionCheck, check
 from kinlab.motion.joint_space import joint
+from kinlab.motion.paths import Arc
 from kinlab.motion.record import Motion, from_samples, read_motion
 from kinlab.motion.tool_space import cartesian
-from kinlab.motion.ways import Arc
 
 __all__ = [
     "Arc",

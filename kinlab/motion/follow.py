@@ -1,4 +1,4 @@
-"""Joint positions along a way of the tool: on one branch, clear of singularities, or refused.
+"""Joint positions along a path of the tool: on one branch, clear of singularities, or refused.
 
 What is refused is said with its time and place, and up to where the way can be had.
 """
@@ -18,17 +18,17 @@ from kinlab.inverse.methods import pose_error
 from kinlab.inverse.postures.path import IKPath, ik_path
 from kinlab.inverse.search import ik
 from kinlab.model.robot import Robot
-from kinlab.motion.ways import TimedWay
+from kinlab.motion.paths import TimedPath
 from kinlab.tolerances import TOLERANCES
 
 _ROWS = 20
-"""Poses that are followed at a time: a way that ends is not searched on beyond its end."""
+"""Poses that are followed at a time: a path that ends is not searched on beyond its end."""
 
 
 def follow(
     robot: Robot,
     space: TaskSpace,
-    way: TimedWay,
+    path: TimedPath,
     times: Array,
     goals: Array,
     q0: ArrayLike | None,
@@ -41,7 +41,7 @@ def follow(
     if not begin.success:
         raise UnreachableError(_unreachable(robot, goals[0], 0.0, begin, None))
     if space.m < robot.n:
-        q = _with_spare_joints(robot, space, way, times, goals, begin.q)
+        q = _with_spare_joints(robot, space, path, times, goals, begin.q)
     else:
         q = _on_one_branch(robot, space, times, goals, begin.q, seed)
     _require_one_side(robot, space, times, goals, q)
@@ -101,7 +101,7 @@ def _refuse_row(
 
 
 def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array, q: Array) -> None:
-    """Refuses a way whose det J changes its sign between samples, or that all but loses rank.
+    """Refuses a path whose det J changes its sign between samples, or that all but loses rank.
 
     Raises:
         SingularError: when and where.
@@ -119,14 +119,14 @@ def _require_one_side(robot: Robot, space: TaskSpace, times: Array, goals: Array
 
 
 def _with_spare_joints(
-    robot: Robot, space: TaskSpace, way: TimedWay, times: Array, goals: Array, q: Array
+    robot: Robot, space: TaskSpace, path: TimedPath, times: Array, goals: Array, q: Array
 ) -> Array:
     """The least-norm motion qdot = J⁺ V from q on, kept on the poses by Newton steps."""
     rows = [q]
     for k in range(1, len(times)):
         step = times[k] - times[k - 1]
         middle = 0.5 * (times[k] + times[k - 1])
-        _, twists, _ = way.at(np.array([times[k - 1], middle, times[k]]))
+        _, twists, _ = path.at(np.array([times[k - 1], middle, times[k]]))
         k1 = _least(space, q, twists[0])
         k2 = _least(space, q + 0.5 * step * k1, twists[1])
         k3 = _least(space, q + 0.5 * step * k2, twists[1])
@@ -155,7 +155,7 @@ def _least(space: TaskSpace, q: Array, twist: Array) -> Array:
     return np.linalg.pinv(jacobian(space.robot, q)[rows]) @ twist[rows]
 
 
-# -------- What is said where a way cannot be had
+# -------- What is said where a path cannot be had
 
 
 def _place(t: float, pose: Array) -> str:

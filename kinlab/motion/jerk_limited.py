@@ -33,12 +33,12 @@ def plan(rows: Array, limits: Limits) -> Any:
 
     def law(line: Array) -> Any:
         # from 0 to 1: one freedom, so that all joints keep in proportion
-        way = np.abs(line)
-        moves = way > 0.0
+        displacement = np.abs(line)
+        moves = displacement > 0.0
         asked = ruckig.InputParameter(1)
         asked.current_position, asked.target_position = [0.0], [1.0]
         for name in ("velocity", "acceleration", "jerk"):
-            bound = float(np.min(getattr(limits, name)[moves] / way[moves]))
+            bound = float(np.min(getattr(limits, name)[moves] / displacement[moves]))
             setattr(asked, f"max_{name}", [bound])
         found = ruckig.Trajectory(1)
         status = ruckig.Ruckig(1).calculate(asked, found)

@@ -144,10 +144,10 @@ def _straight(law: Callable[[float, float], Any]) -> Callable[[Array, Limits], A
     return plan
 
 
-def _caps(way: Array, limits: Limits) -> tuple[float, float]:
+def _caps(displacement: Array, limits: Limits) -> tuple[float, float]:
     """Largest speed and acceleration along a line, as parts of it per s and s²."""
-    moves = np.abs(way) > 0.0
-    size = np.abs(way[moves])
+    moves = np.abs(displacement) > 0.0
+    size = np.abs(displacement[moves])
     velocity, acceleration = limits.velocity[moves], limits.acceleration[moves]
     speed = float(np.min(velocity / size))
     gain = float(np.min(acceleration / size))

@@ -38,10 +38,10 @@ def plan(rows: Array, limits: Limits) -> Any:
             "time-optimal motions need toppra: install it with pip install 'kinlab[motion]'"
         ) from None
     logging.getLogger("toppra").setLevel(logging.ERROR)
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows, axis=0), axis=1))])
-    way /= way[-1]
-    path = CubicSpline(way, rows, bc_type=path_ends(rows))
-    grid = np.unique(np.concatenate([np.linspace(0.0, 1.0, GRID + 1), way]))
+    progress = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows, axis=0), axis=1))])
+    progress /= progress[-1]
+    path = CubicSpline(progress, rows, bc_type=path_ends(rows))
+    grid = np.unique(np.concatenate([np.linspace(0.0, 1.0, GRID + 1), progress]))
     grid = grid[np.concatenate([[True], np.diff(grid) > 1e-9])]
     bounds = [
         constraint.JointVelocityConstraint(np.stack([-limits.velocity, limits.velocity], axis=1)),
@@ -51,7 +51,7 @@ def plan(rows: Array, limits: Limits) -> Any:
         ),
     ]
     solver = algorithm.TOPPRA(
-        bounds, toppra.SplineInterpolator(way, rows, bc_type=path_ends(rows)), gridpoints=grid
+        bounds, toppra.SplineInterpolator(progress, rows, bc_type=path_ends(rows)), gridpoints=grid
     )
     _, speeds, _ = solver.compute_parameterization(0.0, 0.0)
     if speeds is None or not np.isfinite(speeds).all():
@@ -69,9 +69,13 @@ def _in_time(path: Any, grid: Array, speeds: Array) -> Any:
     steps = 2.0 * np.diff(grid) / (speeds[:-1] + speeds[1:])
     times = np.concatenate([[0.0], np.cumsum(steps)])
     gains = np.diff(speeds**2) / (2.0 * np.diff(grid))  # consistent with the speeds to rounding
-    q, slope, bend = (np.asarray(path(grid, order)) for order in range(3))
-    v = slope * speeds[:, np.newaxis]
+    q, tangent, bend = (np.asarray(path(grid, order)) for order in range(3))
+    v = tangent * speeds[:, np.newaxis]
     curved = bend * speeds[:, np.newaxis] ** 2
-    after = np.concatenate([slope[:-1] * gains[:, np.newaxis], np.zeros((1, q.shape[1]))]) + curved
-    before = np.concatenate([np.zeros((1, q.shape[1])), slope[1:] * gains[:, np.newaxis]]) + curved
+    after = (
+        np.concatenate([tangent[:-1] * gains[:, np.newaxis], np.zeros((1, q.shape[1]))]) + curved
+    )
+    before = (
+        np.concatenate([np.zeros((1, q.shape[1])), tangent[1:] * gains[:, np.newaxis]]) + curved
+    )
     return hermite(times, q, v, before, after)

@@ -22,8 +22,8 @@ from kinlab.model.robot import Robot
 from kinlab.motion.follow import follow
 from kinlab.motion.joint_space import STEP
 from kinlab.motion.limits import read_limits, require_limits
+from kinlab.motion.paths import Leg, TimedPath, read_legs
 from kinlab.motion.record import Motion, even_times, hermite, motion_of
-from kinlab.motion.ways import Leg, TimedWay, read_legs
 
 _DENSE = 4001
 """Times at which the tool's speed and acceleration are compared with their limits."""
@@ -63,7 +63,7 @@ def cartesian(
 
     The rotation of a leg goes about one axis at the law's pace (slerp). Joint positions come from
     :func:`kinlab.ik_path`; velocities and accelerations from the Jacobian and its derivative, at
-    the samples; between them runs a curve of fifth degree, whose distance from the wanted way is
+    the samples; between them runs a curve of fifth degree, whose distance from the wanted path is
     measured and stands in ``remarks``. Arms with joints to spare move them as little as possible.
 
     Args:
@@ -102,26 +102,26 @@ def cartesian(
     overlap = number(blend, "blend")
     if not 0.0 <= overlap <= 1.0:
         raise OptionError(f"blend is {overlap:g}; it must lie between 0 (stop) and 1")
-    way = _timed(start, legs, planned, caps, overlap)
+    path = _timed(start, legs, planned, caps, overlap)
     if duration is not None:
-        way = way.stretched(number(duration, "duration", above=0.0) / way.duration)
+        path = path.stretched(number(duration, "duration", above=0.0) / path.duration)
     space = read_reachable_task(robot, task)
-    times = _sample_times(way, step)
-    goals, _, _ = way.at(times)
-    q = follow(robot, space, way, times, goals, q0, seed)
-    curve = _joint_curve(space, way, times, q)
+    times = _sample_times(path, step)
+    goals, _, _ = path.at(times)
+    q = follow(robot, space, path, times, goals, q0, seed)
+    curve = _joint_curve(space, path, times, q)
     require_limits(robot, curve, read_limits(robot, joint_velocity, joint_acceleration))
-    miss, turn = _miss(space, way, times, curve)
+    miss, off = _miss(space, path, times, curve)
     remark = (
-        f"between the samples the tool is at most {miss:.2g} m and {turn:.2g} rad off the way, "
+        f"between the samples the tool is at most {miss:.2g} m and {off:.2g} rad off the way, "
         "measured in their middles"
     )
-    wanted = even_times(way.duration, step)
-    goals, _, _ = way.at(wanted)
+    wanted = even_times(path.duration, step)
+    goals, _, _ = path.at(wanted)
     return motion_of(robot.name, law, curve, step, goals, (remark,), wanted)
 
 
-# -------- Times along the way
+# -------- Times along the path
 
 
 def _read_caps(
@@ -160,36 +160,39 @@ def _read_caps(
 
 def _timed(
     start: Array, legs: tuple[Leg, ...], planned: Any, caps: ToolLimits, overlap: float
-) -> TimedWay:
+) -> TimedPath:
     """Legs one after the other, overlapping, slowed down as a whole to hold the tool's limits."""
     timed = []
     for leg in legs:
-        turn = float(np.linalg.norm(leg.turn))
+        turned = float(np.linalg.norm(leg.rotation_vector))
         speeds = [np.inf] + [
             bound / size
-            for bound, size in ((caps.velocity, leg.length), (caps.angular_velocity, turn))
+            for bound, size in ((caps.velocity, leg.length), (caps.angular_velocity, turned))
             if size > 0.0
         ]
         gains = [np.inf] + [
             bound / size
-            for bound, size in ((caps.acceleration, leg.length), (caps.angular_acceleration, turn))
+            for bound, size in (
+                (caps.acceleration, leg.length),
+                (caps.angular_acceleration, turned),
+            )
             if size > 0.0
         ]
         if leg.angle:  # half of the square each for turning and for speeding up
             share = caps.acceleration / np.sqrt(2.0)
             speeds.append(float(np.sqrt(share / leg.curvature)) / leg.length)
             gains.append(share / leg.length)
-        timed.append(planned(*laws.completed(min(speeds), min(gains), leg.length + turn)))
+        timed.append(planned(*laws.completed(min(speeds), min(gains), leg.length + turned)))
     spans = np.array([law.x[-1] for law in timed])
     lapped = overlap * np.minimum(spans[:-1], spans[1:])
     if len(spans) > 2:  # no more than two legs at a time
         lapped = np.minimum(lapped, 0.5 * np.minimum(spans[:-1], spans[1:]))
     begins = np.concatenate([[0.0], np.cumsum(spans[:-1] - lapped)])
-    way = TimedWay(start, legs, tuple(timed), begins)
-    t = np.union1d(np.linspace(0.0, way.duration, _DENSE), way.knots)
+    path = TimedPath(start, legs, tuple(timed), begins)
+    t = np.union1d(np.linspace(0.0, path.duration, _DENSE), path.knots)
     factor = 0.0
     for side in ("left", "right"):
-        _, twist, change = way.at(t, side)
+        _, twist, change = path.at(t, side)
         for bound, power, rows in (
             (caps.velocity, 1.0, twist[:, :3]),
             (caps.angular_velocity, 1.0, twist[:, 3:]),
@@ -197,14 +200,14 @@ def _timed(
             (caps.angular_acceleration, 0.5, change[:, 3:]),
         ):
             factor = max(factor, float(np.linalg.norm(rows, axis=1).max() / bound) ** power)
-    return way.stretched(factor) if factor > 0.0 else way
+    return path.stretched(factor) if factor > 0.0 else path
 
 
-def _sample_times(way: TimedWay, step: float) -> Array:
+def _sample_times(path: TimedPath, step: float) -> Array:
     """Evenly spaced between the knots, at most a step apart and _LEAST in all."""
-    even_times(way.duration, step)  # refuses what is no step
-    knots = way.knots
-    wide = min(step, way.duration / _LEAST)
+    even_times(path.duration, step)  # refuses what is no step
+    knots = path.knots
+    wide = min(step, path.duration / _LEAST)
     parts = [
         np.linspace(a, b, max(2, int(np.ceil((b - a) / wide - 1e-9)) + 1))[:-1]
         for a, b in itertools.pairwise(knots)
@@ -215,7 +218,7 @@ def _sample_times(way: TimedWay, step: float) -> Array:
 # -------- Joints
 
 
-def _joint_curve(space: TaskSpace, way: TimedWay, times: Array, q: Array) -> Any:
+def _joint_curve(space: TaskSpace, path: TimedPath, times: Array, q: Array) -> Any:
     """Velocities J⁺ V and accelerations at the samples, on both sides of each, as one curve."""
     rows = list(space.rows)
     jac = jacobian(space.robot, q)[:, rows]
@@ -223,7 +226,7 @@ def _joint_curve(space: TaskSpace, way: TimedWay, times: Array, q: Array) -> Any
     sides = []
     v = np.empty_like(q)
     for side in ("left", "right"):
-        _, twist, change = way.at(times, side)
+        _, twist, change = path.at(times, side)
         v = np.einsum("nij,nj->ni", inverse, twist[:, rows])
         slope = jacobian_dot(space.robot, q, v)[:, rows]
         rest = change[:, rows] - np.einsum("nij,nj->ni", slope, v)
@@ -236,10 +239,10 @@ def _joint_curve(space: TaskSpace, way: TimedWay, times: Array, q: Array) -> Any
     return hermite(times, q, v, *sides)
 
 
-def _miss(space: TaskSpace, way: TimedWay, times: Array, curve: Any) -> tuple[float, float]:
-    """How far the tool is off the way between the samples: metres, rad."""
+def _miss(space: TaskSpace, path: TimedPath, times: Array, curve: Any) -> tuple[float, float]:
+    """How far the tool is off the path between the samples: metres, rad."""
     middles = 0.5 * (times[1:] + times[:-1])
-    goals, _, _ = way.at(middles)
+    goals, _, _ = path.at(middles)
     have = fk(space.robot, np.asarray(curve(middles)))
     errors = np.abs([pose_error(one, two) for one, two in zip(have, goals, strict=True)])
     errors[:, [row for row in range(6) if row not in space.rows]] = 0.0

@@ -288,8 +288,8 @@ def mass_derivatives(arm: Arm, q: Array) -> Array:
     column at p_j for k < j; dr_l/dq_k is column k of link l's Jacobian; and the tensor of link l
     turns as d(R I R^T)/dq_k = W_k I - I W_k for k <= l.
     """
-    slope: Array = once(_mass_derivatives, arm, q)
-    return slope
+    derivative: Array = once(_mass_derivatives, arm, q)
+    return derivative
 
 
 def _mass_derivatives(arm: Arm, q: Array) -> Array:
@@ -313,14 +313,14 @@ def _mass_derivatives(arm: Arm, q: Array) -> Array:
     moved = np.tri(arm.n, dtype=bool)[..., None, None]
     d_linear = np.where(moved, np.where(is_revolute, moving, dz[..., None, :, :, :]), 0.0)
     d_angular = np.where(moved & is_revolute, dz[..., None, :, :, :], 0.0)
-    slope: Any = np.einsum("l,...likc,...ljc->...ijk", arm.mass, d_linear, body.linear)
+    derivative: Any = np.einsum("l,...likc,...ljc->...ijk", arm.mass, d_linear, body.linear)
     held = apply(body.inertias[..., :, None, :, :], body.angular)  # I Jw, indices l, j
-    slope = slope + np.einsum("...lika,...lja->...ijk", d_angular, held)
-    slope = slope + np.swapaxes(slope, -3, -2)
+    derivative = derivative + np.einsum("...lika,...lja->...ijk", d_angular, held)
+    derivative = derivative + np.swapaxes(derivative, -3, -2)
     # Jw_i^T (W_k I - I W_k) Jw_j = -(w_k x Jw_i)·I Jw_j - (I Jw_i)·(w_k x Jw_j), per link
     swing = cross(body.angular[..., None, :, :], body.angular[..., :, None, :])  # l, i, k: w_k x
     half = -np.einsum("...lika,...lja->...ijk", swing, held)
-    result: Array = slope + half + np.swapaxes(half, -3, -2)
+    result: Array = derivative + half + np.swapaxes(half, -3, -2)
     return result
 
 
@@ -337,5 +337,5 @@ def gravity_torques(arm: Arm, q: Array) -> Array:
 
 def christoffel(arm: Arm, q: Array) -> Array:
     """D_ijk = ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i), (..., n, n, n)."""
-    slope = mass_derivatives(arm, q)
-    return 0.5 * (slope + np.swapaxes(slope, -1, -2) - np.moveaxis(slope, -1, -3))
+    derivative = mass_derivatives(arm, q)
+    return 0.5 * (derivative + np.swapaxes(derivative, -1, -2) - np.moveaxis(derivative, -1, -3))

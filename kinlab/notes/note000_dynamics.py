@@ -52,9 +52,9 @@ def static_wrenches(arm: Arm, q: Array, wrench: Array) -> Array:
     force, moment = tip_wrench(arm, q, wrench)
     result = [np.concatenate([force, moment], axis=-1)]
     for i in reversed(range(arm.n - 1)):
-        rotation, place = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
+        rotation, position = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
         force = apply(rotation, force)
-        moment = apply(rotation, moment) + cross(place, force)
+        moment = apply(rotation, moment) + cross(position, force)
         result.append(np.concatenate([force, moment], axis=-1))
     return np.stack(result[::-1], axis=-2)
 
@@ -223,8 +223,8 @@ def com_accelerations(arm: Arm, q: Array, v: Array, a: Array) -> Array:
 def inertial(arm: Arm, motion: Motion) -> tuple[Array, Array]:
     """F and N of every link, each (..., n, 3)."""
     force = arm.mass[:, None] * centre_accelerations(arm, motion)
-    spin = apply(arm.inertia, motion.omega)
-    return force, apply(arm.inertia, motion.omega_dot) + cross(motion.omega, spin)
+    momentum = apply(arm.inertia, motion.omega)
+    return force, apply(arm.inertia, motion.omega_dot) + cross(motion.omega, momentum)
 
 
 @_newton_euler(
@@ -252,9 +252,9 @@ def inward(arm: Arm, q: Array, v: Array, a: Array, wrench: Array | None, gravity
     result = []
     for i in reversed(range(arm.n)):
         if i < arm.n - 1:
-            rotation, place = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
+            rotation, position = steps[..., i + 1, :3, :3], steps[..., i + 1, :3, 3]
             force = apply(rotation, force)
-            moment = apply(rotation, moment) + cross(place, force)
+            moment = apply(rotation, moment) + cross(position, force)
         moment = moment + moments[..., i, :] + cross(last.com[i], forces[..., i, :])
         force = force + forces[..., i, :]
         result.append(np.concatenate([force, moment], axis=-1))
@@ -422,8 +422,8 @@ def potential_energies(arm: Arm, q: Array) -> Any:
 )
 def lagrange_torques(arm: Arm, q: Array, v: Array, a: Array) -> Array:
     """Joint torques by differentiation of the energies, exactly."""
-    slope = mass.mass_derivatives(arm, q)
-    turning: Array = np.einsum("...ijk,...k,...j->...i", slope, v, v)
+    derivative = mass.mass_derivatives(arm, q)
+    turning: Array = np.einsum("...ijk,...k,...j->...i", derivative, v, v)
     rate = turning + apply(mass.mass_matrix(arm, q), a)
-    gradient: Array = 0.5 * np.einsum("...ijk,...i,...j->...k", slope, v, v)
+    gradient: Array = 0.5 * np.einsum("...ijk,...i,...j->...k", derivative, v, v)
     return rate - gradient + mass.gravity_torques(arm, q)

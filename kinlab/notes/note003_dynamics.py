@@ -53,10 +53,10 @@ def torque(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
 def torque_in_joints(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> Any:
     """The same in the crank accelerations."""
     u, _, _ = bars(loop, xy, mode)
-    felt = loop.payload * tool_inertia(loop, xy, mode)
+    reflected = loop.payload * tool_inertia(loop, xy, mode)
     held = loop.payload * loop.g * times(inverse_transpose(jacobian(loop, xy, mode)), E2)
     theta_ddot = turn(loop, xy, v, a, mode)
-    payload = times(felt, theta_ddot) - times(felt, bias(loop, xy, v, mode))
+    payload = times(reflected, theta_ddot) - times(reflected, bias(loop, xy, v, mode))
     return loop.arm * theta_ddot + payload + _crank_gravity(loop, u) + held
 
 
@@ -79,9 +79,9 @@ def torque_with_rods(loop: Loop, xy: Array, v: Array, a: Array, mode: Array) -> 
     """Crank torques with rods of mass."""
     u, _, _ = bars(loop, xy, mode)
     n = np.stack([-u[..., 1], u[..., 0]], axis=-1)
-    rho, spin = loop.rod_com / loop.l2, loop.rod_inertia / loop.l2**2
-    alpha_b, alpha_c = loop.rod * (1 - rho) ** 2 + spin, loop.rod * rho**2 + spin
-    kappa = loop.rod * rho * (1 - rho) - spin
+    rho, inertia = loop.rod_com / loop.l2, loop.rod_inertia / loop.l2**2
+    alpha_b, alpha_c = loop.rod * (1 - rho) ** 2 + inertia, loop.rod * rho**2 + inertia
+    kappa = loop.rod * rho * (1 - rho) - inertia
     jac = jacobian(loop, xy, mode)
     rate, theta_ddot = times(jac, v), turn(loop, xy, v, a, mode)
     elbow = loop.l1[:, None] * (theta_ddot[..., None] * n - rate[..., None] ** 2 * u)
@@ -156,8 +156,8 @@ def rate_per_speed(loop: Loop, xy: Array, mode: Array) -> Any:
 )
 def load_inertia(loop: Loop, xy: Array, mode: Array) -> Any:
     """Inertia that each crank's motor carries, massless rods."""
-    felt = np.diagonal(tool_inertia(loop, xy, mode), axis1=-2, axis2=-1)
-    return loop.arm + loop.payload * felt
+    reflected = np.diagonal(tool_inertia(loop, xy, mode), axis1=-2, axis2=-1)
+    return loop.arm + loop.payload * reflected
 
 
 @_servo(

@@ -87,7 +87,7 @@ class Folder:
         self._runs: set[Run] = set()
         covered = np.zeros(blocks, dtype=bool)
         for run in self._found():
-            if run[1] <= blocks and not covered[slice(*run)].any() and self._sound(run, blocks):
+            if run[1] <= blocks and not covered[slice(*run)].any() and self._intact(run, blocks):
                 covered[slice(*run)] = True
                 self._runs.add(run)
 
@@ -116,7 +116,7 @@ class Folder:
             if match:
                 yield int(match[1]), int(match[2])
 
-    def _sound(self, run: Run, blocks: int) -> bool:
+    def _intact(self, run: Run, blocks: int) -> bool:
         """Whether a part can be read and has its rows; one that cannot is worked out again."""
         try:
             lengths = {len(column) for column in self.read(run).values()}

@@ -95,40 +95,47 @@ def spread(
         Exception: what the measure raised, of the first run of which it did.
     """
     waiting = deque(runs)
-    flying: dict[Future[Columns], Run] = {}
-    deaths = 0
+    running: dict[Future[Columns], Run] = {}
+    crashes = 0
     try:
-        while waiting or flying:
+        while waiting or running:
             broken = False
             try:
-                while waiting and len(flying) < pool.in_flight:
-                    flying[pool.executor.submit(run_chunk, *arguments(waiting[0]))] = waiting[0]
+                while waiting and len(running) < pool.in_flight:
+                    running[pool.executor.submit(run_chunk, *arguments(waiting[0]))] = waiting[0]
                     waiting.popleft()
             except BrokenExecutor:
                 broken = True
             # a broken pool ends all its futures at once: collect them before it is renewed
-            for future in wait(flying, None, ALL_COMPLETED if broken else FIRST_COMPLETED).done:
-                run = flying.pop(future)
-                try:
-                    columns = future.result()
-                except BrokenExecutor:
+            for future in wait(running, None, ALL_COMPLETED if broken else FIRST_COMPLETED).done:
+                run = running.pop(future)
+                error = future.exception()
+                if error is None:
+                    crashes = 0
+                    yield run, future.result()
+                elif isinstance(error, BrokenExecutor):
                     broken = True
                     waiting.appendleft(run)
-                except Exception as error:
-                    # whichever worker is faster: the error of the first run that has one
-                    earlier = [f for f in sorted(flying, key=flying.__getitem__) if flying[f] < run]
-                    told = [e for f in earlier if (e := f.exception()) is not None]
-                    raise next((e for e in told if not isinstance(e, BrokenExecutor)), error)
                 else:
-                    deaths = 0
-                    yield run, columns
-            if broken and not flying:
-                deaths += 1
-                pool.renew(deaths, sorted(waiting))
+                    raise _first_error(run, error, running)
+            if broken and not running:
+                crashes += 1
+                pool.renew(crashes, sorted(waiting))
     finally:
-        for future in flying:
+        for future in running:
             future.cancel()
         pool.close()
+
+
+def _first_error(
+    run: Run, error: BaseException, running: dict[Future[Columns], Run]
+) -> BaseException:
+    """The error of the first run that has one, whichever worker is faster."""
+    earlier = [
+        future for future in sorted(running, key=running.__getitem__) if running[future] < run
+    ]
+    errors = [future.exception() for future in earlier]
+    return next((e for e in errors if e and not isinstance(e, BrokenExecutor)), error)
 
 
 class Pool:
@@ -155,7 +162,7 @@ class Pool:
         # two for each worker: one at work, one ready
         self.in_flight = 2 * known if isinstance(known, int) else _IN_FLIGHT
 
-    def renew(self, deaths: int, runs: list[Run]) -> None:
+    def renew(self, crashes: int, runs: list[Run]) -> None:
         """Replaces a pool of ours whose worker died.
 
         Raises:
@@ -167,9 +174,9 @@ class Pool:
                 f"sweep: a worker of the executor died (at work: blocks {where}); give a fresh "
                 "executor and the same folder= to go on from what is finished"
             )
-        if deaths >= _TRIES:
+        if crashes >= _TRIES:
             raise SweepError(
-                f"sweep: workers died {deaths} times in a row (next: blocks {where}). In a "
+                f"sweep: workers died {crashes} times in a row (next: blocks {where}). In a "
                 "script, call sweep under `if __name__ == '__main__':`; to see the measure fail, "
                 "use workers=1"
             )

@@ -301,10 +301,12 @@ def _join_odd(pending: list[Poly], halves: dict[int, int]) -> list[Poly]:
     while odd:
         part = odd.pop()
         shape = [_degree(part, place) % 2 for place in halves.values()]
-        mate = next((p for p in odd if [_degree(p, k) % 2 for k in halves.values()] == shape), None)
-        if mate is not None:
-            odd.remove(mate)
-            part = part * mate
+        other = next(
+            (p for p in odd if [_degree(p, k) % 2 for k in halves.values()] == shape), None
+        )
+        if other is not None:
+            odd.remove(other)
+            part = part * other
         out.append(part)
     return out
 

@@ -54,7 +54,8 @@ def terms(
             exponents = tuple((powers[where[i][0]], powers[where[i][1]]) for i in group)
             if any(c or s for c, s in exponents):
                 waves = [
-                    (_wave(trig, group, k, odd), f) for (k, odd), f in _harmonics(exponents).items()
+                    (_harmonic(trig, group, k, odd), f)
+                    for (k, odd), f in _harmonics(exponents).items()
                 ]
                 product = {p * w: x * f for p, x in product.items() for w, f in waves}
         for expression, x in product.items():
@@ -77,7 +78,7 @@ def _atoms(trig: TrigRing) -> tuple[sympy.Expr, ...]:
     return tuple(atoms)
 
 
-def _wave(trig: TrigRing, group: tuple[int, ...], k: tuple[int, ...], odd: bool) -> sympy.Expr:
+def _harmonic(trig: TrigRing, group: tuple[int, ...], k: tuple[int, ...], odd: bool) -> sympy.Expr:
     angle = sympy.Add(*(m * trig.q[i] for m, i in zip(k, group, strict=True)))
     return sympy.sin(angle) if odd else sympy.cos(angle)
 

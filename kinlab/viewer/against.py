@@ -57,7 +57,7 @@ def against_scene(
     if other is not None:
         _draw_over(scene, other, _("the repaired table") if other.table is found.repaired else "")
     for part in _wrong(found):
-        _light(scene, robot, table, part)
+        _highlight(scene, robot, table, part)
     first = _("{verdict} (against {reference}): {sentence}").format(
         verdict=_(found.verdict), reference=found.reference, sentence=found.sentence
     )
@@ -119,7 +119,7 @@ def _n(found: TableDiagnosis) -> int:
     return found.mine.n
 
 
-def _light(scene: Scene, robot: Robot, table: DHTable, part: int | str) -> None:
+def _highlight(scene: Scene, robot: Robot, table: DHTable, part: int | str) -> None:
     """A red rod from frame to frame over the segment of a row, the base or the tool."""
     frames = [np.asarray(table.base), *table.frames(np.zeros(table.n))]
     size = reach(robot)

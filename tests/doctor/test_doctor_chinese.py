@@ -192,7 +192,7 @@ LEFT_ENGLISH = {
     "handout.py": ("student id",),
     "judge.py": ("the sheet's",),
     "submission.py": ("student id", "left side"),
-    "child.py": ("processor time", "files written", "open files", "core dumps"),
+    "child.py": ("processor time", "files read", "files written", "open files", "core dumps"),
     "bodies.py": ("other end",),
     "cells.py": ("too many", "left out"),
     "readings.py": (

@@ -39,6 +39,8 @@ def sheet(**changes):
         ({"questions": [{"id": "q1", "quantity": "fivebar_rods"}]}, "no quantity of a serial arm"),
         ({"variation": {"names": ["l9"]}}, r"\[variation\]: names: planar2r has no 'l9'"), ({"variation": {"spread": 2}}, "spread is 2"),
         ({"title": 3}, "title is int; write text"),
+        ({"questions": [{"id": "q1", "entry": "tau9"}]}, r"\(q1\): planar2r of 2 joints has no tau9"),
+        ({"questions": [{"id": "q1", "quantity": "mass_matrix[0,5]"}]}, r"has no mass_matrix\[0,5\]"),
     ],
 )  # fmt: skip
 def test_errors_at_the_door(changes, message):
@@ -46,12 +48,25 @@ def test_errors_at_the_door(changes, message):
         sheet(**changes)
 
 
-def test_a_bad_model_answer_is_found_before_anything_is_marked():
-    asked = {"id": "q1", "answer": "l1*"}
-    with pytest.raises(SheetError, match="s.toml: q1: answer"):
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ("l1*", "s.toml: q1: answer"), ("m1*g + m7*l1", "answer: planar2r has no 'm7'; did you mean 'm"),
+        ("l1*cos(q3)", "has no 'q3'"), ("l1*c23", "has no 'q3'"),
+    ],
+)  # fmt: skip
+def test_a_bad_model_answer_is_found_before_anything_is_marked(answer, message):
+    asked = {"id": "q1", "answer": answer}
+    with pytest.raises(SheetError, match=message):
         kl.mark(
             sheet_of({"robot": "planar2r", "questions": [asked]}, "s.toml"), {"ada": {"q1": "1"}}
         )
+
+
+def test_a_model_answer_may_have_names_of_its_own():
+    asked = {"id": "q1", "answer": "k*x1 + l1*cos(q1)"}
+    marks = kl.mark({"robot": "planar2r", "questions": [asked]}, {"ada": {"q1": "l1*c1 + x1*k"}})
+    assert marks["ada"]["q1"].right
 
 
 def test_a_file_that_is_no_sheet(tmp_path):

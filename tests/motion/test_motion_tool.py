@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation, Slerp
 import kinlab as kl
 from kinlab.drives.laws import quintic
 from kinlab.errors import KinlabError, LimitError, OptionError, SingularError, UnreachableError
-from kinlab.motion.ways import TimedWay, read_legs
+from kinlab.motion.paths import TimedPath, read_legs
 
 STARTS = {
     "puma560": [0.3, 0.5, -1, 0.3, 0.8, 0.2],
@@ -106,7 +106,7 @@ def test_twists_are_the_derivatives_of_the_poses(overlap):
     via = 0.5 * (poses[1][:3, 3] + poses[2][:3, 3]) + [0.01, 0.02, 0.03]
     start, legs = read_legs("ur5", [poses[0], poses[1], kl.motion.Arc(via, poses[2])])
     law = quintic(1.875, 1e9)  # one second
-    way = TimedWay(start, legs, (law, law), np.array([0.0, 1.0 - overlap]))
+    way = TimedPath(start, legs, (law, law), np.array([0.0, 1.0 - overlap]))
     h, t = 1e-5, np.linspace(0.01, way.duration - 0.01, 57)
     t = t[np.abs(t[:, None] - way.knots).min(axis=1) > h]
     (before, tb, _), (here, twist, change), (after, ta, _) = (way.at(x) for x in (t - h, t, t + h))

@@ -124,29 +124,29 @@ def _descend_together(choice: LengthChoice, x: Array, power: float) -> tuple[Arr
     """BFGS within the limits on every row of x (N, k); returns x and the values (N,)."""
     lower, upper = _box(choice.space, x.shape[1])
     x = np.clip(x, lower, upper)
-    value, slope = _surrogate(x, choice, power)
+    value, derivative = _surrogate(x, choice, power)
     inverse = np.broadcast_to(np.eye(x.shape[1]), (len(x), *[x.shape[1]] * 2)).copy()
     size = np.full(len(x), 0.3)
     for _ in range(_ROUNDS):
         pulse()
-        held = ((x <= lower) & (slope > 0.0)) | ((x >= upper) & (slope < 0.0))
-        free = np.where(held, 0.0, slope)
+        held = ((x <= lower) & (derivative > 0.0)) | ((x >= upper) & (derivative < 0.0))
+        free = np.where(held, 0.0, derivative)
         step = -np.einsum("nij,nj->ni", inverse, free)
         step = np.where(held, 0.0, step)
-        uphill = np.einsum("ni,ni->n", step, free) >= 0.0
-        inverse[uphill] = np.eye(x.shape[1])
-        step = np.where(uphill[:, np.newaxis], -free, step)
+        ascending = np.einsum("ni,ni->n", step, free) >= 0.0
+        inverse[ascending] = np.eye(x.shape[1])
+        step = np.where(ascending[:, np.newaxis], -free, step)
         largest = np.abs(step).max(axis=1)
         step *= np.minimum(1.0, size / np.maximum(largest, 1e-300))[:, np.newaxis]
         trial = np.clip(x + step, lower, upper)
-        new, new_slope = _surrogate(trial, choice, power)
+        new, new_derivative = _surrogate(trial, choice, power)
         better = new < value
-        moved, turned = trial - x, new_slope - slope
+        moved, turned = trial - x, new_derivative - derivative
         inverse = _bfgs(inverse, moved, turned, better)
         size = np.where(better, np.minimum(0.5, 2.0 * size), 0.25 * np.minimum(size, largest))
         x = np.where(better[:, np.newaxis], trial, x)
         value = np.where(better, new, value)
-        slope = np.where(better[:, np.newaxis], new_slope, slope)
+        derivative = np.where(better[:, np.newaxis], new_derivative, derivative)
     return x, value
 
 
@@ -167,8 +167,8 @@ def _follow(choice: LengthChoice, x: Array) -> tuple[Array, float]:
     bounds = list(zip(*_box(choice.space, len(x)), strict=True))
 
     def cost(y: Array, power: float) -> tuple[float, Array]:
-        value, slope = _surrogate(y[np.newaxis], choice, power)
-        return float(value[0]), slope[0]
+        value, derivative = _surrogate(y[np.newaxis], choice, power)
+        return float(value[0]), derivative[0]
 
     for power in _POWERS:
         answer = minimize(
@@ -197,12 +197,12 @@ def _surrogate(x: Array, choice: LengthChoice, power: float) -> tuple[Array, Arr
     log = np.log(sigma)
     # d ln sigma_i / d x_k
     inner = np.einsum("nmi,nkmj->nkij", left, change)
-    slope = np.einsum("nkij,nij->nki", inner, right) / sigma[:, np.newaxis]
+    derivative = np.einsum("nkij,nij->nki", inner, right) / sigma[:, np.newaxis]
     high, low = 2.0 * power * (log - log[:, :1]), -2.0 * power * (log - log[:, -1:])
     top, bottom = np.exp(high), np.exp(low)
     sums = np.log(top.sum(axis=1)) + np.log(bottom.sum(axis=1))
     value = sums / (2.0 * power) + log[:, 0] - log[:, -1]
     weight = top / top.sum(axis=1, keepdims=True) - bottom / bottom.sum(axis=1, keepdims=True)
-    gradient = np.einsum("nki,ni->nk", slope, weight)
+    gradient = np.einsum("nki,ni->nk", derivative, weight)
     # a singular start stays where it is, and is never best
     return np.where(flat, 60.0, value), np.where(flat[:, np.newaxis], 0.0, gradient)

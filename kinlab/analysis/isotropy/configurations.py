@@ -241,12 +241,12 @@ def isotropic_families(
     space, robot = system.space, system.space.robot
     lower, upper = search_box(robot)
     turns = revolute(robot)
-    parked = np.clip(np.zeros(robot.n), lower, upper)
+    at_zero = np.clip(np.zeros(robot.n), lower, upper)
     seen: list[tuple[tuple[int, ...], int, Array, float]] = []
     for state, size in zip(q, lengths, strict=True):
         free = _free_joints(system, state, float(size))
         place = state.copy()
-        place[list(free)] = parked[list(free)]
+        place[list(free)] = at_zero[list(free)]
         alike = [(freedom, other) for group, freedom, other, _ in seen if group == free]
         apart = [
             np.where(turns, 2.0 * np.abs(np.sin(0.5 * (place - other))), np.abs(place - other))
@@ -309,8 +309,8 @@ def _dimension(system: IsotropySystem, q: Array, length: float) -> int:
 
 def _neighbours(system: IsotropySystem, x: Array) -> tuple[Array, int]:
     """Solutions around x (1, k), (N, k), and how many directions they span."""
-    _, slope = system(x)
-    _, values, right = np.linalg.svd(slope[0])
+    _, derivative = system(x)
+    _, values, right = np.linalg.svd(derivative[0])
     still = right[int(np.sum(values > 1e-5 * values[0])) :]
     if not len(still):
         return x[:0], 0

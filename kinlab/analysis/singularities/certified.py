@@ -255,7 +255,7 @@ def _by_curvature(
     wanted = np.einsum("nkd,nd->nk", over.gradient, apart) + over.value
     inverse = _truncated_inverse(over.gradient, codimension)
     multiplier = 2.0 * np.einsum("ndk,ndl,nl->nk", inverse, inverse, wanted)
-    slope = np.einsum("nk,nkd->nd", multiplier, over.gradient) - 2.0 * apart
+    derivative = np.einsum("nk,nkd->nd", multiplier, over.gradient) - 2.0 * apart
     curve = 2.0 * np.eye(d) + np.einsum("nk,nkde->nde", multiplier, over.hessian)
     constant = (
         np.einsum("nd,nd->n", apart, apart)
@@ -266,12 +266,12 @@ def _by_curvature(
     convex = least > 1e-3
     safe = np.where(convex[:, np.newaxis, np.newaxis], curve, np.eye(d))
     free = -0.5 * np.einsum(
-        "nd,nd->n", slope, np.linalg.solve(safe, slope[..., np.newaxis])[..., 0]
+        "nd,nd->n", derivative, np.linalg.solve(safe, derivative[..., np.newaxis])[..., 0]
     )
     # joint by joint, with the least curvature for all: better where the limits hold the point
     mu = np.where(convex, least, 1.0)[:, np.newaxis]
-    x = np.clip(-slope / mu, low, high)
-    boxed = np.sum(slope * x + 0.5 * mu * x**2, axis=1)
+    x = np.clip(-derivative / mu, low, high)
+    boxed = np.sum(derivative * x + 0.5 * mu * x**2, axis=1)
     value = constant + np.maximum(free, boxed)
     value -= 1e-13 * (
         np.abs(constant) + np.einsum("nk,nk->n", np.abs(multiplier), np.abs(over.value))

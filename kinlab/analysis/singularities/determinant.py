@@ -171,11 +171,11 @@ def _meaning(
 ) -> SingularFactor:
     robot = space.robot
     function = symbolic.to_function(arm, expression)
-    slope = symbolic.to_function(arm, sympy.Matrix([[sympy.diff(expression, q) for q in arm.q]]))
+    gradient = symbolic.to_function(arm, sympy.Matrix([[sympy.diff(expression, q) for q in arm.q]]))
     size = _size(robot, function)
     lower, upper = search_box(robot)
     starts = rng.uniform(lower, upper, (_STARTS, robot.n))
-    found, miss = solve(_as_system(function, slope, size), starts)
+    found, miss = solve(_as_system(function, gradient, size), starts)
     found = wrap(robot, found[miss < TOLERANCES.factor_vanishes])
     inside = between(found, lower, upper).all(axis=1)
     # zeros outside the limits show the meaning where there are none inside
@@ -199,12 +199,12 @@ def _meaning(
 
 
 def _as_system(
-    function: Callable[[ArrayLike], Array], slope: Callable[[ArrayLike], Array], size: float
+    function: Callable[[ArrayLike], Array], gradient: Callable[[ArrayLike], Array], size: float
 ) -> System:
     def system(x: Array) -> tuple[Array, Array]:
         values = np.array([[float(function(q)) / size] for q in x])
-        slopes = np.array([slope(q).reshape(1, -1) / size for q in x])
-        return values, slopes
+        gradients = np.array([gradient(q).reshape(1, -1) / size for q in x])
+        return values, gradients
 
     return system
 

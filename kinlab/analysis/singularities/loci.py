@@ -315,8 +315,8 @@ def _follow(
 
 def _tangent(system: sets.SingularSystem, x: Array, along: Array | None) -> Array:
     """Unit tangent in (q, u), with a q part of unit length where it has one."""
-    _, slope = system(x[np.newaxis])
-    _, _, right = np.linalg.svd(slope[0])
+    _, derivative = system(x[np.newaxis])
+    _, _, right = np.linalg.svd(derivative[0])
     tangent: Array = right[-1]
     free = len(system.moving)
     if along is None:

@@ -226,13 +226,13 @@ def slope_bound(space: TaskSpace) -> float:
     reach = np.array([sum(steps[i + 1 :]) + float(travel[i:].sum()) for i in range(robot.n)])
     column = np.where(turns, (reach / space.scale) ** 2 + 1.0, 1.0)
     # joint j turns every column, those before it by at most their length as seen from j
-    slope = [
+    squares = [
         float(column[j:].sum() + j * (reach[j] / space.scale) ** 2)
         if turns[j]
         else float(j) / space.scale**2
         for j in range(robot.n)
     ]
-    return float(np.sqrt(sum(slope)))
+    return float(np.sqrt(sum(squares)))
 
 
 def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120) -> Array:
@@ -247,21 +247,21 @@ def _slide(system: sets.SingularSystem, x: Array, here: Array, steps: int = 120)
         active = np.flatnonzero(size > 1e-9)
         if not len(active):
             break
-        _, slope = system(best[active])
+        _, derivative = system(best[active])
         wanted = np.zeros((len(active), best.shape[1]))
         wanted[:, :n] = here - best[active, :n]
         # tangential part in q: leave out what the constraint forbids, u follows along
-        step = wanted - _normal_part(slope, wanted, n)
+        step = wanted - _normal_part(derivative, wanted, n)
         trial = best[active] + size[active, np.newaxis] * step
         trial[:, :n] = np.clip(trial[:, :n], lower, upper)
         trial, valid = _restore(system, trial)
         before = np.linalg.norm(best[active, :n] - here, axis=1)
         after = np.linalg.norm(trial[:, :n] - here, axis=1)
-        won = valid & (after < before)
-        best[active[won]] = trial[won]
-        settled = won & (before - after < 1e-14 * np.maximum(before, 1.0))
-        size[active[won]] = np.minimum(1.0, 2.0 * size[active[won]])
-        size[active[~won]] *= 0.25
+        accepted = valid & (after < before)
+        best[active[accepted]] = trial[accepted]
+        settled = accepted & (before - after < 1e-14 * np.maximum(before, 1.0))
+        size[active[accepted]] = np.minimum(1.0, 2.0 * size[active[accepted]])
+        size[active[~accepted]] *= 0.25
         size[active[settled]] = 0.0
     return best
 
@@ -276,16 +276,16 @@ def _turned(robot: Robot, q: Array, here: Array) -> Array:
     return chosen
 
 
-def _normal_part(slope: Array, wanted: Array, n: int) -> Array:
+def _normal_part(derivative: Array, wanted: Array, n: int) -> Array:
     """What to take from ``wanted`` so that the constraint keeps its value; u moves at no cost.
 
     Minimises |dq - wanted_q|^2 + (1e-3)^2 |du|^2 with slope (dq, du) = 0.
     """
-    weight = np.ones(slope.shape[2])
+    weight = np.ones(derivative.shape[2])
     weight[n:] = 1e3  # per unit of the scaled unknown du / weight
-    scaled = slope * weight
+    scaled = derivative * weight
     inverse = np.linalg.pinv(scaled, rcond=1e-9)
-    value = np.einsum("nij,nj->ni", slope, wanted)
+    value = np.einsum("nij,nj->ni", derivative, wanted)
     part: Array = weight * np.einsum("nij,nj->ni", inverse, value)
     return part
 

@@ -259,10 +259,10 @@ def pinned_pairs(space: TaskSpace) -> Iterator[tuple[tuple[int, int], Array]]:
         states[:, :, list(pair)] = grid
         ratio = _ratio(space, states.reshape(-1, robot.n)).reshape(2, _GRID, _GRID).max(axis=0)
         full = [turns[i] and upper[i] - lower[i] >= 2.0 * np.pi - 1e-9 for i in pair]
-        starts = grid[_dips(ratio, full[0], full[1]).ravel()]
+        starts = grid[_local_minima(ratio, full[0], full[1]).ravel()]
         if not len(starts):
             continue
-        system = _Twice(space, pair, others)
+        system = _TwoLost(space, pair, others)
         x, norm = solve(system, system.start(starts), iterations=40)
         values = wrap(robot, _placed(robot.n, pair, x[:, :2]))[:, list(pair)]
         inside = between(values, lower[list(pair)], upper[list(pair)], TOLERANCES.limit_digits)
@@ -273,7 +273,7 @@ def pinned_pairs(space: TaskSpace) -> Iterator[tuple[tuple[int, int], Array]]:
                 yield pair, state
 
 
-class _Twice:
+class _TwoLost:
     """Singular at two states of the other joints with the same values of a pair."""
 
     def __init__(self, space: TaskSpace, pair: tuple[int, int], others: Array) -> None:
@@ -307,7 +307,7 @@ def _placed(n: int, pair: tuple[int, int], values: Array) -> Array:
     return states
 
 
-def _dips(values: Array, round_one: bool, round_two: bool) -> Array:
+def _local_minima(values: Array, round_one: bool, round_two: bool) -> Array:
     """Where a grid is lowest among its eight neighbours, in the lower half; (a, b) of booleans."""
     padded = np.pad(values, 1, constant_values=np.inf)
     if round_one:

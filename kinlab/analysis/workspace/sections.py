@@ -245,8 +245,8 @@ class _SectionSystem:
         rows, outward, rho, full = self._rows(self.states(x))
         change = jacobian_derivative(full)[:, moving][:, :, :3][..., free]  # (N, j, 3, i)
         round_ = np.cross(self.axis, outward)
-        turn = np.einsum("nc,nci->ni", round_, full[:, :3])  # speed around the axis
-        swing = turn[:, moving][:, :, np.newaxis] * turn[:, free][:, np.newaxis, :]
+        tangential = np.einsum("nc,nci->ni", round_, full[:, :3])  # speed around the axis
+        swing = tangential[:, moving][:, :, np.newaxis] * tangential[:, free][:, np.newaxis, :]
         bent = np.stack(
             [
                 np.einsum("nc,njci->nji", outward, change) + swing / rho[:, np.newaxis, np.newaxis],
@@ -258,11 +258,11 @@ class _SectionSystem:
         residual = np.empty((len(x), k + 1))
         residual[:, :k] = np.einsum("nr,nri->ni", u, chosen) / scale
         residual[:, k] = 0.5 * (np.einsum("nr,nr->n", u, u) - 1.0)
-        slope = np.zeros((len(x), k + 1, unknown + 2))
-        slope[:, :k, :unknown] = np.einsum("nr,nrji->nij", u, bent) / scale
-        slope[:, :k, unknown:] = chosen.swapaxes(1, 2) / scale
-        slope[:, k, unknown:] = u
-        return residual, slope
+        derivative = np.zeros((len(x), k + 1, unknown + 2))
+        derivative[:, :k, :unknown] = np.einsum("nr,nrji->nij", u, bent) / scale
+        derivative[:, :k, unknown:] = chosen.swapaxes(1, 2) / scale
+        derivative[:, k, unknown:] = u
+        return residual, derivative
 
 
 def _curves(system: _SectionSystem, rng: np.random.Generator, step: float) -> list[Array]:

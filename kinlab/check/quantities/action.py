@@ -74,12 +74,14 @@ def variation_of_true_motion(robot: Robot, q: Any, v: Any, dq: Any) -> Array:
 
 def _extrapolated(robot: Robot, q: Array, v: Array, duration: float) -> tuple[Array, Array]:
     """Free motion: Runge-Kutta at one and at half the step, the leading error taken out."""
-    coarse, fine = (np.stack(_fall(robot, q, v, duration, k * _STEPS)) for k in (1, 2))
+    coarse, fine = (np.stack(_move_freely(robot, q, v, duration, k * _STEPS)) for k in (1, 2))
     better = fine + (fine - coarse) / 15.0
     return better[0], better[1]
 
 
-def _fall(robot: Robot, q: Array, v: Array, duration: float, steps: int) -> tuple[Array, Array]:
+def _move_freely(
+    robot: Robot, q: Array, v: Array, duration: float, steps: int
+) -> tuple[Array, Array]:
     """Free motion by Runge-Kutta of order 4."""
     h = duration / steps
     still = np.zeros(robot.n)

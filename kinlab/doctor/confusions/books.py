@@ -1,11 +1,12 @@
 """The textbooks' derivations as text, each written once, for any serial arm, and for the five-bar.
 
-Newton-Euler as Craig has it (6.45 to 6.53), as Siciliano has it (7.107 to 7.114), and in base
-axes; the Jacobian's columns (Siciliano 3.30, Spong 4.57, Craig 5.9); the mass matrix by the links'
-Jacobians (Spong 7.50; note 002, 002.M), Christoffel's C and Lagrange's equation; the product of
-link transforms; the five-bar's closed chain (note 003); Newton's step and gradient descent (note
-000). The comment above a line says what it is; a line without one is plumbing, which nobody gets
-wrong. Indices run from 1; ``T[0]`` is the base.
+Newton-Euler as Craig has it (6.45 to 6.53), as Siciliano (7.107 to 7.114) and Spong (7.146 to
+7.151) have it, and in base axes; forces passed on at rest (Craig 5.80 to 5.82); the Jacobian's
+columns (Siciliano 3.30, Spong 4.57, Craig 5.9); the mass matrix by the links' Jacobians (Spong
+7.50; note 002, 002.M), Christoffel's C and Lagrange's equation; the product of link transforms; the
+five-bar's closed chain (note 003); Newton's step and gradient descent (note 000). The comment above
+a line says what it is; a line without one is plumbing, which nobody gets wrong. Indices run from 1;
+``T[0]`` is the base.
 """
 
 from __future__ import annotations
@@ -106,7 +107,19 @@ for i in inward:
               + Ia[i]*qdd[i])
 """
 
+SPONG = SICILIANO.replace(
+    """    nn[i] = (N[i] + R[i+1] @ nn[i+1] + cross(P[i], R[i+1] @ f[i+1])
+             + cross(P[i] + c[i], F[i]))
+""",
+    """    nn[i] = (N[i] + R[i+1] @ nn[i+1] - cross(f[i], P[i] + c[i])
+             + cross(R[i+1] @ f[i+1], c[i]))
+""",
+)
+"""The same with moments about the centre of mass (Spong 7.149)."""
+
 COLUMNS = """
+# the tool's point
+p = last + tool
 for i in outward:
     # the Jacobian's column
     J[i] = twist(cross(z[i], p - o[i]), z[i]) if hinge[i] else twist(z[i], zero)
@@ -119,10 +132,37 @@ STATICS = """
 tau = Jb.T @ wrench
 """
 
+WRENCHES = """
+for i in outward:
+    # the link's own force and moment
+    asked[i] = twist(F[i], N[i])
+"""
+"""What is asked for of the recursion besides the torques."""
+
+RATE = """
+D = slope(Jb)
+# the Jacobian's rate
+E = D @ v
+"""
+
+PASSED_ON = """
+f[n+1] = force
+nn[n+1] = moment
+P[n+1] = end
+R[n+1] = turn
+for i in inward:
+    # the force f of the link
+    f[i] = R[i+1] @ f[i+1]
+    # the moment n of the link
+    nn[i] = R[i+1] @ nn[i+1] + cross(P[i+1], f[i])
+    # the joint torque
+    tau[i] = nn[i] @ z[i] if hinge[i] else f[i] @ z[i]
+"""
+
 TWISTED = {
     "base": "",
-    "tool": "Jb = both.T @ Jb\n",
-    "spatial": "Jb = carried @ Jb\n",
+    "tool": "# the Jacobian in tool axes\nJb = both.T @ Jb\n",
+    "spatial": "# the Jacobian with the base's origin as its point\nJb = carried @ Jb\n",
 }
 """What follows the Jacobian in base axes at the tool."""
 
@@ -218,7 +258,7 @@ tau = M @ a + C @ v
         "tau",
         CHRISTOFFEL
         + """
-q = q
+q = q  # a name of this line, so that it may stand for G, which looks like it in print
 # the equation of motion
 tau = M @ a + C @ v + G + Jt.T @ wrench
 """,
@@ -229,6 +269,14 @@ tau = M @ a + C @ v + G + Jt.T @ wrench
         + """
 # the equation of motion
 a = solve(M, tau - C @ v - G)
+""",
+    ),
+    "mass_matrix_derivatives": (
+        "E",
+        """
+D = slope(M)
+# dM_ij/dq_k
+E = 1*D
 """,
     ),
     "mass_matrix_dot": (
@@ -356,6 +404,16 @@ def newton_euler(standard: bool, in_base: bool) -> str:
     return text.replace("for i in outward:\n", _IN_BASE, 1)
 
 
+def passed_on(standard: bool, in_base: bool) -> str:
+    """Forces at rest from link to link, in the links' axes or in the base's."""
+    text = PASSED_ON
+    if standard:
+        # P[i] leads to frame i, and the moment is that about the frame before
+        text = text.replace("P[i+1]", "P[i]")
+        text = text.replace("@ z[i]", "@ (R[i].T @ z[i])")
+    return text.replace("R[i].T @ ", "").replace("R[i+1] @ ", "") if in_base else text
+
+
 _IN_BASE = """for i in outward:
     # the centre of mass in base axes
     cb[i] = R_[i] @ c[i]
@@ -473,11 +531,16 @@ LINES = (
     N_("the acceleration of the centre of mass"),
     N_("the link's own force F"),
     N_("the link's own moment N"),
+    N_("the link's own force and moment"),
     N_("the force f of the link"),
     N_("the moment n of the link"),
     N_("the joint torque"),
     N_("the Jacobian's column"),
     N_("the Jacobian"),
+    N_("the tool's point"),
+    N_("the Jacobian in tool axes"),
+    N_("the Jacobian with the base's origin as its point"),
+    N_("the Jacobian's rate"),
     N_("the joint torques of a wrench"),
     N_("the centre of mass"),
     N_("the linear part of the link's Jacobian"),
@@ -493,6 +556,7 @@ LINES = (
     N_("the Lagrangian L = T - V"),
     N_("the velocity torques"),
     N_("the equation of motion"),
+    N_("dM_ij/dq_k"),
     N_("Mdot"),
     N_("Mdot v"),
     N_("Mdot - 2C"),

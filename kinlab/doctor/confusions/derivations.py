@@ -12,6 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
+from kinlab.doctor.confusions.parts import Apart, apart, joined, spoils
 from kinlab.doctor.confusions.roads import Road, Ways, roads
 from kinlab.doctor.confusions.steps import steps
 from kinlab.doctor.confusions.walk import Step
@@ -20,8 +21,10 @@ from kinlab.tolerances import TOLERANCES
 
 _LIKELY = 1.2
 """Cost up to which a step is tried together with others."""
-_WAYS = 20_000
+_WAYS = 12_000
 """Combinations of steps that are tried, the likeliest first."""
+_FEW = 80
+"""Steps up to which all are joined, also those that change what is right."""
 _CHUNK = 5_000
 _ADDED = 3
 """States at which effects are added up."""
@@ -47,6 +50,7 @@ class Found:
 def taken_otherwise(case: Case) -> list[Found]:
     """What explains the hand formula by one step; nothing where none does."""
     ready = [(road, shapes) for road in roads(case) if (shapes := _sound(case, road)) is not None]
+    near: list[Found] = []
     for singly in (False, True):
         found: list[Found] = []
         for road, shapes in ready:
@@ -54,44 +58,94 @@ def taken_otherwise(case: Case) -> list[Found]:
                 continue
             tried = steps(road.of, shapes, road.n, singly)
             found += _tried(case, road, [(step,) for step in tried])
-        if found:
+        near += found
+        if any(one.error <= TOLERANCES.formula_agrees for one in found):
             return found
-    return []
+    return near
+
+
+def one_for_each_kind(case: Case) -> list[Found]:
+    """What explains the hand formula by one step for each kind of term that is wrong."""
+    split = apart(case)
+    if split is None or np.sum(~split.right) < 2:
+        return []
+    found: list[Found] = []
+    for road in roads(case):
+        shapes = _sound(case, road)
+        if shapes is not None:
+            singles = steps(road.of, shapes, road.n, False)
+            values = _walked(road, [(), *((step,) for step in singles)], split.stacks, case)
+            ways = [way for way in joined(split, values, singles) if _compatible(way)]
+            found += _tried(case, road, ways)
+    return found
 
 
 def several_taken_otherwise(case: Case) -> list[Found]:
-    """What explains the hand formula by two steps, by three, or by four whose effects add up."""
+    """What explains the hand formula by two steps, by three, or by four whose effects add up.
+
+    Steps that leave what is right as it is are joined first; then, where there are few, all of
+    them, since two may make up for each other.
+    """
     ready = []
+    split = apart(case)
     for road in roads(case):
         shapes = _sound(case, road) if road.pairs else None
         if shapes is not None:
             every = sorted(steps(road.of, shapes, road.n, False), key=lambda s: s.cost)
-            likely = _apart(case, road, [s for s in every if s.cost <= _LIKELY])
-            while comb(len(likely), 2) > _WAYS:
-                likely.pop()
-            pairs: Ways = [way for way in combinations(likely, 2) if _compatible(way)]
-            ready.append((road, [(step,) for step in likely], pairs))
-    found = [f for road, _, pairs in ready for f in _tried(case, road, pairs)]
+            ready.append(
+                (road, *_apart(case, road, [s for s in every if s.cost <= _LIKELY], split))
+            )
+    found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 2)]
+    if not found and not _planar(case):
+        # in the plane too many triples come to the same
+        found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 3)]
     if not found:
-        for road, one, _ in ready:
-            few = [way[0] for way in one]
-            while comb(len(few), 3) > _WAYS:
-                few.pop()
-            triples: Ways = [way for way in combinations(few, 3) if _compatible(way)]
-            found += _tried(case, road, triples)
-    if not found:
-        found = [f for road, one, two in ready for f in _adding_up(case, road, [*one, *two])]
+        for road, kept, every in ready:
+            if len(kept) < len(every) <= _FEW:
+                found += _joined(case, road, every, 2)
+                if not found and not _planar(case):
+                    found += _joined(case, road, every, 3)
+    if not found and not _planar(case):
+        for road, kept, _ in ready:
+            one: Ways = [(step,) for step in kept]
+            pairs: Ways = [*combinations(_most(kept, 2), 2)]
+            found += _adding_up(case, road, [*one, *filter(_compatible, pairs)])
     return found
+
+
+def _joined(case: Case, road: Road, tried: list[Step], count: int) -> Iterator[Found]:
+    """Ways of so many steps together, of as many of the likeliest as there is time for."""
+    ways: Ways = [*combinations(_most(tried, count), count)]
+    yield from _tried(case, road, [way for way in ways if _compatible(way)])
+
+
+def _most(tried: list[Step], count: int) -> list[Step]:
+    kept = list(tried)
+    while comb(len(kept), count) > _WAYS:
+        kept.pop()
+    return kept
+
+
+def _planar(case: Case) -> bool:
+    """Whether all axes of an arm are parallel."""
+    table = getattr(case.robot, "table", None)
+    return table is not None and all(
+        abs(np.sin(link.alpha)) <= TOLERANCES.parallel_axes for link in table.links
+    )
+
+
+def _walked(road: Road, ways: Ways, stacks: dict[str, Array], case: Case) -> Array:
+    """The ways' answers, (B, N, ...), of the entries that the case is about."""
+    return road.walked(ways, stacks)[0][(slice(None), slice(None), *case.index)]
 
 
 def _adding_up(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
     """Two ways whose effects add up to what is off: three steps, or four."""
     few = case.few(_ADDED)
-    blocks = [road.walked([()], few.arguments)[0]]
+    blocks = [_walked(road, [()], few.arguments, case)]
     for start in range(0, len(ways), _CHUNK):
-        blocks.append(road.walked(ways[start : start + _CHUNK], few.arguments)[0])
-    rows = np.concatenate(blocks)[(slice(None), slice(None), *case.index)]
-    flat = rows.reshape(len(rows), -1)
+        blocks.append(_walked(road, ways[start : start + _CHUNK], few.arguments, case))
+    flat = np.concatenate([block.reshape(len(block), -1) for block in blocks])
     good = np.flatnonzero(np.isfinite(flat).all(axis=1))
     effects, goal = flat[good[1:]] - flat[0], few.hand.reshape(-1) - flat[0]
     if not len(effects) or not np.isfinite(goal).all():
@@ -120,21 +174,35 @@ def _sound(case: Case, road: Road) -> dict[int, tuple[int, ...]] | None:
     return walk.axes if error <= TOLERANCES.formula_agrees else None
 
 
-def _apart(case: Case, road: Road, tried: list[Step]) -> list[Step]:
-    """The steps that change the answer, each effect once, the likeliest first."""
+def _apart(
+    case: Case, road: Road, tried: list[Step], split: Apart | None
+) -> tuple[list[Step], list[Step]]:
+    """The steps that change the answer, each effect once, the likeliest first.
+
+    Returns:
+        Those that change no entry and no kind of term that is right; and all.
+    """
     if not tried:
-        return []
-    values, _ = road.walked([(), *((step,) for step in tried)], case.few(1).arguments)
-    chosen = values[(slice(None), slice(None), *case.index)].reshape(len(values), -1)
+        return [], []
+    ways: Ways = [(), *((step,) for step in tried)]
+    few = case.few(1)
+    chosen = _walked(road, ways, few.arguments, case).reshape(len(ways), -1)
     size = float(np.max(np.abs(chosen[0]))) or 1.0
+    slack = TOLERANCES.formula_agrees * size
+    right = np.abs(few.hand.ravel() - chosen[0]) <= slack
+    with np.errstate(invalid="ignore"):
+        spoilt = np.any(right & ~(np.abs(chosen - chosen[0]) <= slack), axis=1)
+    if split is not None and split.right.any():
+        spoilt |= spoils(split, _walked(road, ways, split.stacks, case))
     seen = {tuple(np.round(chosen[0] / size, 9))}
-    kept = []
-    for step, row in zip(tried, chosen[1:], strict=True):
+    kept, every = [], []
+    for step, row, bad in zip(tried, chosen[1:], spoilt[1:], strict=True):
         key = tuple(np.round(row / size, 9))
         if np.isfinite(row).all() and key not in seen:
             seen.add(key)
-            kept.append(step)
-    return kept
+            every.append(step)
+            kept += [] if bad else [step]
+    return kept, every
 
 
 def _tried(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
@@ -145,16 +213,12 @@ def _tried(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
     for start in range(0, len(ways), _CHUNK):
         part = ways[start : start + _CHUNK]
         errors = _errors(road.walked(part, few.arguments)[0], few, size[:1])
-        near += [
-            way
-            for way, error in zip(part, errors, strict=True)
-            if error <= TOLERANCES.formula_agrees
-        ]
+        near += [way for way, error in zip(part, errors, strict=True) if error <= case.slack]
     if not near:
         return
     errors = _errors(road.walked(near, case.arguments)[0], case, size)
     for way, error in zip(near, errors, strict=True):
-        if error <= TOLERANCES.formula_agrees:
+        if error <= case.slack:
             yield Found(way, float(error), sum(s.cost for s in way) + _JOINED * (len(way) - 1))
 
 

@@ -13,6 +13,7 @@ from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
 from kinlab.host.language import N_, _
+from kinlab.model.robot import Robot
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
@@ -66,10 +67,11 @@ def _arguments(case: Case) -> Iterator[Confusion]:
     have = case.arguments
     motion = [name for name in ("q", "v", "a") if name in have]
     if "q" in have:
-        yield _argument("degrees", _("takes q in degrees"), ("q",), np.deg2rad)
+        radians, degrees = _of_hinges(case.robot, np.pi / 180), _of_hinges(case.robot, 180 / np.pi)
+        yield _argument("degrees", _("takes q in degrees"), ("q",), radians)
         if len(motion) > 1:
-            yield _argument("degrees", _("takes q and its rates in degrees"), motion, np.deg2rad)
-        yield _argument("degrees", _("turns q into degrees first"), ("q",), np.rad2deg, 1.2)
+            yield _argument("degrees", _("takes q and its rates in degrees"), motion, radians)
+        yield _argument("degrees", _("turns q into degrees first"), ("q",), degrees, 1.2)
         yield _argument(
             "turning sense", _("counts every joint the other way"), motion, np.negative, 1.2
         )
@@ -308,6 +310,20 @@ def _answer(
     kind: str, sentence: str, apply: Callable[[Array], Array], cost: float = 1.0, place: str = ""
 ) -> Confusion:
     return Confusion(kind, sentence, "answer", apply, cost, place)
+
+
+def _of_hinges(robot: Robot, factor: float) -> Callable[[Array], Array]:
+    """The angles in other units; a slide's way stays in metres."""
+    slides = [
+        link.joint == "prismatic" for link in (robot.table.links if robot.table is not None else ())
+    ]
+    factors = np.where(slides, 1.0, factor) if slides else factor
+
+    def change(x: Array) -> Array:
+        out: Array = x * factors
+        return out
+
+    return change
 
 
 def _backwards(x: Array) -> Array:

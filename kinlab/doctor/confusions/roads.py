@@ -70,6 +70,8 @@ def roads(case: Case) -> Iterator[Road]:
         text = books.COLUMNS + books.TWISTED[frame]
         if name.startswith("statics"):
             yield _road(case, text + books.STATICS, "tau", _of_arm)
+            for in_base in (False, True):
+                yield _passed_on(case, in_base)
         else:
             rows = [0, 1, 5] if name == "planar_jacobian" else None
             yield _road(case, text, "Jb", _of_arm, rows)
@@ -77,19 +79,42 @@ def roads(case: Case) -> Iterator[Road]:
         yield _road(case, f"# the step\nE = {books.ITERATIVE[name]}", "E", _of_step)
     if name == "isotropy_defect":
         yield _road(case, books.ISOTROPY, "E", _of_step)
-    if name in _RECURSIVE:
-        for in_base in (False, True):
-            yield _newton_euler(case, books.newton_euler(standard, in_base), in_base)
+    if name == "jacobian_dot":
+        yield _road(case, books.COLUMNS + books.RATE, "E", _of_arm)
+    ways = [*_recursions(case), *_lagrange(case)]
+    # torques by the recursion first; their parts as people derive them alone
+    yield from ways if name.startswith("inverse") else reversed(ways)
     if name in _OUTWARD and not standard:
         yield _newton_euler(case, _OUTWARD[name], False, "asked")
-    if name in books.LAGRANGE:
-        asked, rest = books.LAGRANGE[name]
-        pairs = "slope" not in rest or robot.n <= _SMALL
+    if name in _WITHIN:
+        asked, rest = _WITHIN[name]
+        yield _newton_euler(case, books.newton_euler(standard, False) + rest, False, asked)
+
+
+def _recursions(case: Case) -> Iterator[Road]:
+    """Newton-Euler in base axes, and in the links'."""
+    if case.quantity.name in _RECURSIVE:
+        standard = _standard(case.robot)
+        for in_base in (False, True):
+            yield _newton_euler(case, books.newton_euler(standard, in_base), in_base)
+        if standard and case.quantity.name == "inverse_dynamics":
+            yield _newton_euler(case, books.SPONG, False)
+
+
+def _lagrange(case: Case) -> Iterator[Road]:
+    """What follows from the mass matrix by the links' Jacobians."""
+    if case.quantity.name in books.LAGRANGE:
+        asked, rest = books.LAGRANGE[case.quantity.name]
+        pairs = "slope" not in rest or case.robot.n <= _SMALL
         yield _road(case, books.MASSES + rest, asked, _of_arm, pairs=pairs)
 
 
 _PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T"}
 _OUTWARD = {"link_velocities": books.VELOCITIES, "link_accelerations": books.ACCELERATIONS}
+_WITHIN = {
+    "com_accelerations": ("dvc", ""),
+    "inertial_wrenches": ("asked", books.WRENCHES),
+}
 _FRAMES = {
     "jacobian": "base",
     "jacobian_tool": "tool",
@@ -148,6 +173,46 @@ def _newton_euler(case: Case, text: str, in_base: bool, said: str = "tau") -> Ro
         if name == "mass_matrix":
             values = np.swapaxes(values.reshape(len(ways), len(q), n, n), 2, 3)
         return values, walk
+
+    return Road(of, walked, robot.n)
+
+
+def _passed_on(case: Case, in_base: bool) -> Road:
+    """Statics from link to link."""
+    robot, standard = case.robot, _standard(case.robot)
+    of = program(books.passed_on(standard, in_base))
+    in_tool = case.quantity.name == "statics_tool"
+
+    def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
+        still = {**x, "v": 0.0 * x["q"], "a": 0.0 * x["q"]}
+
+        def give(q: Array) -> dict[str, Any]:
+            found = _of_recursion(robot, q, still, in_base)
+            frames = _frames(robot, _links(robot, q)[0])
+            last, tool = frames[-1][:, :3, :3], _tool(robot)
+            turn = last @ tool[:3, :3]
+            parts = [x["wrench"][:, :3], x["wrench"][:, 3:]]
+            if in_tool and in_base:
+                parts = [np.einsum("nij,nj->ni", turn, y) for y in parts]
+            elif not in_tool and not in_base:
+                parts = [np.einsum("nji,nj->ni", turn, y) for y in parts]
+            force, moment = parts
+            end = np.broadcast_to(tool[:3, 3], force.shape)
+            if in_base:
+                end = np.einsum("nij,nj->ni", last, end)
+            if standard:
+                arm = end if in_base else end @ tool[:3, :3]
+                moment = moment + np.cross(arm, force)
+            return {
+                **found,
+                "force": force,
+                "moment": moment,
+                "end": end,
+                "turn": tool[None, :3, :3],
+            }
+
+        walk = Walk(of, give, x["q"], ways, robot.n)
+        return walk.values("tau"), walk
 
     return Road(of, walked, robot.n)
 
@@ -294,6 +359,14 @@ def _frames(robot: Robot, found: list[Array]) -> list[Array]:
     return frames
 
 
+def _tool(robot: Robot) -> Array:
+    """The tool in the last frame, (4, 4)."""
+    if robot.table is not None:
+        return np.asarray(robot.table.tool)
+    placed: Array = robot.model.frames[robot.tool].placement.homogeneous
+    return placed
+
+
 def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     """What the Jacobian's columns and the mass matrix ask for, in base axes."""
     n = robot.n
@@ -305,11 +378,7 @@ def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     # the neighbours of the first and of the last joint, as the textbooks' frames have them
     for k, frame in ((0, frames[0]), (n + 1, frames[-1])):
         z[k], o[k] = frame[:, :3, 2], frame[:, :3, 3]
-    pose = frames[-1] @ (
-        robot.model.frames[robot.tool].placement.homogeneous
-        if robot.table is None
-        else np.asarray(robot.table.tool)
-    )
+    pose = frames[-1] @ _tool(robot)
     turn, p = pose[:, :3, :3], pose[:, :3, 3]
     both, carried = np.zeros((len(q), 6, 6), q.dtype), np.zeros((len(q), 6, 6), q.dtype)
     both[:, :3, :3] = both[:, 3:, 3:] = turn
@@ -326,7 +395,8 @@ def _of_arm(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
         "hinge": [not s for s in slide],
         "z": z,
         "o": o,
-        "p": p,
+        "last": frames[-1][:, :3, 3],
+        "tool": p - frames[-1][:, :3, 3],
         "q": q,
         "Jt": jacobian(robot, np.real(q)),
         "both": both,

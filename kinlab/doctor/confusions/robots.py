@@ -17,6 +17,7 @@ from kinlab.host.language import N_, _
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
+from kinlab.model.urdf_write import placements
 
 _DIRECTIONS = {
     "+x": (1, 0, 0),
@@ -145,12 +146,18 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
     """Masses, centres, tensors and rotors: each link alone, and all together."""
     model = robot.model
     if np.any(model.armature):
-        yield _model("rotor inertia", _("leaves all rotor inertias out"), _armature(None))
+        yield _model(
+            "rotor inertia",
+            _("leaves out the rotors' inertia (armature) of all joints"),
+            _armature(None),
+        )
         for i in np.flatnonzero(model.armature).tolist():
             if np.count_nonzero(model.armature) > 1:
                 yield _model(
                     "rotor inertia",
-                    _("leaves the rotor inertia of joint {joint} out").format(joint=i + 1),
+                    _("leaves out the rotor's inertia (armature) of joint {joint}").format(
+                        joint=i + 1
+                    ),
                     _armature(i),
                     cost=1.2,
                     place=f"joint {i + 1}",
@@ -306,6 +313,31 @@ def _body(mass: float, lever: Array, tensor: Array) -> Any:
     body = pin.Inertia.Zero()
     body.mass, body.lever, body.inertia = mass, lever, tensor
     return body
+
+
+Body = tuple[float, Array, Array]
+
+
+def bodies_in_links(table: DHTable) -> list[Body]:
+    """Mass, centre and tensor of every link in its own axes, as its row has them."""
+    return [
+        (float(x.mass), np.array(x.com, dtype=float), np.array(x.inertia, dtype=float))
+        for x in table.links
+    ]
+
+
+def with_body(robot: Robot, link: int, mass: float, com: Array, tensor: Array) -> Robot:
+    """The robot with another body for a link, in the axes of its row; it may be impossible."""
+    assert robot.table is not None
+    tail = placements(robot.table)[link].tail
+    turn = tail[:3, :3]
+    body = _body(mass, turn @ com + tail[:3, 3], turn @ tensor @ turn.T)
+
+    def change(model: Any) -> None:
+        model.inertias[link + 1] = body
+
+    changed: Robot = _model("body", "", change).apply(robot)
+    return changed
 
 
 def _placed(com: Array, tensor: Array) -> Callable[[Any], tuple[float, Array, Array]]:

@@ -2,21 +2,27 @@
 
 A term left out or with the other sign, twice or half; an index that is one off; another quantity of
 the same kind; a matrix transposed, or not, or left out; a cross product or a product of matrices in
-the other order; sine for cosine; another power; a slide treated as a hinge; the inverse for the
-matrix. Each follows from the expression alone: nothing here knows a textbook's mistakes.
+the other order; sine for cosine; another power; parentheses lost; a slide treated as a hinge; the
+inverse for the matrix; two lines exchanged. Each follows from the expression alone: nothing here
+knows a textbook's mistakes.
 """
 
 from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
-from typing import Any
 
-from kinlab.doctor.confusions.entries import Make, entry_steps
+from kinlab.doctor.confusions.operations import (
+    Make,
+    at_call,
+    at_choice,
+    at_entries,
+    at_operator,
+    turned_again,
+)
 from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
 from kinlab.doctor.confusions.words import (
     KNOWN,
-    across,
     halves,
     is_sum,
     meant,
@@ -79,12 +85,12 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
         for node in ast.walk(line.statement):
             if isinstance(node, ast.Name | ast.Subscript) and id(node) in axes:
                 shapes[name_of(node)] = (isinstance(node, ast.Subscript), *axes[id(node)])
-    for line in of.lines:
+    for line in reversed(of.lines):  # of steps that come to the same, the one nearest the answer
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
     if not singly:
-        return found
+        return [*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes)]
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return [
@@ -122,20 +128,22 @@ def _of_line(
         if not isinstance(node, ast.expr) or id(node) not in axes:
             continue
         if isinstance(node, ast.BinOp):
-            yield from _binary(node, axes, step)
+            yield from at_operator(node, axes, step)
+            yield from _own_for_next(node, shapes, step)
         elif isinstance(node, ast.Call):
-            yield from _calls(node, step)
+            yield from at_call(node, step)
         elif isinstance(node, ast.Attribute):
             does = _("has {new} for {old} (not transposed)").format(
                 new=spelt(node.value), old=spelt(node)
             )
             yield step("transposed", does, 1.05, (node, node.value))
         elif isinstance(node, ast.IfExp):
-            yield from _choices(node, step)
+            yield from at_choice(node, step)
         elif isinstance(node, ast.List):
-            yield from entry_steps(node, step)
-        elif isinstance(node, ast.Subscript) and "R" in shapes and name_of(node) in ("I", "c"):
-            yield from _turned(node, step)
+            yield from at_entries(node, step)
+        elif isinstance(node, ast.Subscript) and "R" in shapes and name_of(node) in ("I", "c", "z"):
+            yield from turned_again(node, step)
+    yield from _before_for_behind(whole, step)
     yield from _others(whole, axes, shapes, wide, step)
 
 
@@ -210,184 +218,6 @@ def _branches(node: ast.expr) -> Iterator[ast.expr]:
         yield node
 
 
-def _binary(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) -> Iterator[Step]:
-    left, right = node.left, node.right
-    one, two = (len(axes.get(id(x), ())) for x in (left, right))
-    if isinstance(node.op, ast.MatMult):
-        if one == 2 and isinstance(left, ast.Attribute | ast.Name | ast.Subscript):
-            if two == 1 and _turns(left):
-                does = _("does not rotate {term} ({factor} is left out)").format(
-                    term=told(right), factor=spelt(left)
-                )
-                yield step("rotation left out", does, 1.1, (node, right))
-            elif two == 1:
-                does = _("leaves the factor {factor} out of {term}").format(
-                    factor=spelt(left), term=spelt(node)
-                )
-                yield step("missing factor", does, 1.25, (node, right))
-            if not isinstance(left, ast.Attribute):
-                does = _("has {new} for {old} (transposed)").format(
-                    new=spelt(across(left)), old=spelt(left)
-                )
-                yield step("transposed", does, 1.17, (left, across(left)))
-        if one == two == 2:
-            same = isinstance(right, ast.Attribute) and spelt(right.value) == spelt(left)
-            if not _turns(left) and (same or not isinstance(right, ast.Attribute)):
-                turned = ast.BinOp(right, ast.MatMult(), left)
-                does = _("has {new} for {old} (the product's order)").format(
-                    new=spelt(turned), old=spelt(node)
-                )
-                yield step("order", does, 1.1, (node, turned))
-            if not isinstance(right, ast.Attribute) and not isinstance(right, ast.BinOp):
-                does = _("has {new} for {old} (transposed)").format(
-                    new=spelt(across(right)), old=spelt(right)
-                )
-                yield step("transposed", does, 1.17, (right, across(right)))
-            yield from _sandwich(node, step)
-    elif isinstance(node.op, ast.Mult | ast.Div):
-        for factor, rest in ((left, right), (right, left)):
-            if isinstance(factor, ast.Name | ast.Subscript) and (
-                isinstance(node.op, ast.Mult) or factor is right
-            ):
-                does = _("leaves the factor {factor} out of {term}").format(
-                    factor=spelt(factor), term=spelt(node)
-                )
-                yield step("missing factor", does, 1.15, (node, rest))
-        if isinstance(left, ast.Constant):
-            does = _("has {new} for {old} (the factor)").format(new=spelt(right), old=spelt(node))
-            yield step("factor", does, 1.1, (node, right))
-    elif isinstance(node.op, ast.Pow):
-        assert isinstance(node.right, ast.Constant)
-        power: Any = node.right.value
-        for other in (power - 1, power + 1):
-            if other:
-                new = ast.BinOp(left, ast.Pow(), ast.Constant(other))
-                does = _("has {new} for {old} (power)").format(new=spelt(new), old=spelt(node))
-                yield step("power", does, 1.1, (node, new))
-
-
-def _turns(node: ast.expr) -> bool:
-    """Whether an expression is a rotation."""
-    return name_of(node.value if isinstance(node, ast.Attribute) else node) in ("R", "R_")
-
-
-def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
-    """R I R^T: not rotated, or the wrong way."""
-    inner, last = node.left, node.right
-    if not (
-        isinstance(inner, ast.BinOp)
-        and isinstance(last, ast.Attribute)
-        and spelt(last.value) == spelt(inner.left)
-    ):
-        return
-    plain, turned = spelt(inner.right), f"{spelt(last)} {spelt(inner.right)} {spelt(inner.left)}"
-    right = f"{spelt(inner.left)} {plain} {spelt(last)}"
-    does = _(
-        "takes the inertia tensors in link axes as if in base axes (not rotated: {new} for {old})"
-    ).format(new=plain, old=right)
-    yield step("tensor not rotated", does, 1.0, (node, inner.right))
-    does = _("has {new} for {old} (the inertia tensor is rotated the wrong way)").format(
-        new=turned, old=right
-    )
-    new = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner.right), ast.MatMult(), inner.left)
-    yield step("tensor transposed", does, 1.02, (node, new))
-
-
-def _calls(node: ast.Call, step: Make) -> Iterator[Step]:
-    assert isinstance(node.func, ast.Name)
-    name, x = node.func.id, node.args
-    if name == "cross":
-        new = ast.Call(node.func, [x[1], x[0]], [])
-        does = _(
-            "has the cross product's order exchanged: {new} for {old}, the opposite sign,"
-        ).format(new=spelt(new), old=spelt(node))
-        yield step("sign", does, 1.0, (node, new))
-        if isinstance(x[0], ast.BinOp) and isinstance(x[0].op, ast.MatMult) and _turns(x[0].left):
-            inner = ast.Call(node.func, [x[0].right, x[1]], [])
-            late = ast.BinOp(x[0].left, ast.MatMult(), inner)
-            does = _("has {new} for {old} (rotated after the cross product)").format(
-                new=spelt(late), old=spelt(node)
-            )
-            yield step("order", does, 1.1, (node, late))
-        if isinstance(x[1], ast.Call):
-            less = ast.Call(node.func, [x[0], x[1].args[1]], [])
-            yield step(
-                "power",
-                _("has {new} for {old}").format(new=spelt(less), old=spelt(node)),
-                1.15,
-                (node, less),
-            )
-    elif name in ("sin", "cos"):
-        new = ast.Call(ast.Name("cos" if name == "sin" else "sin"), x, [])
-        yield step(
-            "sin/cos",
-            _("has {new} for {old} (sin/cos)").format(new=spelt(new), old=spelt(node)),
-            1.0,
-            (node, new),
-        )
-        does = _("has {angle} with the opposite sign in {term}").format(
-            angle=spelt(x[0]), term=spelt(node)
-        )
-        yield step("sign", does, 1.1, (x[0], minus(x[0])))
-    elif name == "solve":
-        matrix, other = spelt(x[0]), x[1]
-        plain, turned = ast.BinOp(x[0], ast.MatMult(), other), across(x[0])
-        does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=matrix)
-        yield step("inverse", does, 1.05, (node, plain))
-        does = _("has {new} for {old} (transposed)").format(new=spelt(turned), old=matrix)
-        yield step("transposed", does, 1.1, (node, ast.Call(node.func, [turned, other], [])))
-        does = _("has the transpose {matrix}^T for the inverse {matrix}^-1").format(matrix=matrix)
-        yield step("inverse", does, 1.05, (node, ast.BinOp(turned, ast.MatMult(), other)))
-    elif name == "defect" and isinstance(x[0], ast.BinOp):
-        swapped = ast.BinOp(x[0].right, ast.MatMult(), x[0].left)
-        does = _("has {new} for {old} (the product's order)")
-        does = does.format(new=spelt(swapped), old=spelt(x[0]))
-        yield step("order", does, 1.05, (node, ast.Call(node.func, [swapped], [])))
-    elif name == "inv":
-        does = _("has {matrix} for its inverse {matrix}^-1").format(matrix=spelt(x[0]))
-        yield step("inverse", does, 1.05, (node, x[0]))
-    elif name in ("ikj", "jki"):
-        yield step(
-            "Christoffel",
-            _("has {new} for {old}").format(new="dM_ij/dq_k", old=told(node)),
-            1.1,
-            (node, x[0]),
-        )
-        other = ast.Call(ast.Name("jki" if name == "ikj" else "ikj"), x, [])
-        yield step(
-            "Christoffel",
-            _("has {new} for {old}").format(new=told(other), old=told(node)),
-            1.1,
-            (node, other),
-        )
-
-
-def _turned(node: ast.Subscript, step: Make) -> Iterator[Step]:
-    """What is in the link's axes already, rotated once more."""
-    turn = ast.Subscript(ast.Name("R"), node.slice)
-    for one, two in ((turn, across(turn)), (across(turn), turn)):
-        new: ast.expr = ast.BinOp(one, ast.MatMult(), again(node))
-        if name_of(node) == "I":
-            new = ast.BinOp(new, ast.MatMult(), two)
-        does = _("rotates {what} ({new} for {old})").format(
-            what=meant(node), new=spelt(new), old=spelt(node)
-        )
-        yield step("rotated twice", does, 1.15, (node, new))
-
-
-def _choices(node: ast.IfExp, step: Make) -> Iterator[Step]:
-    if isinstance(node.test, ast.Compare):
-        test = ast.Compare(node.test.left, [ast.Lt()], node.test.comparators)
-        less = ast.IfExp(test, node.body, node.orelse)
-        does = _("leaves the link's own joint out (j < i for j <= i)")
-        yield step("own joint", does, 1.1, (node, less))
-        return
-    does = _("treats a slide (prismatic joint) as a hinge (revolute)")
-    yield step("slide as hinge", does, 1.1, (node, node.body))
-    does = _("treats a hinge (revolute) as a slide (prismatic joint)")
-    yield step("hinge as slide", does, 1.2, (node, node.orelse))
-
-
 def _slides(of: Program) -> Iterator[Step]:
     """A slide treated as a hinge in every line, and the other way."""
     nodes = [
@@ -410,6 +240,123 @@ def _slides(of: Program) -> Iterator[Step]:
             tuple((node, node.orelse) for node in nodes),
             1.15,
         )
+
+
+def _own_for_next(
+    node: ast.BinOp, shapes: Mapping[str, tuple[int, ...]], step: Make
+) -> Iterator[Step]:
+    """What is the link's own, in its axes already, for what comes from the next: F for R f."""
+    right = node.right
+    if not (isinstance(node.op, ast.MatMult) and isinstance(right, ast.Subscript)):
+        return
+    if name_of(node.left) != "R" or ast.unparse(right.slice) != "i + 1":
+        return
+    for pair in (("f", "F"), ("nn", "N")):
+        if name_of(right) == pair[0] and pair[1] in shapes:
+            new = ast.Subscript(ast.Name(pair[1]), ast.Name("i"))
+            does = _("has {new} for {old} ({what} for {other})").format(
+                new=spelt(new), old=spelt(node), what=meant(new), other=told(node)
+            )
+            yield step("another quantity", does, 1.16, (node, new))
+
+
+def _before_for_behind(whole: ast.expr, step: Make) -> Iterator[Step]:
+    """The way from the base to the link's end for that from the joint to the tool."""
+    for node in ast.walk(whole):
+        if isinstance(node, ast.BinOp) and ast.unparse(node) == "p - o[i]":
+            new = ast.parse("o_[i] - o_[0]", mode="eval").body
+            does = _(
+                "adds up the links before the joint for those behind it ({new} for {old})"
+            ).format(new=spelt(new, True), old=spelt(node, True))
+            yield step("sum", does, 1.12, (node, new))
+
+
+def _everywhere(of: Program) -> Iterator[Step]:
+    """The data of another link, or a rotation transposed, in every line where it stands."""
+    assigned = {name_of(target) for line in of.lines for target in _targets(line)}
+    places: dict[str, list[tuple[int, ast.expr]]] = {}
+    for number, line in enumerate(of.lines):
+        for node in ast.walk(_value(line)) if line.about else ():
+            turned = isinstance(node, ast.Attribute) and name_of(node.value) == "R"
+            if turned or (isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name)):
+                assert isinstance(node, ast.expr)
+                places.setdefault(ast.unparse(node), []).append((number, node))
+    in_every = _("{does} in every line")
+    for found in places.values():
+        if len({number for number, _node in found}) < 2:
+            continue
+        node = found[0][1]
+        if isinstance(node, ast.Attribute):
+            does = _("has {new} for {old} (not transposed)").format(
+                new=spelt(node.value), old=spelt(node)
+            )
+            plain = tuple((x, x.value) for _n, x in found if isinstance(x, ast.Attribute))
+            yield Step("transposed", in_every.format(does=does), plain, 1.0)
+            continue
+        assert isinstance(node, ast.Subscript)
+        if name_of(node) in assigned or name_of(node) in ("hinge", "R", "z"):
+            continue
+        for shift in (-1, 1):
+            index = _shifted(node.slice, shift)
+            assert index is not None
+            new = ast.Subscript(node.value, index)
+            does = _("takes {what} ({new} for {old})").format(
+                what=which(node, new), new=spelt(new, True), old=spelt(node, True)
+            )
+            edits = tuple((x, again(new)) for _n, x in found)
+            yield Step("index", in_every.format(does=does), edits, 1.05)
+
+
+def _halves_exchanged(of: Program) -> Iterator[Step]:
+    """The angular part above the linear one, in every column."""
+    calls = [
+        node
+        for line in of.lines
+        if line.about
+        for node in ast.walk(_value(line))
+        if isinstance(node, ast.Call) and name_of(node.func) == "twist"
+    ]
+    if calls:
+        edits = tuple((x, ast.Call(x.func, [x.args[1], x.args[0]], [])) for x in calls)
+        yield Step("row order", _("has the angular rows first"), edits, 1.0)
+
+
+def _updated(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[Step]:
+    """The link's own new value where that of the link before is meant: two lines exchanged."""
+    for loop in of.body:
+        if not isinstance(loop, ast.For):
+            continue
+        lines = [line for line in of.lines if line.statement in loop.body]
+        made = [ast.unparse(target) for line in lines for target in _targets(line)]
+        for k, line in enumerate(lines):
+            for later in lines[k + 1 :]:
+                name = ast.unparse(_targets(later)[0])
+                if made.count(name) != 1:
+                    continue
+                before = name.replace("[i]", "[i-1]").replace("-", " - ")
+                edits = tuple(
+                    (node, again(_value(later)))
+                    for node in ast.walk(_value(line))
+                    if isinstance(node, ast.Subscript)
+                    and ast.unparse(node) == before
+                    and id(node) in axes
+                )
+                if edits:
+                    does = _(
+                        "takes {what} of the link itself for that of the link before in {line}: it "
+                        "is renewed too early"
+                    ).format(what=meant(edits[0][0]), line=_(line.about))
+                    yield Step("order of lines", does, edits, 1.08)
+
+
+def _value(line: Assignment) -> ast.expr:
+    assert isinstance(line.statement, ast.Assign)
+    return line.statement.value
+
+
+def _targets(line: Assignment) -> list[ast.expr]:
+    assert isinstance(line.statement, ast.Assign)
+    return line.statement.targets
 
 
 def _others(
@@ -469,7 +416,7 @@ def _instead(
             if not isinstance(node, ast.Subscript):
                 continue
             new = ast.Subscript(new, node.slice)
-        yield new, "another quantity", 1.5 if far else 1.15
+        yield new, "another quantity", 1.5 if far else 1.16
 
 
 def _shifted(index: ast.expr, shift: int) -> ast.expr | None:

@@ -94,6 +94,7 @@ class Walk:
     ) -> None:
         self.of, self.inputs, self.q, self.ways, self.n = of, inputs, q, ways, n
         self.names: dict[str, Any] = {}
+        self.given: frozenset[str] = frozenset()
         self.joint = 0
         self.axes: dict[int, tuple[int, ...]] = {}
         self.instead: dict[int, list[tuple[ast.expr, Any, Any]]] = {}
@@ -111,6 +112,7 @@ class Walk:
     def values(self, name: str) -> Array:
         """A name of the program after the walk, (B, N, ...)."""
         self.names = _lifted(self.inputs(self.q))
+        self.given = frozenset(self.names)
         with np.errstate(all="ignore"):
             for statement in self.of.body:
                 self._run(statement)
@@ -162,6 +164,7 @@ class Walk:
             q = self.q + 1e-30j * np.eye(self.n)[k]
             other = Walk(self.of, self.inputs, q, self.ways, self.n)
             other.names = _lifted(self.inputs(q))
+            other.given = self.given
             for before in self.of.body:
                 if before is statement:
                     break
@@ -275,14 +278,14 @@ class Walk:
         return found
 
     def _at(self, name: str, k: int) -> Array:
-        """An entry by its index; one before the first of given data is the last, as in code."""
+        """An entry by its index; of given data the last is before the first, as in code."""
         values = self.names.get(name)
         if not isinstance(values, dict):
             raise Absent(name)
         if k not in values:
-            if not values:
+            if not values or name not in self.given:
                 raise Absent(name)
-            k = self.n if k <= 0 else max(values)
+            k = self.n if k <= 0 else 1
         if k not in values:
             raise Absent(name)
         found: Array = values[k]

@@ -23,6 +23,8 @@ MEANT = {
     "z": N_("the axis z"),
     "o": N_("the origin o"),
     "p": N_("the tool's point p"),
+    "tool": N_("the tool"),
+    "last": N_("the last frame's origin"),
     "pc": N_("the centre of mass"),
     "R": N_("the rotation R"),
     "I": N_("the inertia tensor"),
@@ -39,6 +41,7 @@ MEANT = {
     "rod": N_("the rod's direction w"),
     "l1": N_("the crank's length l1"),
     "l2": N_("the rod's length l2"),
+    "both": N_("the rotation R"),
     "Ib": N_("the inertia tensor"),
     "cb": N_("the centre of mass P_C"),
     "o_": N_("the frame's origin"),
@@ -66,6 +69,7 @@ _SPELT = {
     "th": "theta",
     "Ib": "I",
     "cb": "P_C",
+    "both": "R",
 }
 
 KNOWN = {

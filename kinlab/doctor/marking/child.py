@@ -189,8 +189,11 @@ def main() -> None:
     os.dup2(quiet, 1)
     os.dup2(quiet, 2)
     roots = {os.path.realpath(p) + os.sep for p in (sys.prefix, sys.base_prefix, np.__path__[0])}
-    enforced = ["network"] if offline() else []
-    enforced += ["files read"] if confined([*roots, "/lib", "/lib64", "/usr/lib"]) else []
+    walls = {
+        "network": offline(),
+        "files read": confined([*roots, "/lib", "/lib64", "/usr/lib"]),
+    }
+    enforced = [name for name, stands in walls.items() if stands]
     enforced += limited(request["seconds"], request["megabytes"])
     channel.write(json.dumps(enforced) + "\n")
     channel.flush()

@@ -123,7 +123,11 @@ class Marks:
         ).format(count=len(self.marks), mean=mean, of=self.sheet.points)
         if not unread:
             return text
-        return _("{told}; {count} answers could not be read").format(told=text, count=unread)
+        return ngettext(
+            "{told}; {count} answer could not be read",
+            "{told}; {count} answers could not be read",
+            unread,
+        ).format(told=text, count=unread)
 
     def _repr_html_(self) -> str:
         rows = "".join(

@@ -32,10 +32,11 @@ from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.examine import prepare
 from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.words import KINDS
 from kinlab.doctor.terms import split_name
-from kinlab.errors import FileError, KinlabError, NameUnknownError, near
+from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
 from kinlab.model.library import load
@@ -242,6 +243,11 @@ def _asked(row: Mapping[str, Any], entry: str, robot: Robot, place: str) -> str:
         raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")
     if find_quantity(plain).domain is not SERIAL:
         raise SheetError(f"{place}: {plain} is no quantity of a serial arm; give an answer")
+    try:
+        prepare(robot, plain, index, 10, 0)
+    except IndexError:
+        asked = entry or quantity
+        raise SheetError(f"{place}: {robot.name} of {robot.n} joints has no {asked}") from None
     return quantity
 
 
@@ -322,16 +328,3 @@ def _whole(
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise SheetError(f"{place}: {key} is {value!r}; a whole number from {least} to {most}")
     return value
-
-
-def question_of(sheet: Sheet, name: str) -> Question:
-    """A question by its id.
-
-    Raises:
-        NameUnknownError: the sheet has none of that id.
-    """
-    for question in sheet.questions:
-        if question.id == name:
-            return question
-    ids = [question.id for question in sheet.questions]
-    raise NameUnknownError(f"{sheet.place}: question {name!r} is unknown; {near(name, ids)}")

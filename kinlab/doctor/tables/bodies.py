@@ -56,11 +56,11 @@ class Bodies:
         poses = frames(Chain.of(table), np.zeros((1, table.n)))[0, 1:-1]
         com = np.array([link.com for link in table.links])
         inertia = np.array([link.inertia for link in table.links])
-        turn = poses[:, :3, :3]
+        rotation = poses[:, :3, :3]
         return Bodies(
             np.array([link.mass for link in table.links]),
-            (turn @ com[..., None])[..., 0] + poses[:, :3, 3],
-            turn @ inertia @ np.swapaxes(turn, -1, -2),
+            (rotation @ com[..., None])[..., 0] + poses[:, :3, 3],
+            rotation @ inertia @ np.swapaxes(rotation, -1, -2),
             np.array([link.armature for link in table.links]),
             np.array(table.gravity),
         )
@@ -376,10 +376,10 @@ def _inertia_cause(one: _Link) -> Cause:
     if not written[off].any() and one.alike(np.diag(written), np.diag(meant)):
         return cause("missing", _("inertia lacks its products"), 1.2)
     for name, pose in _frames_of(one):
-        turn = pose[:3, :3]
-        if one.alike(written, turn.T @ meant @ turn):
+        rotation = pose[:3, :3]
+        if one.alike(written, rotation.T @ meant @ rotation):
             return cause("frame", _("inertia has the axes of {name}").format(name=name), 1.0)
-        if one.alike(written, turn @ meant @ turn.T):
+        if one.alike(written, rotation @ meant @ rotation.T):
             return cause(
                 "frame",
                 _("inertia is turned the wrong way from the axes of {name}").format(name=name),
@@ -452,8 +452,8 @@ def _gravity_cause(written: Array, meant: Array, poses: Array) -> Cause:
         for signs in _signs(3, True):
             if _alike(written, signs * meant[list(order)]):
                 return cause("direction", _("gravity points along another axis"), 1.0)
-    turn = poses[0, :3, :3]
-    if _alike(written, turn.T @ meant) or _alike(written, turn @ meant):
+    rotation = poses[0, :3, :3]
+    if _alike(written, rotation.T @ meant) or _alike(written, rotation @ meant):
         return cause("frame", _("gravity is given in the axes of frame 0"), 1.0)
     if abs(np.linalg.norm(written) - np.linalg.norm(meant)) < 1e-8 * np.linalg.norm(meant):
         return cause("direction", _("gravity points in another direction"), 1.5)

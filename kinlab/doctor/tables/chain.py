@@ -20,8 +20,9 @@ from kinlab.model.link import Convention
 
 COLUMNS = ("a", "alpha", "d", "theta")
 A, ALPHA, D, THETA = range(4)
-ANGLES = (ALPHA, THETA)
 LENGTHS = (A, D)
+AXIS_OF = {A: 0, ALPHA: 0, D: 2, THETA: 2}
+"""The axis, x or z, along or about which a column of the table moves the frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -200,9 +201,9 @@ def _standard(
 def inverse(poses: Array) -> Array:
     """Inverses of rigid transforms (..., 4, 4)."""
     out = np.zeros_like(poses)
-    turn = np.swapaxes(poses[..., :3, :3], -1, -2)
-    out[..., :3, :3] = turn
-    out[..., :3, 3] = -(turn @ poses[..., :3, 3, None])[..., 0]
+    rotation = np.swapaxes(poses[..., :3, :3], -1, -2)
+    out[..., :3, :3] = rotation
+    out[..., :3, 3] = -(rotation @ poses[..., :3, 3, None])[..., 0]
     out[..., 3, 3] = 1.0
     return out
 

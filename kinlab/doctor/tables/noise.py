@@ -17,7 +17,17 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.tables.cells import changed
-from kinlab.doctor.tables.chain import ALPHA, THETA, A, Chain, D, frames, inverse, stacked_frames
+from kinlab.doctor.tables.chain import (
+    ALPHA,
+    AXIS_OF,
+    THETA,
+    A,
+    Chain,
+    D,
+    frames,
+    inverse,
+    stacked_frames,
+)
 from kinlab.doctor.tables.readings import Reading, readings
 from kinlab.doctor.tables.reference.against import Reference
 from kinlab.doctor.tables.reference.target import Target
@@ -41,8 +51,6 @@ _AS_GOOD = 12.0
 
 _CUTS = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 """Shares of the largest singular value below which a direction of the fit is left alone."""
-
-_AXIS = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +165,7 @@ def _candidates(plain: Reading, target: Target) -> list[Reading]:
         for column in (A, ALPHA, D, THETA):
             frame = poses[:, chain.frame_of(row, column)]
             motion = np.mean(inverse(frame) @ world @ frame, axis=0)
-            k = _AXIS[column]
+            k = AXIS_OF[column]
             u, v = (k + 1) % 3, (k + 2) % 3
             if column in (ALPHA, THETA):
                 change = float(np.arctan2(motion[v, u] - motion[u, v], motion[u, u] + motion[v, v]))
@@ -177,13 +185,13 @@ def _solve_cell(chain: Chain, row: int, column: int, target: Target) -> float:
     for _step in range(6):
         current = chain.with_cell(row, column, value)
         poses = frames(current, target.q)
-        slope = _slopes(current, poses)[:, 4 * row + column]
+        derivative = _slopes(current, poses)[:, 4 * row + column]
         rest = _rest(poses[:, -1], target)
         weight = np.array([1.0 / target.size**2] * 3 + [1.0] * 3)
-        size = float(np.sum(weight * slope * slope))
+        size = float(np.sum(weight * derivative * derivative))
         if size < 1e-20:
             break
-        step = float(np.sum(weight * slope * rest)) / size
+        step = float(np.sum(weight * derivative * rest)) / size
         value += step
         if abs(step) < 1e-12:
             break
@@ -229,8 +237,8 @@ def _told(
     cells = np.argwhere(one.chain.cells != chain.cells)
     if len(cells):
         row, column = (int(k) for k in cells[0])
-        slope = _slopes(one.chain, frames(one.chain, target.q))[:, 4 * row + column]
-        weighed = slope / np.repeat(sigma, 3)
+        derivative = _slopes(one.chain, frames(one.chain, target.q))[:, 4 * row + column]
+        weighed = derivative / np.repeat(sigma, 3)
         size = float(np.sum(weighed * weighed))
         if size == 0.0:
             return None, 0
@@ -260,7 +268,7 @@ def _slopes(chain: Chain, poses: Array) -> Array:
     for row in range(chain.n):
         for column in range(4):
             frame = poses[:, chain.frame_of(row, column)]
-            axis = frame[:, :3, _AXIS[column]]
+            axis = frame[:, :3, AXIS_OF[column]]
             if column in (ALPHA, THETA):
                 out[:, 4 * row + column, :3] = np.cross(axis, tool - frame[:, :3, 3])
                 out[:, 4 * row + column, 3:] = axis
@@ -279,16 +287,16 @@ def _rest(poses: Array, target: Target) -> Array:
     """Twist from the poses to the target's, (..., N, 6)."""
     out = np.zeros((*poses.shape[:-2], 6))
     out[..., :3] = target.poses[..., :3, 3] - poses[..., :3, 3]
-    turn = target.poses[..., :3, :3] @ np.swapaxes(poses[..., :3, :3], -1, -2)
+    rotation = target.poses[..., :3, :3] @ np.swapaxes(poses[..., :3, :3], -1, -2)
     sine = 0.5 * np.stack(
         [
-            turn[..., 2, 1] - turn[..., 1, 2],
-            turn[..., 0, 2] - turn[..., 2, 0],
-            turn[..., 1, 0] - turn[..., 0, 1],
+            rotation[..., 2, 1] - rotation[..., 1, 2],
+            rotation[..., 0, 2] - rotation[..., 2, 0],
+            rotation[..., 1, 0] - rotation[..., 0, 1],
         ],
         axis=-1,
     )
-    cosine = 0.5 * (np.trace(turn, axis1=-2, axis2=-1) - 1.0)
+    cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
     size = np.linalg.norm(sine, axis=-1)
     angle = np.arctan2(size, cosine)
     scale = np.where(size > 1e-9, angle / np.where(size > 1e-9, size, 1.0), 1.0)

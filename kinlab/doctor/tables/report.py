@@ -41,7 +41,7 @@ def page(found: Sequence[TableDiagnosis]) -> str:
     return render(
         "table.html.j2",
         title=_(_TITLE),
-        lead=_lead(found),
+        lead=_summary(found),
         how=_(_HOW),
         found=found,
         footer=origin(()),
@@ -50,7 +50,7 @@ def page(found: Sequence[TableDiagnosis]) -> str:
 
 def text(found: Sequence[TableDiagnosis]) -> str:
     """The report as Markdown."""
-    lines = [f"# {_(_TITLE)}", "", _lead(found), "", _(_HOW), ""]
+    lines = [f"# {_(_TITLE)}", "", _summary(found), "", _(_HOW), ""]
     against, said = _("{table} against {reference}"), _("{verdict}: {sentence}.")
     for one in found:
         pair = against.format(table=code(one.name), reference=code(one.reference))
@@ -63,7 +63,7 @@ def text(found: Sequence[TableDiagnosis]) -> str:
     return "\n".join([*lines, origin(())]) + "\n"
 
 
-def _lead(found: Sequence[TableDiagnosis]) -> str:
+def _summary(found: Sequence[TableDiagnosis]) -> str:
     right = sum(one.agrees for one in found)
     named = sum(not one.agrees and bool(one.causes) for one in found)
     unknown = len(found) - right - named

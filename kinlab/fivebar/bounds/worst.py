@@ -96,8 +96,8 @@ def bound_over(
             over = quantity(pose_over(linkage, low, high, signs))
         top = over.high
         steep = np.argmax(top, axis=0)  # of each quantity, the cell that may hold most
-        ways = np.stack([over.slope[:, cell, k] for k, cell in enumerate(steep)])
-        at = np.where(ways > 0.0, high[steep], low[steep])
+        directions = np.stack([over.slope[:, cell, k] for k, cell in enumerate(steep)])
+        at = np.where(directions > 0.0, high[steep], low[steep])
         at = np.concatenate([at, 0.5 * (low + high)[steep]])
         values = np.asarray(quantity(solve_pose(linkage, at, mode)))
         first = values.argmax(axis=0)

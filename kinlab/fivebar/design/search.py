@@ -80,8 +80,8 @@ def evolve(
         rng = np.random.default_rng([seed, generation])
         one, other = (rng.permutation(_MEMBERS) for _ in range(2))
         best = x[int(np.argmin(cost))]
-        pull = rng.uniform(0.3, 1.0, size=(_MEMBERS, 1))
-        trial = x + pull * (best - x) + _WEIGHT * (x[one] - x[other])
+        attraction = rng.uniform(0.3, 1.0, size=(_MEMBERS, 1))
+        trial = x + attraction * (best - x) + _WEIGHT * (x[one] - x[other])
         trial = np.where(trial < low, 2.0 * low - trial, trial)
         trial = np.where(trial > high, 2.0 * high - trial, trial)
         keep = rng.uniform(size=trial.shape) > _CROSSOVER

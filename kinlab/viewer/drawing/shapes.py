@@ -168,10 +168,10 @@ def rod(node: Any, start: Array, end: Array, radius: float, material: Any) -> No
     if length < 1e-9:
         return
     node.set_object(g.Cylinder(length, radius), material)
-    place = np.eye(4)
-    place[:3, :3] = turn_to(along / length, 1)
-    place[:3, 3] = np.asarray(start) + 0.5 * along
-    node.set_transform(place)
+    pose = np.eye(4)
+    pose[:3, :3] = turn_to(along / length, 1)
+    pose[:3, 3] = np.asarray(start) + 0.5 * along
+    node.set_transform(pose)
 
 
 def arrow(node: Any, start: Array, end: Array, radius: float, material: Any) -> None:
@@ -184,10 +184,10 @@ def arrow(node: Any, start: Array, end: Array, radius: float, material: Any) -> 
     rod(node["shaft"], start, neck, radius, material)
     cone = g.Cylinder(tip, radiusTop=0.0, radiusBottom=2.6 * radius)
     node["tip"].set_object(cone, material)
-    place = np.eye(4)
-    place[:3, :3] = turn_to(direction, 1)
-    place[:3, 3] = neck + 0.5 * tip * direction
-    node["tip"].set_transform(place)
+    pose = np.eye(4)
+    pose[:3, :3] = turn_to(direction, 1)
+    pose[:3, 3] = neck + 0.5 * tip * direction
+    node["tip"].set_transform(pose)
 
 
 def pin(node: Any, centre: Array, radius: float, height: float, material: Any) -> None:

@@ -30,7 +30,7 @@ from kinlab.errors import KinlabError, OptionError
 _TRIES = 50
 """How many ports after the wanted one are tried."""
 
-DEAF = 8 << 20
+MOST_UNREAD = 8 << 20
 """Bytes that may wait for a page; more is not sent, and the page loads itself anew later."""
 
 _HOST = re.compile(r"(?:\[([0-9a-f:.]+)\]|([a-z0-9._-]+))(?::[0-9]{1,5})?")
@@ -179,7 +179,7 @@ class PageSocket(tornado.websocket.WebSocketHandler):
 
     def tell(self, message: str | bytes) -> None:
         """Sends a message; a page that has gone or takes nothing costs neither error nor memory."""
-        if self._waiting > DEAF:
+        if self._waiting > MOST_UNREAD:
             self._stale = True
             return
         try:

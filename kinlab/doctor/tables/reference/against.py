@@ -210,16 +210,16 @@ def of_poses(q: ArrayLike, T: ArrayLike, name: str = "") -> Reference:
         )
     if len(states) < 3:
         raise StateError(f"poses: {len(states)} of them; give three or more, at differing q")
-    turn = poses[:, :3, :3]
-    off = np.max(np.abs(np.swapaxes(turn, -1, -2) @ turn - np.eye(3)), axis=(1, 2))
+    rotation = poses[:, :3, :3]
+    off = np.max(np.abs(np.swapaxes(rotation, -1, -2) @ rotation - np.eye(3)), axis=(1, 2))
     last = np.abs(poses[:, 3] - (0.0, 0.0, 0.0, 1.0)).max(axis=1)
-    bad = np.flatnonzero((off > 1e-3) | (last > 1e-12) | (np.linalg.det(turn) < 0))
+    bad = np.flatnonzero((off > 1e-3) | (last > 1e-12) | (np.linalg.det(rotation) < 0))
     if len(bad):
         raise StateError(
             f"poses: T of state {int(bad[0]) + 1} is no rigid transform (R^T R misses 1 by "
             f"{off[bad[0]]:.2g}); give [R p; 0 0 0 1] with R a rotation"
         )
-    U, _sizes, Vt = np.linalg.svd(turn)
+    U, _sizes, Vt = np.linalg.svd(rotation)
     clean = poses.copy()
     clean[:, :3, :3] = U @ Vt
     rounding = float(np.max(np.abs(clean - poses)))  # of printed rotations

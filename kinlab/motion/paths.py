@@ -1,4 +1,4 @@
-"""Ways of the tool in space: lines and arcs from pose to pose, blended where they meet.
+"""Paths of the tool in space: lines and arcs from pose to pose, blended where they meet.
 
 Leg k is a curve of position with parameter s_k from 0 to 1, and a turn about one axis fixed in the
 tool, by exp([w_k] s_k): what is called slerp. Where neighbours overlap in time their displacements
@@ -40,15 +40,15 @@ class Leg(NamedTuple):
     """From one pose to the next.
 
     Attributes:
-        length: of the way, m. turn: rotation vector in the tool's axes at the start, (3,), rad.
-        way: for a line, end minus start, (3,), m.
+        length: of the path, m. rotation_vector: in the tool's axes at the start, (3,), rad.
+        displacement: for a line, end minus start, (3,), m.
         centre, radius, first, second, angle: for an arc: position is
             centre + radius (cos(s angle) first + sin(s angle) second); angle is 0 for a line.
     """
 
     length: float
-    turn: Array
-    way: Array
+    rotation_vector: Array
+    displacement: Array
     radius: float = 0.0
     first: Array = np.zeros(3)
     second: Array = np.zeros(3)
@@ -63,7 +63,7 @@ class Leg(NamedTuple):
         """Displacement from the start, velocity and acceleration, (N, 3), of s(t)."""
         s, speed, gain = (x[:, np.newaxis] for x in (s, speed, gain))
         if not self.angle:
-            return s * self.way, speed * self.way, gain * self.way
+            return s * self.displacement, speed * self.displacement, gain * self.displacement
         c, sn = np.cos(s * self.angle), np.sin(s * self.angle)
         out = self.radius * (c * self.first + sn * self.second)
         along = self.radius * self.angle * (c * self.second - sn * self.first)
@@ -74,7 +74,7 @@ class Leg(NamedTuple):
         )
 
 
-class TimedWay(NamedTuple):
+class TimedPath(NamedTuple):
     """Legs with their laws and when each begins: the tool's motion at any time.
 
     Attributes:
@@ -100,13 +100,13 @@ class TimedWay(NamedTuple):
         kept[-1] = self.duration
         return kept
 
-    def stretched(self, factor: float) -> TimedWay:
+    def stretched(self, factor: float) -> TimedPath:
         """The same way in ``factor`` times the time."""
         slower = []
         for law in self.laws:
             powers = np.arange(len(law.c) - 1, -1, -1.0)
             slower.append(type(law)(law.c / factor ** powers[:, np.newaxis], law.x * factor))
-        return TimedWay(self.start, self.legs, tuple(slower), self.begins * factor)
+        return TimedPath(self.start, self.legs, tuple(slower), self.begins * factor)
 
     def at(self, t: Array, side: str = "right") -> tuple[Array, Array, Array]:
         """Poses (N, 4, 4), twists and their derivatives (N, 6), linear first, in base axes."""
@@ -120,12 +120,13 @@ class TimedWay(NamedTuple):
             place += shift
             twist[:, :3] += velocity
             change[:, :3] += acceleration
-            if np.any(leg.turn):
-                axis = rotation @ leg.turn  # in the base, carried along by the legs before
+            if np.any(leg.rotation_vector):
+                # in the base, carried along by the legs before
+                axis = rotation @ leg.rotation_vector
                 carried = np.cross(twist[:, 3:], axis)
                 change[:, 3:] += gain[:, np.newaxis] * axis + speed[:, np.newaxis] * carried
                 twist[:, 3:] += speed[:, np.newaxis] * axis
-                rotation = rotation @ rotations_along(leg.turn, s)
+                rotation = rotation @ rotations_along(leg.rotation_vector, s)
         poses = np.zeros((count, 4, 4))
         poses[:, :3, :3], poses[:, :3, 3], poses[:, 3, 3] = rotation, place, 1.0
         return poses, twist, change
@@ -150,22 +151,22 @@ def read_legs(name: str, poses: Sequence[Any] | ArrayLike) -> tuple[Array, tuple
     for row, one in enumerate(given[1:], 2):
         where = f"robot {name!r}: pose {row}"
         end = _pose(one.end if isinstance(one, Arc) else one, where)
-        turn = np.asarray(pin.log3(here[:3, :3].T @ end[:3, :3]))
-        if np.linalg.norm(turn) > np.pi - 1e-6:
+        rotation_vector = np.asarray(pin.log3(here[:3, :3].T @ end[:3, :3]))
+        if np.linalg.norm(rotation_vector) > np.pi - 1e-6:
             raise OptionError(
                 f"{where} is a half turn from the pose before: which way round is not given; put "
                 "a pose between"
             )
-        turn = np.where(np.linalg.norm(turn) > 1e-12, turn, 0.0)
-        way = end[:3, 3] - here[:3, 3]
+        rotation_vector = np.where(np.linalg.norm(rotation_vector) > 1e-12, rotation_vector, 0.0)
+        displacement = end[:3, 3] - here[:3, 3]
         if isinstance(one, Arc):
             via = shaped(one.via, (3,), f"{where}: via")
-            legs.append(_arc(here[:3, 3], via, end[:3, 3], turn, where))
+            legs.append(_arc(here[:3, 3], via, end[:3, 3], rotation_vector, where))
         else:
-            length = float(np.linalg.norm(way))
-            if length <= 1e-12 and not turn.any():
+            length = float(np.linalg.norm(displacement))
+            if length <= 1e-12 and not rotation_vector.any():
                 raise OptionError(f"{where} is the pose before; leave it out")
-            legs.append(Leg(length, turn, way))
+            legs.append(Leg(length, rotation_vector, displacement))
         here = end
     return start, tuple(legs)
 
@@ -174,7 +175,7 @@ def _pose(value: Any, where: str) -> Array:
     return rigid_transform(shaped(value, (4, 4), where), where)
 
 
-def _arc(start: Array, via: Array, end: Array, turn: Array, where: str) -> Leg:
+def _arc(start: Array, via: Array, end: Array, rotation_vector: Array, where: str) -> Leg:
     """The arc from start through via to end."""
     one, two = via - start, end - start
     normal = np.cross(one, two)
@@ -187,4 +188,4 @@ def _arc(start: Array, via: Array, end: Array, turn: Array, where: str) -> Leg:
     second = np.cross(normal / np.sqrt(size), first)
     far = two - offset
     angle = float(np.arctan2(far @ second, far @ first) % (2.0 * np.pi))
-    return Leg(radius * angle, turn, two, radius, first, second, angle)
+    return Leg(radius * angle, rotation_vector, two, radius, first, second, angle)

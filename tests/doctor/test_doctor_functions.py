@@ -1,0 +1,148 @@
+"""Functions that are right to their digits, numbers of the robot, and what can be proved."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+
+ARM = kl.load("spatial3r")
+
+
+def turned(rows, q, pi=np.pi):
+    """The pose of a modified table's last frame, with another pi in its angles."""
+    pose = np.eye(4)
+    for row, x in zip(rows, q, strict=True):
+        ct, st = np.cos(row.theta * pi / np.pi + x), np.sin(row.theta * pi / np.pi + x)
+        ca, sa = np.cos(row.alpha * pi / np.pi), np.sin(row.alpha * pi / np.pi)
+        pose = pose @ np.array([[ct, -st, 0, row.a], [st * ca, ct * ca, -sa, -sa * row.d],
+                                [st * sa, ct * sa, ca, ca * row.d], [0, 0, 0, 1]])  # fmt: skip
+    return pose @ np.asarray(ARM.table.tool)
+
+
+def by_differences(step, central):
+    def jacobian(q):
+        here = turned(ARM.table.links, q)
+        columns = []
+        for unit in np.eye(3):
+            behind = turned(ARM.table.links, q - step * unit) if central else here
+            rate = (turned(ARM.table.links, q + step * unit) - behind) / (
+                (2 if central else 1) * step
+            )
+            spin = rate[:3, :3] @ here[:3, :3].T
+            columns.append([*rate[:3, 3], spin[2, 1], spin[0, 2], spin[1, 0]])
+        return np.array(columns).T
+
+    return jacobian
+
+
+@pytest.mark.parametrize(("step", "central"), [(1e-5, False), (1e-8, False), (1e-4, True)])
+def test_finite_differences_are_right_to_their_digits(step, central) -> None:
+    found = kl.diagnose(ARM, "jacobian", by_differences(step, central), samples=20)
+    assert found.agrees
+    assert found.error_before > 1e-9
+    assert found.grade == "right to its digits"
+    assert "digits" in found.sentence
+
+
+def test_a_slip_is_named_through_finite_differences() -> None:
+    right = by_differences(1e-6, False)
+    signs = np.array([[-1], [-1], [-1], [1], [1], [1]])
+    found = kl.diagnose(ARM, "jacobian", lambda q: signs * right(q), samples=20)
+    assert not found.agrees
+    assert "sign" in found.sentence
+    assert "finite differences" in found.sentence
+
+
+@pytest.mark.parametrize("pi", [3.14, 3.1416])
+def test_a_rounded_pi_in_the_angles(pi) -> None:
+    found = kl.diagnose(ARM, "fk", lambda q: turned(ARM.table.links, q, pi), samples=20)
+    assert found.grade == "right with rounded numbers"
+    assert str(pi) in found.sentence
+
+
+def test_rounded_thirds_inside_a_function_are_right_to_their_digits() -> None:
+    arm = kl.load("planar2r_rods")
+    (l1, l2), (m1, m2) = ([getattr(k, x) for k in arm.table.links] for x in ("a", "mass"))
+
+    def mass(q, third=0.3333):
+        c2 = np.cos(q[1])
+        m12 = m2 * (third * l2**2 + 0.5 * l1 * l2 * c2)
+        m11 = third * m1 * l1**2 + m2 * (l1**2 + third * l2**2 + l1 * l2 * c2)
+        return np.array([[m11, m12], [m12, third * m2 * l2**2]])
+
+    found = kl.diagnose(arm, "mass_matrix", mass, samples=20)
+    assert found.agrees
+    assert "digits" in found.sentence
+    # 0.4 is no third
+    assert not kl.diagnose(arm, "mass_matrix", lambda q: mass(q, 0.4), samples=20).agrees
+
+
+def test_a_small_slip_that_is_no_rounding_is_not_called_right() -> None:
+    def torques(q, v, a):
+        return kl.inverse_dynamics(ARM, q, v, a) + 5e-4 * np.abs(a) ** 0.5
+
+    found = kl.diagnose(ARM, "inverse_dynamics", torques, samples=20)
+    assert not found.agrees
+    assert found.grade in ("wrong", "not sure")
+
+
+def with_row(**columns):
+    from dataclasses import replace
+
+    rows = list(ARM.table.links)
+    rows[1] = replace(rows[1], **columns)
+    return kl.Robot.from_dh(replace(ARM.table, links=rows))
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"a": 0.77}, "takes 0.77 for a of link 2"),
+        ({"mass": 3.3}, "takes 3.3 for the mass of link 2"),
+        ({"com": (0.2, 0.07, 0.03)}, "of the centre of mass of link 2"),
+    ],
+)
+def test_a_number_of_the_robot_is_another(columns, words) -> None:
+    other = with_row(**columns)
+    found = kl.diagnose(
+        ARM, "mass_matrix", lambda q: np.asarray(kl.mass_matrix(other, q)), samples=20
+    )
+    if "com" in columns:
+        # three numbers at once: silence, or the truth
+        assert not found.agrees
+        return
+    assert words in found.sentence
+
+
+def test_the_rotors_are_left_out() -> None:
+    arm = kl.load("puma560")
+    rotors = np.asarray(arm.model.armature)
+    found = kl.diagnose(
+        arm, "mass_matrix", lambda q: kl.mass_matrix(arm, q) - np.diag(rotors), samples=20
+    )
+    assert "leaves out the rotors' inertia (armature)" in found.sentence
+
+
+def test_what_can_be_proved_by_kind_of_term() -> None:
+    def torques(q, v, a):
+        gravity = kl.gravity_torques(ARM, q)
+        return kl.inverse_dynamics(ARM, q, v, a) + 0.3 * np.sin(q) * gravity**2
+
+    found = kl.diagnose(ARM, "inverse_dynamics", torques, samples=20)
+    assert not found.causes
+    said = "the terms in the velocities and the terms in the accelerations: right; "
+    assert said + "the gravity terms: wrong" in found.sentence
+    assert said + "the gravity terms: wrong" in found.as_dict()["proved"]
+
+
+def test_what_can_be_proved_by_entries() -> None:
+    def jacobian(q):
+        out = np.array(kl.jacobian(ARM, q))
+        out[:, 1] += np.sin(q[0]) ** 3
+        return out
+
+    found = kl.diagnose(ARM, "jacobian", jacobian, samples=20)
+    assert not found.causes
+    assert "columns 1 and 3: right" in found.sentence
