@@ -177,14 +177,30 @@ def doctor(data: Record) -> list[str]:
                 sums[verdict] = sums.get(verdict, 0) + count
         named = sum(sums.get(one, 0) for one in ("first", "tied", "right"))
         false = sums.get("wrong", 0) + sums.get("false alarm", 0)
-        silent = sums["cases"] - named - false
+        other = sums.get("other", 0)
+        silent = sums["cases"] - named - other - false
         if name == "nothing explains it":
             strange = f"Of {sums['cases']} functions that nothing explains {false} were explained."
             continue
-        counts = [sums["cases"], f"{named / sums['cases']:.0%}", sums.get("tied", 0), false, silent]
+        counts = [
+            sums["cases"],
+            f"{named / sums['cases']:.0%}",
+            sums.get("tied", 0),
+            other,
+            false,
+            silent,
+        ]
         lines.append([name, *map(str, counts)])
     right, seconds = sum(data["right"].values()), data["all seconds"]
-    heads = ["mistakes", "number", "named", "of these tied", "named wrongly", "not named"]
+    heads = [
+        "mistakes",
+        "number",
+        "named",
+        "of these tied",
+        "mended otherwise",
+        "named wrongly",
+        "not named",
+    ]
     return [
         *table(heads, lines),
         "",

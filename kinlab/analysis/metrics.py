@@ -47,7 +47,7 @@ from kinlab.analysis.structure.task_space import TaskSpace, one_state, read_leng
 from kinlab.arrays import Array, frozen, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
-from kinlab.errors import NameUnknownError, OptionError, near
+from kinlab.errors import NameUnknownError, OptionError
 from kinlab.host.introductions import Answer, Introduction, vector
 from kinlab.model.library import ArmLike, as_robot
 from kinlab.model.robot import require_inertia
@@ -193,9 +193,7 @@ def read_kind(kind: Any) -> Callable[[Array], Array]:
     Raises:
         NameUnknownError: no such measure; the valid ones are listed.
     """
-    if not isinstance(kind, str) or kind not in KINDS:
-        raise NameUnknownError(f"metric {kind!r} is unknown; {near(str(kind), KINDS)}")
-    return KINDS[kind]
+    return KINDS[word(kind, KINDS, "metric")]
 
 
 def weighted(matrix: Array, mass: Array) -> Array:

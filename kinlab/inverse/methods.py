@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -111,53 +111,34 @@ def choose(method: Any, alpha: Any) -> Step:
     return partial(gradient, alpha=float(value))
 
 
-class StopRule(NamedTuple):
-    """When a search stops.
-
-    Attributes:
-        position, rotation: tolerances, metres and radians: ||x_d - f(q)|| < eps.
-        step: ||q_{k+1} - q_k|| < eps, the note's other rule.
-        iterations: of one search.
-        searches: how many.
-        patience: iterations in which the squared error must halve.
-    """
-
-    position: float
-    rotation: float
-    step: float
-    iterations: int
-    searches: int
-    patience: int
-
-
-class SearchOutcome(NamedTuple):
-    """As the kernel's: q, how it ended (its codes), iterations, searches; and the record."""
-
-    q: Array
-    end: int
-    iterations: int
-    searches: int
-    history: IKHistory
-
-
 def search(
-    robot: Robot, arm: Setup, target: Array, q0: Array | None, step: Step, limits: StopRule
-) -> SearchOutcome:
+    robot: Robot,
+    arm: Setup,
+    target: Array,
+    q0: Array | None,
+    step: Step,
+    problem: kernel.Search,
+    least: float,
+) -> tuple[Array, tuple[int, int, int], IKHistory]:
     """Searches from q0, the starts nearest to the target, and others, until one succeeds.
 
     Args:
         robot: the robot.
-        arm: its arrays for this task.
+        arm: what is kept of it for this task.
         target: (4, 4).
         q0: (n,), where to start first, within the limits; ``None``: at the nearest start.
         step: the method.
-        limits: when to stop.
+        problem: what a search works with, and when it stops: ||x_d - f(q)|| below the tolerances.
+        least: the note's other rule, ||q_{k+1} - q_k|| < least, rad or m.
+
+    Returns:
+        As the kernel: q; how it ended (its codes), iterations, searches; and the record.
     """
     record: list[tuple[Array, float, float, int]] = []
     best, best_q, best_end = math.inf, arm.centre, kernel.STALLED
-    distance = np.empty(len(arm.starts))
-    kernel.nearest(arm.table, target[:3].ravel(), arm.weight, distance)
-    tries = 1 if beyond_reach(arm, target, limits.position) else limits.searches
+    distance = np.empty(len(problem.starts))
+    kernel.nearest(problem.table, target[:3].ravel(), problem.weight, distance)
+    tries = 1 if beyond_reach(arm, target, problem.tolerances[0]) else problem.searches
     tried = 0
     while tried < tries:
         if tried == 0 and q0 is not None:
@@ -167,8 +148,8 @@ def search(
                 distance[np.isfinite(distance)] = 0.0
             choice = int(np.argmin(distance))
             distance[choice] = math.inf
-            q = arm.starts[choice].copy()
-        end, q = _one_search(robot, arm, target, q, q0, step, limits, tried, record)
+            q = problem.starts[choice].copy()
+        end, q = _one_search(robot, arm, target, q, q0, step, problem, least, tried, record)
         tried += 1
         if end == kernel.CONVERGED:
             best_q, best_end = q, end
@@ -177,12 +158,12 @@ def search(
             if best_end != kernel.OUTSIDE:
                 best, best_q, best_end = 0.0, q, end
         elif best_end != kernel.OUTSIDE:
-            _wrap(arm, q, q0)
-            q = np.clip(q, arm.lower, arm.upper)
-            energy = _energy(_weighted(arm, pose_error(fk(robot, q), target)))
+            wrap(arm, q, q0)
+            q = np.clip(q, problem.lower, problem.upper)
+            energy = _energy(_weighted(problem, pose_error(fk(robot, q), target)))
             if energy < best:
                 best, best_q, best_end = energy, q, end
-    return SearchOutcome(best_q, best_end, len(record), tried, _history(record, robot.n))
+    return best_q, (best_end, len(record), tried), _history(record, robot.n)
 
 
 def _one_search(
@@ -192,34 +173,35 @@ def _one_search(
     q: Array,
     q0: Array | None,
     step: Step,
-    limits: StopRule,
+    problem: kernel.Search,
+    least: float,
     number: int,
     record: list[tuple[Array, float, float, int]],
 ) -> tuple[int, Array]:
     """One search from one start: how it ended (the kernel's codes), and where."""
     rows = list(arm.rows)
     partly = 0 < len([i for i in rows if i > 2]) < 3
-    scale = np.sqrt(arm.weight[rows])
-    free = arm.wide.copy()
-    mark = math.inf
+    scale = np.sqrt(problem.weight[rows])
+    free = problem.wide.copy()
+    mark, tolerance = math.inf, problem.tolerances
     outside: Array | None = None
-    for count in range(limits.iterations):
+    for count in range(problem.iterations):
         error = pose_error(fk(robot, q), target)
-        asked = np.where(arm.weight > 0.0, error, 0.0)
+        asked = np.where(problem.weight > 0.0, error, 0.0)
         position, rotation = float(np.linalg.norm(asked[:3])), float(np.linalg.norm(asked[3:]))
         record.append((q.copy(), position, rotation, number))
-        if position <= 0.99 * limits.position and rotation <= 0.99 * limits.rotation:
-            if _wrap(arm, q, q0):
+        if position <= 0.99 * tolerance[0] and rotation <= 0.99 * tolerance[1]:
+            if wrap(arm, q, q0):
                 return kernel.CONVERGED, q
             if outside is not None:
                 break
             outside = q.copy()  # put it back onto the limits and go on, once
-            free &= (q >= arm.lower) & (q <= arm.upper)
-            q = np.clip(q, arm.lower, arm.upper)
+            free &= (q >= problem.lower) & (q <= problem.upper)
+            q = np.clip(q, problem.lower, problem.upper)
             mark = math.inf
             continue
-        energy = _energy(_weighted(arm, error))
-        if count % limits.patience == limits.patience - 1:
+        energy = _energy(_weighted(problem, error))
+        if count % problem.patience == problem.patience - 1:
             if energy > 0.5 * mark:
                 return (kernel.STALLED, q) if outside is None else (kernel.OUTSIDE, outside)
             mark = energy
@@ -228,7 +210,7 @@ def _one_search(
             kernel.turn_rows(jac, error, robot.n)
         jac, e = scale[:, None] * jac[rows], scale * error[rows]
         slope = jac.T @ e
-        held = ~free & (((q >= arm.upper) & (slope > 0)) | ((q <= arm.lower) & (slope < 0)))
+        held = ~free & (((q >= problem.upper) & (slope > 0)) | ((q <= problem.lower) & (slope < 0)))
         change = np.zeros(robot.n)
         try:
             change[~held] = step(jac[:, ~held], e)
@@ -238,8 +220,8 @@ def _one_search(
         if not size <= _RUNAWAY:
             break
         q = q + change
-        q = np.where(free, q, np.clip(q, arm.lower, arm.upper))
-        if size < limits.step:
+        q = np.where(free, q, np.clip(q, problem.lower, problem.upper))
+        if size < least:
             break
     else:
         return (kernel.RUNNING, q) if outside is None else (kernel.OUTSIDE, outside)
@@ -253,17 +235,18 @@ def pose_error(here: Array, goal: Array) -> Array:
     return error
 
 
-def _weighted(arm: Setup, error: Array) -> Array:
-    return np.asarray(np.sqrt(arm.weight) * error)
+def _weighted(problem: kernel.Search, error: Array) -> Array:
+    return np.asarray(np.sqrt(problem.weight) * error)
 
 
 def _energy(error: Array) -> float:
     return 0.5 * float(error @ error)
 
 
-def _wrap(arm: Setup, q: Array, q0: Array | None) -> bool:
-    centre = arm.centre if q0 is None else q0
-    return bool(kernel.wrap(arm.prismatic, arm.lower, arm.upper, centre, q))
+def wrap(arm: Setup, q: Array, q0: Array | None = None) -> bool:
+    """:func:`kinlab.inverse.kernel.wrap` into the arm's limits, as near to q0 as they allow."""
+    known, centre = arm.search, arm.centre if q0 is None else q0
+    return bool(kernel.wrap(known.prismatic, known.lower, known.upper, centre, q))
 
 
 def _history(record: list[tuple[Array, float, float, int]], n: int) -> IKHistory:

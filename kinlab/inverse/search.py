@@ -132,7 +132,7 @@ def ik(
         else:
             q, outcome, errors, record = _readable(robot, one, asked, method, alpha, tol_step)
         if one is not arm and _met(asked, outcome, errors)[0]:
-            _measure(robot, q, asked.targets, arm.weight, errors)
+            _measure(robot, q, asked.targets, arm.search.weight, errors)
             break
     end, iterations, searches = outcome[0].tolist()
     position, rotation = errors[0].tolist()
@@ -195,7 +195,7 @@ def ik_batch(
     q, outcome, errors = _search(robot, arm.whole or arm, asked, threads)
     success = _met(asked, outcome, errors)
     if arm.whole is not None:
-        _measure(robot, q, asked.targets, arm.weight, errors)
+        _measure(robot, q, asked.targets, arm.search.weight, errors)
         left = np.flatnonzero(~success)
         start = asked.start if asked.start is None or asked.start.ndim == 1 else asked.start[left]
         again = asked._replace(targets=asked.targets[left], start=start)
@@ -247,14 +247,16 @@ def _search(
             _look_again(arm, asked, flat[failed], closest, codes)
             q[failed], outcome[failed, 0] = closest, codes
         _insist(arm, asked, flat, q, outcome, first, last)
-        _measure(robot, q[first:last], asked.targets[first:last], arm.weight, errors[first:last])
+        _measure(
+            robot, q[first:last], asked.targets[first:last], arm.search.weight, errors[first:last]
+        )
 
     if count == 1:  # the same without slices, which cost more than the search
         kernel.search_rows(*arguments, 0, 1)
         if outcome[0, 0] > kernel.OUTSIDE:
             _look_again(arm, asked, flat, q, outcome[:, 0])
         _insist(arm, asked, flat, q, outcome, 0, 1)
-        _measure(robot, q, asked.targets, arm.weight, errors)
+        _measure(robot, q, asked.targets, arm.search.weight, errors)
     else:
         over_rows(kernel.search_rows, count, *arguments, threads=threads, grain=_GRAIN, then=verify)
     return q, outcome, errors
@@ -265,25 +267,24 @@ def _readable(
 ) -> tuple[Array, Any, Array, IKHistory]:
     """As :func:`_search` for one target, over Pinocchio calls, with every iteration."""
     step = methods.choose(method, alpha)
-    limits = methods.StopRule(
-        *asked.tolerances,
-        TOLERANCES.search_step if tol_step is None else number(tol_step, "tol_step", above=0.0),
-        ITERATIONS[method] if asked.iterations is None else asked.iterations,
-        asked.searches,
-        PATIENCE[method],
-    )
-    answer = methods.search(robot, arm, asked.targets[0], asked.start, step, limits)
-    q = np.array(answer.q)[np.newaxis]
-    outcome = np.array([[answer.end, answer.iterations, answer.searches]])
+    least = TOLERANCES.search_step
+    if tol_step is not None:
+        least = number(tol_step, "tol_step", above=0.0)
+    iterations = ITERATIONS[method] if asked.iterations is None else asked.iterations
+    problem = search_of(arm, asked.tolerances, iterations, asked.searches)
+    problem = problem._replace(patience=PATIENCE[method])
+    target = asked.targets[0]
+    found, counts, history = methods.search(robot, arm, target, asked.start, step, problem, least)
+    q, outcome = np.array(found)[np.newaxis], np.array([counts])
     if method == "lm":
         flat, ends = asked.targets[:, :3].reshape(1, 12), outcome.copy()
-        if answer.end > kernel.OUTSIDE:
+        if counts[0] > kernel.OUTSIDE:
             _look_again(arm, asked, flat, q, ends[:, 0])
         _insist(arm, asked, flat, q, ends, 0, 1)
         outcome[:, 0] = ends[:, 0]  # the counts are of what is in the history
     errors = np.empty((1, 2))
-    _measure(robot, q, asked.targets, arm.weight, errors)
-    return q, outcome, errors, answer.history
+    _measure(robot, q, asked.targets, arm.search.weight, errors)
+    return q, outcome, errors, history
 
 
 def _anywhere(problem: kernel.Search) -> kernel.Search:
@@ -318,7 +319,7 @@ def _look_again(arm: Setup, asked: Request, targets: Array, q: Array, ends: Any)
     endless = endless._replace(patience=_LONG[1])
     kernel.search_rows(endless, targets, q, True, free, outcome, 0, len(q))
     for row in np.flatnonzero(outcome[:, 0] == kernel.CONVERGED):
-        inside = kernel.wrap(arm.prismatic, arm.lower, arm.upper, arm.centre, free[row])
+        inside = methods.wrap(arm, free[row])
         q[row], ends[row] = free[row], kernel.CONVERGED if inside else kernel.OUTSIDE
 
 
@@ -367,7 +368,7 @@ def _why(
     if outcome[row, 2] >= _MANY:
         return IKStatus.UNREACHABLE
     rows = list(arm.rows)
-    scaled = np.sqrt(arm.weight[rows])[:, None] * jacobian(robot, q[row])[rows]
+    scaled = np.sqrt(arm.search.weight[rows])[:, None] * jacobian(robot, q[row])[rows]
     values = np.linalg.svd(scaled, compute_uv=False)
     lost = values[-1] <= TOLERANCES.rests_singular * values[0]
     return IKStatus.SINGULARITY if lost else IKStatus.LOCAL_MINIMUM

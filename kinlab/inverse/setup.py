@@ -44,33 +44,19 @@ _KEPT = 16
 
 
 class Setup(NamedTuple):
-    """Arrays of one arm, task and seed; do not write to them.
+    """What is kept of one arm, task and seed; do not write to the arrays.
 
     Attributes:
-        fixed, prismatic: the chain.
-        lower, upper: limits, (n,).
+        search: what every search works with; a call's own numbers come in by :func:`search_of`.
         centre: angles are wrapped to within half a turn of this, (n,); within the limits.
-        wide: joints left free inside the iteration, (n,), bool.
-        weight: of the squared error, (6,); zero for coordinates not asked for.
-        table: poses of the starts, (12, S).
-        starts: states in general position within the limits, (S, n).
-        reach: farthest that the tool gets from the first joint's frame, metres.
         rows: the task's rows. task: its name.
         whole: the same arm with the whole pose as its task, which is tried first, where kinlab
             chose the task and it is less.
         kept: the searches made of it (:func:`search_of`).
     """
 
-    fixed: Array
-    prismatic: Any
-    lower: Array
-    upper: Array
+    search: Search
     centre: Array
-    wide: Any
-    weight: Array
-    table: Array
-    starts: Array
-    reach: float
     rows: tuple[int, ...]
     task: str
     whole: Setup | None
@@ -132,22 +118,24 @@ def _work_out(robot: Robot, space: TaskSpace, seed: int, count: int) -> Setup:
     weight[list(rows)] = 1.0
     weight[:3] /= length**2
     poses = fk(robot, sample)[:, :3, :].reshape(count, 12)
-    return Setup(
+    search = Search(
         fixed,
         prismatic,
         lower,
         upper,
-        np.clip(0.0, lower, upper),
         ~slides & (upper - lower >= WIDE),
         weight,
         np.ascontiguousarray(poses.T),
         sample,
+        np.zeros(2),
+        DAMPING,
+        TOLERANCES.damping_floor,
+        ITERATIONS["lm"],
+        1,
+        PATIENCE["lm"],
         reach,
-        rows,
-        space.name,
-        None,
-        {},
     )
+    return Setup(search, np.clip(0.0, lower, upper), rows, space.name, None, {})
 
 
 def _window(lower: Array, upper: Array, slides: Any, length: float) -> tuple[Array, Array]:
@@ -174,34 +162,20 @@ def search_of(
     kept = arm.kept.get(key)
     if kept is not None:
         return kept
-    lower, upper, wide = arm.lower, arm.upper, arm.wide
+    found = arm.search._replace(
+        tolerances=np.array(tolerances), iterations=iterations, searches=searches
+    )
     if not limited:
-        lower, upper = np.full_like(lower, -np.inf), np.full_like(upper, np.inf)
-        wide = np.ones(len(lower), dtype=np.bool_)
+        none, free = np.full_like(arm.centre, np.inf), np.ones(len(arm.centre), dtype=np.bool_)
+        found = found._replace(lower=-none, upper=none, wide=free)
     if len(arm.kept) >= _KEPT:
         arm.kept.clear()
-    found = arm.kept[key] = Search(
-        arm.fixed,
-        arm.prismatic,
-        lower,
-        upper,
-        wide,
-        arm.weight,
-        arm.table,
-        arm.starts,
-        np.array(tolerances),
-        DAMPING,
-        TOLERANCES.damping_floor,
-        iterations,
-        searches,
-        PATIENCE["lm"],
-        arm.reach,
-    )
+    arm.kept[key] = found
     return found
 
 
 def beyond_reach(arm: Setup, target: Array, tolerance: float) -> bool:
     """Whether the target is farther from the first joint than the arm is long."""
-    asked = arm.weight[:3] > 0.0
-    away = (target[:3, 3] - arm.fixed[0, [3, 7, 11]])[asked]
-    return float(np.linalg.norm(away)) > arm.reach + tolerance
+    asked = arm.search.weight[:3] > 0.0
+    away = (target[:3, 3] - arm.search.fixed[0, [3, 7, 11]])[asked]
+    return float(np.linalg.norm(away)) > arm.search.reach + tolerance

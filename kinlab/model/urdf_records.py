@@ -10,7 +10,7 @@ import difflib
 import math
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -401,36 +401,36 @@ def _joint(element: Any, links: dict[str, LinkRecord], where: str) -> JointRecor
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = rpy_matrix(*rpy), xyz
     mimics = _only(element, "mimic", where) is not None
-    fixed = JointRecord(element.get("name"), kind, ends[0], ends[1], rpy, pose, mimics=mimics)
-    return _moving(fixed, element, where) if kind in MOVING else fixed
-
-
-def _moving(joint: JointRecord, element: Any, where: str) -> JointRecord:
-    dynamics = _only(element, "dynamics", where)
-    joint = replace(
-        joint,
-        axis=_axis(_only(element, "axis", where), where),
-        damping=_amount(dynamics, "damping", f"{where}: damping"),
-        friction=_amount(dynamics, "friction", f"{where}: friction"),
+    moves = _motion(element, kind, where) if kind in MOVING else {}
+    return JointRecord(
+        element.get("name"), kind, ends[0], ends[1], rpy, pose, mimics=mimics, **moves
     )
-    limit = _only(element, "limit", where)
+
+
+def _motion(element: Any, kind: str, where: str) -> dict[str, Any]:
+    """What a joint that moves has beside its place: its axis, losses and limits."""
+    dynamics, limit = _only(element, "dynamics", where), _only(element, "limit", where)
+    found: dict[str, Any] = {"axis": _axis(_only(element, "axis", where), where)}
+    for key in ("damping", "friction"):
+        found[key] = _amount(dynamics, key, f"{where}: {key}")
+    wide = {"lower": -WIDE_TURN, "upper": WIDE_TURN}
     if limit is None:
-        if joint.kind != "continuous":
-            raise UrdfError(f"{where}: <limit> is missing; a {joint.kind} joint must have one")
-        return replace(joint, lower=-WIDE_TURN, upper=WIDE_TURN, velocity=10.0, effort=1000.0)
-    lower, upper = (
-        float(read_numbers(limit.get(k), 1, (0.0,), f"{where}: limit {k}", _LIMITLESS)[0])
-        for k in ("lower", "upper")
-    )
-    if joint.kind == "continuous":
-        lower, upper = -WIDE_TURN, WIDE_TURN
-    if lower > upper:
-        raise UrdfError(f"{where}: lower {lower:g} is above upper {upper:g}")
-    rates = [_amount(limit, key, f"{where}: limit {key}") for key in ("velocity", "effort")]
+        if kind != "continuous":
+            raise UrdfError(f"{where}: <limit> is missing; a {kind} joint must have one")
+        return found | wide | {"velocity": 10.0, "effort": 1000.0}
+    for key in ("lower", "upper"):
+        read = read_numbers(limit.get(key), 1, (0.0,), f"{where}: limit {key}", _LIMITLESS)
+        found[key] = float(read[0])
+    if kind == "continuous":
+        found |= wide
+    if found["lower"] > found["upper"]:
+        raise UrdfError(f"{where}: lower {found['lower']:g} is above upper {found['upper']:g}")
+    for key in ("velocity", "effort"):
+        found[key] = _amount(limit, key, f"{where}: limit {key}")
     for key in ("velocity", "effort"):
         if limit.get(key) is None:
-            raise UrdfError(f"{where}: <limit> has no {key}; a {joint.kind} joint must have one")
-    return replace(joint, lower=lower, upper=upper, velocity=rates[0], effort=rates[1])
+            raise UrdfError(f"{where}: <limit> has no {key}; a {kind} joint must have one")
+    return found
 
 
 def _amount(element: Any, key: str, where: str) -> float:

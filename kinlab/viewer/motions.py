@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.analysis.structure.task_space import mask_of
-from kinlab.arrays import Array, real_array
+from kinlab.arrays import Array, real_array, word
 from kinlab.drives.laws import rising
 from kinlab.engine.fast.stacks import fk, jacobian
-from kinlab.errors import NameUnknownError, OptionError, StateError, StructureError, near
+from kinlab.errors import OptionError, StateError, StructureError
 from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.viewer.arm_page import judged_rows
@@ -79,9 +79,7 @@ def motion(robot: Robot, kind: str, start: Array) -> ShownMotion:
         NameUnknownError: no motion of that name.
         StructureError: the arm cannot do it; says why.
     """
-    if kind not in MOTIONS:
-        raise NameUnknownError(f"motion {kind!r} is unknown; {near(kind, MOTIONS)}")
-    return MOTIONS[kind](robot, start)
+    return MOTIONS[word(kind, MOTIONS, "motion")](robot, start)
 
 
 def sweep(robot: Robot, start: Array) -> ShownMotion:

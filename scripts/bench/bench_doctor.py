@@ -5,9 +5,11 @@ was stopped goes on where it was, and the same ``--seed`` makes the same cases i
 
 *exact*: the first cause names the mistake, or one of the causes of equal length does (counted
 apart as *tied*), and a repaired text agrees with the right one to 1e-9 at random parameters.
-*wrong*: a cause is given, and none of the leading ones is the mistake. *part*: the cause is not
-known, but a part of the formula is said to be right, or wrong. *unknown*: neither. Writes
-results/bench_doctor.json and .md, and the tables of docs/benchmarks.md are made of the first.
+*other*: none of them is what was done, but the repaired text is the right one, with no more changes
+than were made, or the difference is told term by term. *wrong*: a cause is given, and it is
+neither. *part*: the cause is not known, but a part of the formula is said to be right, or wrong.
+*unknown*: not even that. Writes results/bench_doctor.json and .md, and the tables of
+docs/benchmarks.md are made of the first.
 """
 
 from __future__ import annotations
@@ -28,8 +30,8 @@ from bench_doctor_cases import Case, classes, right
 import kinlab as kl
 
 EXACT = ("first", "tied", "right")
-MISSED = ("wrong", "part", "unknown", "unnoticed", "refused", "false alarm")
-HEADS = ("exact", "tied", "wrong", "part", "unknown", "unnoticed", "refused")
+MISSED = ("other", "wrong", "part", "unknown", "unnoticed", "refused", "false alarm")
+HEADS = ("exact", "tied", "other", "wrong", "part", "unknown", "unnoticed", "refused")
 DRAWS = 40
 """Draws until a maker has a case: many an arm has no slide, many a formula no square."""
 
@@ -46,13 +48,15 @@ def judged(case: Case) -> tuple[str, Any]:
         return "unnoticed", answer
     if not answer.causes:
         return "part" if answer.partial else "unknown", answer
-    shortest = len(answer.causes[0].kinds)
-    leading = [c for c in answer.causes if len(c.kinds) == shortest]
-    if case.repaired(answer) and case.named(leading[0]):
+    kinds = answer.causes[0].kinds
+    leading = [c for c in answer.causes if len(c.kinds) == len(kinds)]
+    mended = case.repaired is None or case.repaired(answer)
+    if mended and case.named(leading[0]):
         return "first", answer
-    if case.repaired(answer) and any(case.named(c) for c in leading):
+    if mended and any(case.named(c) for c in leading):
         return "tied", answer
-    return "wrong", answer
+    otherwise = len(kinds) <= case.made or {*kinds} == {"coefficient"}
+    return ("other" if case.repaired and mended and otherwise else "wrong"), answer
 
 
 def record(group: str, key: str, number: int, seed: int) -> dict[str, Any]:
@@ -147,8 +151,8 @@ def summary(records: list[dict[str, Any]]) -> dict[str, Any]:
 def row(tally: Counter[str]) -> str:
     """Cases, share named, and each verdict."""
     exact = sum(tally[v] for v in EXACT)
-    cells = [tally["tied"], tally["wrong"] + tally["false alarm"],
-             *(tally[v] for v in HEADS[3:])]  # fmt: skip
+    cells = [tally["tied"], tally["other"], tally["wrong"] + tally["false alarm"],
+             *(tally[v] for v in HEADS[4:])]  # fmt: skip
     return f"{tally['cases']} | {exact / tally['cases']:.1%} | " + " | ".join(map(str, cells))
 
 

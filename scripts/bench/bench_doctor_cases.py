@@ -65,14 +65,16 @@ class Case:
         about: for the list of misses.
         examine: asks.
         named: whether a cause is the mistake; None where nothing is wrong.
-        repaired: whether what the doctor proposes is the true formula.
+        repaired: whether what the doctor proposes is the true formula; None where it is not asked.
+        made: how many mistakes were made.
     """
 
     label: str
     about: dict[str, Any]
     examine: Callable[[], Any]
     named: Callable[[Any], bool] | None = None
-    repaired: Callable[[Any], bool] = lambda answer: True
+    repaired: Callable[[Any], bool] | None = None
+    made: int = 1
 
 
 @dataclass
@@ -147,9 +149,9 @@ def differs(formula: Formula, one: str, numbers: bool) -> bool:
     return bool(np.max(np.abs(value(one, at) - right)) > 1e-9 * np.max(np.abs(right)))
 
 
-def merged(formula: Formula, bad: str) -> bool:
+def merged(formula: Formula, bad: str, numbers: bool) -> bool:
     """Whether two slips are one by value: a multiple of one term, or what one slip makes too."""
-    at = points(formula, False)
+    at = points(formula, numbers)
     right = value(formula.text, at)
     gap = value(bad, at) - right
     size = np.max(np.abs(right))
@@ -224,7 +226,7 @@ def same(arm: Any, quantity: str, function: Any) -> bool:
             right = kl.jacobian(arm, *state, quantity.removeprefix("jacobian_"))
         else:
             right = plain(quantity)(arm, *state)
-        wrong = np.asarray(function(*state))
+        wrong, right = np.asarray(function(*state)), np.asarray(right)
         if wrong.shape != right.shape:
             return False
         if np.max(np.abs(wrong - right)) > 1e-9 * (np.max(np.abs(right)) or 1.0):
@@ -258,7 +260,7 @@ def spoiled(formula: Formula, rules: list[str], numbers: bool, rng: random.Rando
     assert bad is not None
     if not (differs(formula, bad, True) and (numbers or differs(formula, bad, False))):
         return None
-    return None if len(rules) > 1 and merged(formula, bad) else bad
+    return None if len(rules) > 1 and merged(formula, bad, numbers) else bad
 
 
 def _apart(formula: Formula, one: str, other: str) -> bool:
@@ -281,7 +283,7 @@ def slips(count: int, form: str) -> Callable[[random.Random], Case | None]:
         return Case(
             " + ".join(sorted(rules)), about, lambda: by(formula, bad),
             lambda cause: named(cause.kinds, [NAMES[rule] for rule in rules]),
-            lambda answer: repaired(formula, answer),
+            lambda answer: repaired(formula, answer), count,
         )  # fmt: skip
 
     return make
@@ -489,15 +491,14 @@ def misprint(key: str) -> Callable[[random.Random], Case | None]:
         row = next(one for one in catalogue() if one.key == key)
         domain = find_quantity(row.quantity.partition("[")[0]).domain
         shown = row.printed.robots or row.robots
-        name = rng.choice([r for one in shown for r in domain.members(one)])
-        mechanism = domain.load(name)
-        numbers = domain.numbers(mechanism)
+        name = next(r for one in shown for r in domain.members(one))
+        numbers = domain.numbers(domain.load(name))
 
         def printed(*state: Any) -> Any:
             return row.printed.function(numbers, *state)
 
         return Case(key, {"robot": name, "entry": row.quantity, "misprint": row.printed.misprint},
-                    lambda: kl.diagnose(mechanism, row.quantity, printed, samples=60),
+                    lambda: kl.diagnose(name, row.quantity, printed, samples=60),
                     said(MISPRINTS[key]))  # fmt: skip
 
     return make

@@ -254,37 +254,32 @@ def _in_part(
     if wrong:
         return _wrong(question, wrong[0], file, robot)
     names = ", ".join(one.function for one in asked)
-    return Outcome(
-        question.id,
-        WRONG,
-        0.0,
-        question.points,
-        ("missing entries",),
-        place=_("{entries}: right; the other entries are not given").format(entries=names),
-        cause=_("entries are missing"),
-    )
+    place = _("{entries}: right; the other entries are not given").format(entries=names)
+    return _less(question, 0.0, ("missing entries",), place)
+
+
+def _less(
+    question: Question,
+    points: float,
+    kinds: tuple[str, ...],
+    place: str,
+    answer: tuple[str, ...] = (),
+    formulas: tuple[tuple[str, str], ...] = (),
+) -> Outcome:
+    """A wrong answer: what is left of its points, and all that can be told of it."""
+    got = (question.id, WRONG, points, question.points, kinds, ())
+    return Outcome(*got, place, told(kinds), answer, formulas)
 
 
 def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot: Robot) -> Outcome:
     best = found.causes[0] if found.causes else None
-    kinds = best.kinds if best is not None else ("unknown",)
-    points = _points(question, kinds)
+    kinds = tuple(best.kinds) if best is not None else ("unknown",)
     places, formulas = _places(found, best, file, robot)
     answer: list[str] = []
     if best is not None:
-        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.shown.items())]
-    return Outcome(
-        question.id,
-        WRONG,
-        points,
-        question.points,
-        tuple(kinds),
-        (),
-        _("; ").join(places),
-        told(kinds),
-        tuple(answer),
-        formulas,
-    )
+        answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
+    points, place = _points(question, kinds), _("; ").join(places)
+    return _less(question, points, kinds, place, tuple(answer), formulas)
 
 
 def _points(question: Question, kinds: Iterable[str]) -> float:
@@ -375,21 +370,9 @@ def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFi
             continue
         forms.update(kinds)
         if kinds != ("rounded",):
-            points = _points(question, kinds)
             place = name if len(model.formulas) > 1 else _("the formula as a whole")
-            right_one = (f"{name} = {right}",)
-            return Outcome(
-                question.id,
-                WRONG,
-                points,
-                question.points,
-                kinds,
-                (),
-                place,
-                told(kinds),
-                right_one,
-                formulas,
-            )
+            points, right_one = _points(question, kinds), (f"{name} = {right}",)
+            return _less(question, points, kinds, place, right_one, formulas)
     return _graded(question, forms, formulas)
 
 

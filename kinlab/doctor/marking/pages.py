@@ -13,8 +13,8 @@ from markupsafe import Markup
 from kinlab.check.report import html as report
 from kinlab.doctor.marking.judge import MISSING, WRONG
 from kinlab.doctor.marking.marks import Mark, Marks
-from kinlab.doctor.marking.words import KINDS
-from kinlab.host.language import N_, _, ngettext
+from kinlab.doctor.marking.words import told
+from kinlab.host.language import _
 from kinlab.host.version import __version__
 from kinlab.host.web import page_text, policy, templates
 
@@ -57,7 +57,7 @@ def class_page(marks: Marks) -> str:
         {
             "question": question,
             "kind": kind,
-            "told": _phrase(kind),
+            "told": told((kind,)),
             "marks": found,
             "share": 100.0 * len(found) / len(marks.marks),
         }
@@ -80,18 +80,6 @@ def class_page(marks: Marks) -> str:
             feedback=marks.feedback, version=__version__
         ),
     )
-
-
-def _phrase(kind: str) -> str:
-    said = _UNSHEETED.get(kind, KINDS.get(kind, kind))
-    return _(said)
-
-
-_UNSHEETED = {
-    "unread": N_("could not be read"),
-    "missing entries": N_("entries are missing"),
-}
-"""What is said of kinds that a sheet cannot name."""
 
 
 def _tone(outcome: Any) -> str:
@@ -128,5 +116,5 @@ def _render(template: str, **values: Any) -> str:
 @cache
 def _environment() -> Environment:
     made = templates(_FOLDER, _REPORT)
-    made.globals |= {"tone": _tone, "ngettext": ngettext}
+    made.globals |= {"tone": _tone}
     return made

@@ -36,7 +36,7 @@ from kinlab.doctor.examine import prepare
 from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.words import KINDS
 from kinlab.doctor.terms import split_name
-from kinlab.errors import FileError, KinlabError, NameUnknownError, near
+from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
 from kinlab.model.library import load
@@ -328,16 +328,3 @@ def _whole(
     if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= most:
         raise SheetError(f"{place}: {key} is {value!r}; a whole number from {least} to {most}")
     return value
-
-
-def question_of(sheet: Sheet, name: str) -> Question:
-    """A question by its id.
-
-    Raises:
-        NameUnknownError: the sheet has none of that id.
-    """
-    for question in sheet.questions:
-        if question.id == name:
-            return question
-    ids = [question.id for question in sheet.questions]
-    raise NameUnknownError(f"{sheet.place}: question {name!r} is unknown; {near(name, ids)}")

@@ -116,10 +116,16 @@ OTHERS = (
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 
 
+_SAID = {
+    **KINDS,
+    "unread": N_("could not be read"),
+    "missing entries": N_("entries are missing"),
+}
+
+
 def _phrase(kind: str) -> str:
     named = kind if _WORDS.fullmatch(kind) else KINDS["other"]
-    said = KINDS.get(kind, named)
-    return _(said)
+    return _(_SAID.get(kind, named))
 
 
 def told(kinds: Iterable[str]) -> str:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from kinlab.arrays import Array
 from kinlab.doctor.tables.chain import (
     ALPHA,
+    AXIS_OF,
     COLUMNS,
     THETA,
     A,
@@ -45,8 +46,6 @@ from kinlab.doctor.tables.words import (
 from kinlab.host.language import _
 from kinlab.model.rotations import about_axis
 from kinlab.tolerances import TOLERANCES
-
-_AXES = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 
 
 def one_change(bases: Sequence[Reading], target: Target) -> list[Reading]:
@@ -103,7 +102,7 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
     for row, turn, slide in ((z_row, THETA, D), (x_row, ALPHA, A)):
         if not 0 <= row < chain.n:
             continue
-        angle, length, rest = _screw(motion, _AXES[turn])
+        angle, length, rest = _screw(motion, AXIS_OF[turn])
         if rest > target.steady * target.size:
             continue
         changes = {}
@@ -322,8 +321,8 @@ def _two_angles(chain: Chain, target: Target) -> list[Reading]:
     before = inverse(poses[:, one])
     between = before @ poses[:, two]  # (N, P, 4, 4)
     wanted = before @ (world[:, None] @ poses[:, two])
-    axis1 = np.array([_AXES[pair[0][1]] for pair in pairs])
-    axis2 = np.array([_AXES[pair[1][1]] for pair in pairs])
+    axis1 = np.array([AXIS_OF[pair[0][1]] for pair in pairs])
+    axis2 = np.array([AXIS_OF[pair[1][1]] for pair in pairs])
     each = np.arange(len(pairs))
     # what the second turn leaves alone: its own axis and a point on it
     was, shall = (
@@ -376,7 +375,7 @@ def _turned(chain: Chain, target: Target) -> list[Reading]:
         motion[:, :3, 3] = 0.0
         if _spread(motion[None], 1.0)[0] > target.steady:
             continue
-        angle, _length, rest = _screw(np.mean(motion, axis=0), _AXES[column])
+        angle, _length, rest = _screw(np.mean(motion, axis=0), AXIS_OF[column])
         if rest <= target.steady and abs(angle) > target.steady:
             value = wrapped(float(chain.cells[row, column]) + angle)
             found.append(changed(Reading(chain), {(row, column): value}, target.slack))
@@ -393,7 +392,7 @@ def _lengths(first: Reading, target: Target, most: int) -> list[Reading]:
     wanted = (few.poses[:, :3, 3] - poses[:, -1, :3, 3]).reshape(-1)
     cells = _in_order(chain, (A, D))
     slopes = np.array(
-        [poses[:, chain.frame_of(*cell), :3, _AXES[cell[1]]].reshape(-1) for cell in cells]
+        [poses[:, chain.frame_of(*cell), :3, AXIS_OF[cell[1]]].reshape(-1) for cell in cells]
     ).T
     found = []
     for support in combinations(range(len(cells)), most):

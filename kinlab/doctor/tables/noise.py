@@ -17,7 +17,17 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.tables.cells import changed
-from kinlab.doctor.tables.chain import ALPHA, THETA, A, Chain, D, frames, inverse, stacked_frames
+from kinlab.doctor.tables.chain import (
+    ALPHA,
+    AXIS_OF,
+    THETA,
+    A,
+    Chain,
+    D,
+    frames,
+    inverse,
+    stacked_frames,
+)
 from kinlab.doctor.tables.readings import Reading, readings
 from kinlab.doctor.tables.reference.against import Reference
 from kinlab.doctor.tables.reference.target import Target
@@ -41,8 +51,6 @@ _AS_GOOD = 12.0
 
 _CUTS = (1e-6, 1e-4, 1e-3, 1e-2, 1e-1)
 """Shares of the largest singular value below which a direction of the fit is left alone."""
-
-_AXIS = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,7 +165,7 @@ def _candidates(plain: Reading, target: Target) -> list[Reading]:
         for column in (A, ALPHA, D, THETA):
             frame = poses[:, chain.frame_of(row, column)]
             motion = np.mean(inverse(frame) @ world @ frame, axis=0)
-            k = _AXIS[column]
+            k = AXIS_OF[column]
             u, v = (k + 1) % 3, (k + 2) % 3
             if column in (ALPHA, THETA):
                 change = float(np.arctan2(motion[v, u] - motion[u, v], motion[u, u] + motion[v, v]))
@@ -260,7 +268,7 @@ def _slopes(chain: Chain, poses: Array) -> Array:
     for row in range(chain.n):
         for column in range(4):
             frame = poses[:, chain.frame_of(row, column)]
-            axis = frame[:, :3, _AXIS[column]]
+            axis = frame[:, :3, AXIS_OF[column]]
             if column in (ALPHA, THETA):
                 out[:, 4 * row + column, :3] = np.cross(axis, tool - frame[:, :3, 3])
                 out[:, 4 * row + column, 3:] = axis

@@ -169,7 +169,7 @@ def ik_path(
     conditioning = np.empty(0)
     if len(q):
         rows = list(arm.rows)
-        scaled = np.sqrt(arm.weight[rows])[:, None] * jacobian(robot, q)[:, rows]
+        scaled = np.sqrt(arm.search.weight[rows])[:, None] * jacobian(robot, q)[:, rows]
         values = np.linalg.svd(scaled, compute_uv=False)
         conditioning = values[:, -1] / values[:, 0]
     return IKPath(
