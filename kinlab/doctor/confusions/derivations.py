@@ -19,7 +19,7 @@ from kinlab.doctor.confusions.walk import Step
 from kinlab.doctor.search import pairs_adding_up
 from kinlab.tolerances import TOLERANCES
 
-_LIKELY = 1.2
+_LIKELY = 1.215
 """Cost up to which a step is tried together with others."""
 _WAYS = 12_000
 """Combinations of steps that are tried, the likeliest first."""
