@@ -249,7 +249,7 @@ def test_002_c_is_off_by_the_stated_amount_on_the_2r_arm():
 
 
 def test_notes_import_numpy_and_each_other_only():
-    allowed = ("numpy", "typing", "dataclasses", "collections", "__future__", "math", "kinlab.host.answers",
+    allowed = ("numpy", "typing", "dataclasses", "collections", "functools", "__future__", "math", "kinlab.host.answers",
                "kinlab.formulas.record", "kinlab.notes")  # fmt: skip
     for file in Path(kinlab.notes.__file__).parent.glob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):

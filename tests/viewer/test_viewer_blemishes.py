@@ -9,8 +9,8 @@ import pytest
 from browser import chromium, open_file, tab, wait_until  # noqa: F401
 
 import kinlab as kl
+from kinlab.analysis.structure.axes import frame_origins
 from kinlab.viewer import motions
-from kinlab.viewer.arm_page import origins
 from kinlab.viewer.drawing.bodies import DrawnBodies
 from kinlab.viewer.scene import Scene
 
@@ -116,7 +116,7 @@ def test_a_narrow_window_keeps_its_picture(tab, tmp_path):  # noqa: F811
 
 
 def assert_all_in_the_picture(page, robot, poses):
-    points = np.concatenate([origins(robot, np.array(q)) for q in poses])
+    points = np.concatenate([frame_origins(robot, np.array(q)) for q in poses])
     places = page.evaluate(
         """points => points.map(([x, y, z]) => {
           viewer.camera.updateMatrixWorld();
