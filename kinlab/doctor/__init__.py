@@ -7,8 +7,6 @@ module              what it holds
                     one does
 ``derived``         The engine's quantities as derived formulas, entry by entry, for arms with a
                     DH table
-``edits``           Every slip of the pen at one place of a formula: sign, factor, power, index,
-                    function,
 ``examine``         The examination: compare, try the readings, look for slips in the entries,
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
@@ -22,8 +20,8 @@ module              what it holds
                     typeset and marked
 ``rounding``        Rounded numbers: what a written number may stand for, and whether that explains
                     a difference
-``search``          Finds the one or two edits that turn one formula into another, by their effect
-                    on values
+``search``          Every slip at one place of a formula, and those that turn it into another by
+                    their effect
 ``terms``           Slips within single entries: the derived formula beside a user's text or
                     function
 ``verdicts``        Right in another way: with numbers for names, or another valid formula

@@ -82,12 +82,46 @@ def examine(
         form = "rounded" if rounded and not hidden else ""
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
     excuse = _excuse(case, engine, written) if same else None
-    if excuse is not None:
+    near = excuse is not None and excuse.form == "near"
+    causes: list[Cause] = []
+    partial: tuple[str, ...] = ()
+    if excuse is None:
+        causes, partial, excuse = _explained(case, engine, written, worst)
+    if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
+    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
+        partial = (meant,)
+    ranked = _ranked(causes)
+    right_parts = proved(case, engine) if same and not ranked else ()
+    close = same and not ranked and not written and worst <= verdicts.NEAR
+    k = first_largest(errors)
+    where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
+    return Diagnosis(
+        quantity,
+        label,
+        name,
+        False,
+        worst,
+        tuple(ranked),
+        partial if not ranked else (),
+        where,
+        {n: stack[k] for n, stack in case.arguments.items()},
+        values[(k, *furthest)],
+        engine[(k, *furthest)],
+        "near" if close else "",
+        proved=right_parts,
+    )
+
+
+def _explained(
+    case: Case, engine: Array, written: dict[str, Written], worst: float
+) -> tuple[list[Cause], tuple[str, ...], Excuse | None]:
+    """What explains the difference, what is known of some entries, or why it is none."""
+    same = case.hand.shape == engine.shape
     silent = _without_value(case, engine) if same else None
     tried = readings(case)
-    signs = _bare_signs(values)
+    signs = _bare_signs(case.hand)
     if signs:
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
@@ -114,8 +148,7 @@ def examine(
         causes = [*_singly(case, changed)] or rough
         near = None if causes else verdicts.to_digits(worst)
         if near is not None:
-            right = Diagnosis(quantity, label, name, True, worst)
-            return replace(right, form=near.form, remarks=near.remarks)
+            return [], (), near
     if not causes and not signs:
         found_ = one_for_each_kind(case) or several_taken_otherwise(case)
         causes = [_as_steps(found) for found in found_]
@@ -125,28 +158,7 @@ def examine(
         # beside a list of slips only the likeliest reading: each costs a search of its own
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
-    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
-        partial = (meant,)
-    ranked = _ranked(causes)
-    right_parts = proved(case, engine) if same and not ranked else ()
-    close = same and not ranked and not written and worst <= verdicts.NEAR
-    k = first_largest(errors)
-    where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
-    return Diagnosis(
-        quantity,
-        label,
-        name,
-        False,
-        worst,
-        tuple(ranked),
-        partial if not ranked else (),
-        where,
-        {n: stack[k] for n, stack in case.arguments.items()},
-        values[(k, *furthest)],
-        engine[(k, *furthest)],
-        "near" if close else "",
-        proved=right_parts,
-    )
+    return causes, partial, None
 
 
 def _texts_again(

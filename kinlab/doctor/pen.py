@@ -21,8 +21,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.edits import Names
-from kinlab.doctor.search import pairs_adding_up
+from kinlab.doctor.meanings import Meanings
+from kinlab.doctor.search import Names, pairs_adding_up
 from kinlab.doctor.written import Written, operands
 from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, canonical, joint_spelling, parse, respelled
@@ -30,6 +30,8 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
+_NUMBERS = {"1": 1.0, "2": 2.0, "3": 3.0, "4": 4.0, "6": 6.0, "8": 8.0, "12": 12.0, "0.5": 0.5}
+_NUMBERS |= {"(1/3)": 1 / 3, "(1/4)": 0.25, "(1/12)": 1 / 12}
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
 _TRIED = 60
 _LONG = 8
@@ -37,7 +39,7 @@ _LONG = 8
 _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
 _TERMS = {"extra term", "missing term"}
-_NAMED = ("parameter", "missing factor", "power")
+_NAMED = ("parameter", "missing factor", "extra factor", "power")
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 
 
@@ -244,7 +246,9 @@ class Line:
         return term if len(term) < 70 and (place is not inner or not alone) else ""
 
     def study(self) -> None:
-        """Notes every change."""
+        """Notes every change, once."""
+        if self.changes:
+            return
         for place in list(self.places):
             if _inside_call(place) or _is_exponent(place):
                 continue
@@ -309,22 +313,28 @@ class Line:
             self.instead(place, f"({new})" if tight else new, value, kind, cost)
 
     def _number(self, place: _Place) -> None:
-        for shown, size in {
-            "1": 1.0,
-            "2": 2.0,
-            "3": 3.0,
-            "4": 4.0,
-            "6": 6.0,
-            "8": 8.0,
-            "12": 12.0,
-            "0.5": 0.5,
-        }.items():
-            idle = size == 1.0 and place.above is not None and _is_product(place.above.node)
-            if size != float(self.segment(place)) and not idle:
+        idle = place.above is not None and _is_product(place.above.node)
+        for shown, size in _NUMBERS.items():
+            if size != float(self.segment(place)) and not (size == 1.0 and idle):
                 self.instead(place, shown, np.full(self.count, size), "factor", 1.25)
-        if "." in self.segment(place):  # a length's number, mistaken: 0.41 for l2 = 0.4
-            for word, value in self.atoms.items():
-                self.instead(place, word, value, "parameter", 1.2)
+        if "." not in self.segment(place):
+            return
+        for word, value in self.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
+            self.instead(place, word, value, "parameter", 1.2)
+        if self.numeric:
+            moved = self._climbed(place, place.value + 1.0) - self.root.value
+            size = float(np.sum(moved * moved))
+            right = place.value + np.sum(moved * (self.target - self.root.value)) / (size or 1.0)
+            shown = np.format_float_positional(float(right[0]), 12, fractional=False, trim="-")
+            if not shown.startswith("-") and not (idle and shown == "1"):
+                held = self.meanings.holds(float(self.segment(place)))
+                doubt = 0.5 * held + 0.3 * (not self.meanings.holds(float(right[0])))
+                self.instead(place, shown, right, "coefficient", 1.15 + doubt)
+
+    @cached_property
+    def meanings(self) -> Meanings:
+        """What numbers may stand for, at the robot's own."""
+        return Meanings.at(self.at)
 
     def _call(self, place: _Place, node: ast.Call) -> None:
         name = node.func.id if isinstance(node.func, ast.Name) else ""
@@ -402,9 +412,12 @@ class Line:
             N_("the factor {factor} does not belong in {term}"),
         )
         one, two = pieces | {"factor": second}, pieces | {"factor": first}
-        change = Change(at, end, "", "extra factor", 1.3, told, pieces=one)
-        self.put(place, left.value, change)
-        kind = "factor" if isinstance(left.node, ast.Constant) else "extra factor"
+        kinds = [
+            "factor" if isinstance(part.node, ast.Constant) else "extra factor"
+            for part in (right, left)
+        ]
+        self.put(place, left.value, Change(at, end, "", kinds[0], 1.3, told, pieces=one))
+        kind = kinds[1]
         self.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told, pieces=two))
 
     def _as_factor(self, place: _Place) -> None:
@@ -599,7 +612,7 @@ class Line:
 # -------- One slip, two, three
 
 
-def mended(line: Line) -> list[Mended]:
+def mended(line: Line, most: int = 3) -> list[Mended]:
     """The fewest changes that make the text right, the likeliest first; empty where none do."""
     if not line.source.isascii():
         return []  # places are counted in bytes
@@ -611,7 +624,7 @@ def mended(line: Line) -> list[Mended]:
     allowed = TOLERANCES.effect_matches * line.scale
     gaps = np.max(np.abs(effects - wanted), axis=1)
     found: list[tuple[int, ...]] = [(int(k),) for k in np.flatnonzero(gaps <= allowed)]
-    for more in (_pairs, _covers):
+    for more in (_pairs, _covers)[: most - 1]:
         good = list(_checked(line, found))
         if good:
             return sorted(good, key=lambda m: m.cost)
@@ -663,6 +676,16 @@ def _covers(line: Line, effects: Array, wanted: Array, allowed: float) -> list[t
         pairs = pairs_adding_up(effects, wanted - effects[first], allowed)
         found += [tuple(sorted((int(first), *pair))) for pair in pairs if first not in pair]
     return _cheapest(line, found)
+
+
+def together(line: Line, changes: tuple[Change, ...]) -> list[Mended]:
+    """Changes that were found one by one, as one repair, if they are."""
+    line.changes += changes
+    behind = len(line.changes)
+    found = [tuple(range(behind - len(changes), behind))]
+    done = list(_checked(line, found))
+    del line.changes[behind - len(changes) :]
+    return done
 
 
 def _checked(line: Line, found: list[tuple[int, ...]]) -> Iterator[Mended]:

@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -196,8 +195,25 @@ class _Search:
             for k, one in enumerate(literals)
             if one.half > 0 and not self.meanings.holds(float(numbers[k]))
         ]
-        together = any(self.text.in_one_term(a, b) for a, b in combinations(bare, 2))
-        return None if together or (bare and not alone) else changed
+        if bare and not (alone and self._told_apart(bare, numbers)):
+            return None
+        return changed
+
+    def _told_apart(self, bare: list[int], numbers: Array) -> bool:
+        """Whether no error of one number could be another's: not of one term or one coefficient."""
+        if len(bare) < 2:
+            return True
+        here = self.text.values(self.at, numbers)
+        columns = []
+        for k in bare:
+            moved = numbers.copy()
+            moved[k] += 1e-3 * self.text.literals[k].reach
+            column = (self.text.values(self.at, moved) - here) / self.scale
+            size = float(np.linalg.norm(column))
+            if size == 0.0 or not np.isfinite(size):
+                return False
+            columns.append(column / size)
+        return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(bare))
 
 
 def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Array]) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -16,9 +17,8 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import pen, regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
-from kinlab.doctor.edits import Edit, Names
 from kinlab.doctor.pen import Mended, brief
-from kinlab.doctor.search import Repair
+from kinlab.doctor.search import Edit, Names, Repair
 from kinlab.doctor.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -106,6 +106,8 @@ def _label(name: str, index: tuple[int, ...]) -> str:
 # -------- Slips within single entries: the derived formula beside a user's text or function
 
 _POINTS = 24
+_WAYS = 3
+"""Repairs of one part that are tried beside those of the others."""
 _WRITTEN_OUT = 60
 """Terms of an entry up to which a function may have been written out by hand."""
 _SHORT = 30
@@ -183,15 +185,60 @@ def in_text(
     right = derived.tree(poly)
     extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    found: list[Mended] = []
     own = {name: values[:_POINTS] for name, values in here.items()}
-    for at in (as_rods(anywhere(names), written, derived), own):
+    # names that are not there may be there as their numbers: whole ones too
+    left_out = (tree.names(right) & set(names.parameters)) - tree.names(written.node)
+    held = [float(derived.arm.values[name]) for name in left_out]
+    numbers = any(
+        not one.exponent and ("." in one.text or one.value in held) for one in written.literals
+    )
+    lines = []
+    for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        line = pen.Line(written, names, at, np.array(target), extra, numeric=at is own)
-        found = pen.mended(line)
-        if found:
-            break
+        lines.append(pen.Line(written, names, at, np.array(target), extra, numeric=at is own))
+    tried = [(line, 1) for line in lines if numbers] + [(line, 2) for line in lines]
+    found: list[Mended] = next(filter(None, (pen.mended(*way) for way in tried)), [])
+    found = found or _part_by_part(lines[0], right)
+    found = found or next(filter(None, (pen.mended(line) for line in lines)), [])
     return [_mended(written, one, here) for one in found]
+
+
+_MOTION = re.compile(r"(qdd?)\d+")
+_PARTS = (("qd", "g"), ("qdd", "g"), ("qd", "qdd"))
+"""What is zero where a formula is one of its parts alone: accelerations, velocities, gravity."""
+_SLIPS = 4
+"""Slips in all parts together above which a list of them is no diagnosis."""
+
+
+def parts(right: Node, at: dict[str, Array]) -> list[dict[str, Array]]:
+    """The names' values at which a formula is one of its parts, for those that it has."""
+    met = {found[1] if (found := _MOTION.fullmatch(n)) else n for n in tree.names(right)}
+    if len(met & {"qd", "qdd", "g"}) < 2:
+        return []
+    alone = []
+    for gone in _PARTS:
+        zero = [n for n in at if n in gone or ((m := _MOTION.fullmatch(n)) and m[1] in gone)]
+        inside = at | {n: np.zeros_like(at[n]) for n in zero}
+        if np.max(np.abs(tree.evaluate(right, inside))) > 0:
+            alone.append(inside)
+    return alone if len(alone) > 1 else []
+
+
+def _part_by_part(line: pen.Line, right: Node) -> list[Mended]:
+    """One or two slips in each of several parts, each found where the other parts are zero."""
+    ways: list[list[Mended]] = []
+    for at in parts(right, dict(line.at)):
+        target = np.array(np.broadcast_to(tree.evaluate(right, at), line.target.shape))
+        part = pen.Line(line.text, line.names, at, target, line.terms)
+        if np.max(np.abs(part.root.value - target)) <= TOLERANCES.effect_matches * line.scale:
+            continue
+        ways.append(pen.mended(part, 2)[:_WAYS])
+    good = []
+    for chosen in product(*ways) if len(ways) > 1 else ():
+        changes = tuple(dict.fromkeys(change for way in chosen for change in way.changes))
+        if len(changes) <= _SLIPS:
+            good += pen.together(line, changes)
+    return sorted(good, key=lambda m: m.cost)[:_WAYS]
 
 
 def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:
@@ -260,7 +307,6 @@ def in_function(
     alone = [found for found in sums if len(found) == 1][:1]
     if len(poly) <= _SHORT:
         repairs = [(c.root, r) for c in cases for r in search.double(c)]
-        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
     slips += [_as_terms(label, right, found, names, everywhere) for found in alone]
     if not slips:

@@ -46,7 +46,8 @@ class Excuse:
     """Why a formula that is not the engine's, digit for digit, is right.
 
     Attributes:
-        form: ``"rounded"``, ``"unusual"`` or ``"digits"``; ``""`` where there is only a remark.
+        form: ``"rounded"``, ``"unusual"`` or ``"digits"``; ``""`` where there is only a remark;
+            ``"near"`` of one that may be right, but need not.
         remarks: in plain words.
     """
 
@@ -270,7 +271,7 @@ def _digits(error: float) -> int:
 def of_coefficients(case: Case, engine: Array) -> Excuse | None:
     """A function whose coefficients are the derived ones, rounded, in every entry; or None.
 
-    Where the digits of each cannot be told (a sum of rounded numbers), it is right to digits.
+    Where the digits of each cannot be told, it is right to four digits or more, or ``"near"``.
     """
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
@@ -289,7 +290,10 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
     if not largest:
         return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
     said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
-    return Excuse("digits", (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)))
+    return Excuse(
+        "digits" if largest <= _SAME_DIGITS else "near",
+        (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)),
+    )
 
 
 def _of_function(

@@ -130,33 +130,6 @@ class Written:
                 found.append(Literal(shown, one.value, 0.0, True) if exact else one)
         return tuple(found)
 
-    def in_one_term(self, one: int, two: int) -> bool:
-        """Whether two literals are factors of one term, so that an error could lie in either."""
-        return frozenset((one, two)) in self._factors
-
-    @cached_property
-    def _factors(self) -> set[frozenset[int]]:
-        found: set[frozenset[int]] = set()
-        start = dict(zip(self._used, self._starts, strict=True))
-        inside = {
-            id(constant): start[place] + k
-            for place in self._used
-            for k, (constant, _exact) in enumerate(_constants(self._trees[place]))
-        }
-
-        def walk(node: ast.expr) -> list[int]:
-            if isinstance(node, ast.Constant):
-                return [inside[id(node)]]
-            if isinstance(node, ast.Name):
-                return walk(self._trees[node.id]) if node.id in start else []
-            parts = [walk(child) for child in operands(node)]
-            if isinstance(node, ast.BinOp) and not isinstance(node.op, (ast.Add, ast.Sub)):
-                found.update(frozenset((a, b)) for a in parts[0] for b in parts[1])
-            return [k for part in parts for k in part]
-
-        walk(self._trees[""])
-        return found
-
     @cached_property
     def _used(self) -> list[str]:
         """The symbols with numbers of their own that the text reaches, the text itself first."""

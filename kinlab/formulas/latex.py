@@ -340,8 +340,10 @@ class _Reader:
             below = below or self.subscript()
         else:
             head, below = self.letter(), self.subscript()
-        if dots and head not in ("q", "theta"):
-            raise ExpressionError(f"{self.place}: LaTeX: a dot over {head}; only over q and theta")
+        if dots and head not in ("q", "theta", "d"):
+            raise ExpressionError(
+                f"{self.place}: LaTeX: a dot over {head}; only over q, theta and a slide's d"
+            )
         if self.next == "^" and not below:  # l^2_1 is l_1^2
             mark, noted = self.at, len(self.leaves)
             self.take()
@@ -387,6 +389,26 @@ class _Reader:
                     f"_{token}{self.next}", rf"write _{{{token}{self.next}}} for one index"
                 )
             return self.plain(token)
+        first = self.at
+        self.take()
+        text = ""
+        while self.next and self.next != "}":
+            text += self.take() if self.next == "+" else self.below_below()
+        self.take("}")
+        if "+" in text:  # c_{1+2}
+            joints = text.split("+")
+            if not all(j.isdigit() and len(j) == 1 for j in joints) or joints != sorted(joints):
+                self.at = first
+                raise self.unread()
+        return text.replace("+", "")
+
+    def below_below(self) -> str:
+        """One sign in a subscript, or a subscript of it: ``l_{c_2}`` is ``l_{c2}``."""
+        if self.next != "_":
+            return self.plain(self.take())
+        self.take()
+        if self.next != "{":
+            return self.plain(self.take())
         self.take()
         text = ""
         while self.next and self.next != "}":

@@ -12,7 +12,7 @@ import tomllib
 from dataclasses import dataclass, field
 from typing import Any
 
-from kinlab.errors import ExpressionError, FileError
+from kinlab.errors import FileError
 from kinlab.host.files import read_toml
 
 _FULL = {ord("“"): '"', ord("”"): '"', ord("‘"): "'", ord("’"): "'", ord("＝"): "=",
@@ -37,7 +37,7 @@ class Lines:
     """
 
     document: dict[str, Any] = field(default_factory=dict)
-    problems: list[tuple[str, ExpressionError]] = field(default_factory=list)
+    problems: list[tuple[str, FileError]] = field(default_factory=list)
 
 
 def read_lines(text: str, place: str) -> Lines:
@@ -79,14 +79,14 @@ def _read(text: str, place: str, found: Lines) -> None:
             table = found.document.setdefault(header, {})
             if not told[2] or piece.translate(_FULL) != piece:
                 problem = f"{place}: line {number}: write [{header}]"
-                found.problems.append(("", ExpressionError(problem)))
+                found.problems.append(("", FileError(problem)))
             continue
         if _BLANK.fullmatch(piece):
             continue
         key, value, remedy = _entry(piece)
         if remedy:
             shown = f"{place}: line {number}: " + (f"{key}: " if key else "")
-            found.problems.append((key, ExpressionError(shown + remedy)))
+            found.problems.append((key, FileError(shown + remedy)))
             continue
         lines = seen.setdefault((header, key), [])
         lines.append(number)
@@ -100,7 +100,7 @@ def _read(text: str, place: str, found: Lines) -> None:
                 " and ".join(map(str, lines)) if len(lines) == 2 else ", ".join(map(str, lines))
             )
             problem = f"{place}: {key} is given twice, in lines {numbers}; keep one"
-            found.problems.append((key, ExpressionError(problem)))
+            found.problems.append((key, FileError(problem)))
 
 
 def _pieces(text: str) -> list[tuple[int, str]]:

@@ -75,6 +75,9 @@ _ALONE = re.compile(
 """Text without words: names of one letter, and functions."""
 _BESIDE = re.compile(r"_\w+\s+[A-Za-z]")
 """A product of names without a sign, as only LaTeX has it."""
+_PRIMED = re.compile(r"(?<![A-Za-z])(q|th|theta|θ)(_?[\d₀-₉]+)('{1,2}|′{1,2}|″)(?!')")
+"""θ1' and q2'', the rates of a joint."""
+_CENTRE = re.compile(r"lc([₀-₉]+)")
 _DOTTED = re.compile(r"([A-Za-zα-ωϑϕℓ])([\u0307\u0308])")
 _SUBSCRIPTS = re.compile("([₀-₉]+)")
 _SUPERSCRIPTS = re.compile("([⁰¹²³⁴-⁹]+)")
@@ -102,6 +105,12 @@ def ascii_text(text: str, place: str = "expression", *, as_latex: bool = False) 
         strange = next(c for c in text if not c.isascii())
         raise ExpressionError(f"{place}: {strange!r} has no meaning in a formula")
     return text
+
+
+def _rate(found: re.Match[str]) -> str:
+    """A prime as the dots that it means."""
+    twice = len(found[3]) == 2 or found[3] == "″"
+    return found[1] + ("\u0308" if twice else "\u0307") + found[2]
 
 
 def _dotted(found: re.Match[str], as_latex: bool) -> str:
@@ -134,8 +143,9 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     """
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
-    text = bare(text)
+    text = _PRIMED.sub(_rate, bare(text.translate(WIDE)))
     if not typeset and _side_by_side(text):
+        text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
     text = ascii_text(text, place, as_latex=typeset)
     if typeset:
@@ -146,10 +156,10 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     return _capitals(text, place, writing)
 
 
-_OF_ONE_LETTER = r"sin|cos|tan|sqrt|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
+_OF_ONE_LETTER = r"sin|cos|tan|sqrt|lc[₀-₉]+|[^\W\d_][\u0307\u0308]?(?:_?\d+|[₀-₉]+)?"
 _OF_LETTERS = (
     r"(?:(?:np|numpy|math|sp|sympy)\.)?[^\W\d][^\W⁰¹²³⁴-⁹½]*[\u0307\u0308]?[^\W⁰¹²³⁴-⁹½]*"
-    r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?"
+    r"(?:\(\s*\d+\s*\)|\[\s*\d+\s*\])?['′″]*"
 )
 _REST = r"|[⁰¹²³⁴-⁹]|\d+\.?\d*(?:[eE][+-]?\d+)?|[-+−–]"
 
@@ -179,7 +189,7 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
 def _side_by_side(text: str) -> bool:
     """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 l_1."""
     unlike = not text.isascii() or _BESIDE.search(text)
-    return bool(unlike and _ALONE.fullmatch(text))
+    return bool(unlike and _ALONE.fullmatch(_CENTRE.sub(r"l\1", text)))
 
 
 def is_latex(text: str) -> bool:
@@ -365,6 +375,11 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
 
 
+def _of_one_name(left: str, name: str) -> bool:
+    """Whether a left side may stand before an entry: G2 before g2, tau before tau1."""
+    return left.lower() == name.lower() or (left.isalpha() and f"{left}1" == name)
+
+
 _MATRIX = re.compile(
     r"(?:\\left\s*[(\[.]\s*|[(\[]\s*)?"
     r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(\{[lcr| ]*\})?"
@@ -462,7 +477,7 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
         at = f"{place}: {key}"
         left, right = sides(value, at)
         name = entry_name(key, at, writing)
-        if left and entry_name(left, at, writing) != name:
+        if left and not _of_one_name(entry_name(left, at, writing), name):
             raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
         grid = cells(right, at)
         if grid and name in _TWO and len(grid[0]) == 1 and right[0] == "[" and ";" not in right:

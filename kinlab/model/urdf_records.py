@@ -426,9 +426,10 @@ def _motion(element: Any, kind: str, where: str) -> dict[str, Any]:
     if found["lower"] > found["upper"]:
         raise UrdfError(f"{where}: lower {found['lower']:g} is above upper {found['upper']:g}")
     for key in ("velocity", "effort"):
+        found[key] = _amount(limit, key, f"{where}: limit {key}")
+    for key in ("velocity", "effort"):
         if limit.get(key) is None:
             raise UrdfError(f"{where}: <limit> has no {key}; a {kind} joint must have one")
-        found[key] = _amount(limit, key, f"{where}: limit {key}")
     return found
 
 

@@ -145,3 +145,36 @@ def test_one_joint() -> None:
         robot, "inverse_dynamics", lambda q, v, a: -kl.inverse_dynamics(robot, q, v, a)
     )
     assert found.causes[0].kinds in (("sign",), ("row sign",))
+
+
+_TAU1 = (
+    "m2*l2**2*(qdd1+qdd2)+m2*l1*l2*c2*(2*qdd1+qdd2)+(m1+m2)*l1**2*qdd1-m2*l1*l2*s2*qd2**2"
+    "-2*m2*l1*l2*s2*qd1*qd2+m2*l2*g*c12+(m1+m2)*l1*g*c1"
+)
+
+
+@pytest.mark.parametrize(
+    "slips",
+    [
+        (("l1**2*qdd1", "l1*qdd1"), ("g*c12", "g*c2"), ("s2*qd2**2", "c2*qd2**2")),
+        (("l1**2*qdd1", "l1*qdd1"), ("-2*m2", "+2*m2"), ("s2*qd2**2", "c2*qd2**2"), ("g*c12", "g*c2")),
+        (("c2*(2", "s2*(2"), ("-2*m2", "+2*m2"), ("s2*qd2**2", "c2*qd2**2"), ("l1*g*c1", "l1*g*s1")),
+    ],
+)  # fmt: skip
+def test_slips_in_several_parts_are_found_part_by_part(slips):
+    text = _TAU1
+    for right, wrong in slips:
+        text = text.replace(right, wrong)
+    found = kl.diagnose("planar2r", "tau1", text, samples=30)
+    assert list(found.causes[0].shown.values()) == [_TAU1]
+    assert len(found.causes[0].kinds) == len(slips)
+
+
+def test_what_is_right_is_said_where_no_slip_explains_the_rest():
+    text = _TAU1.replace("m2*l2*g*c12", "(m1 + 5*l2)*g*sin(q1)**3*cos(q2 - 3*q1) + g*l1**3")
+    found = kl.diagnose("planar2r", "tau1", text, samples=30)
+    assert not found.causes
+    assert found.proved == (
+        "the terms in the velocities and the terms in the accelerations: right; "
+        "the gravity terms: wrong",
+    )

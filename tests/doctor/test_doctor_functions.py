@@ -74,7 +74,7 @@ def test_rounded_thirds_inside_a_function_are_right_to_their_digits() -> None:
 
     found = kl.diagnose(arm, "mass_matrix", mass, samples=20)
     assert found.agrees
-    assert "digits" in found.sentence
+    assert "0.3333 stands for 1/3" in found.remarks
     # 0.4 is no third
     assert not kl.diagnose(arm, "mass_matrix", lambda q: mass(q, 0.4), samples=20).agrees
 
@@ -86,6 +86,17 @@ def test_a_small_slip_that_is_no_rounding_is_not_called_right() -> None:
     found = kl.diagnose(ARM, "inverse_dynamics", torques, samples=20)
     assert not found.agrees
     assert found.grade in ("wrong", "not sure")
+
+
+@pytest.mark.parametrize("factor", [1.001, 0.9995])
+def test_a_small_factor_is_neither_right_nor_named(factor) -> None:
+    arm = kl.load("planar2r")
+    found = kl.diagnose(arm, "gravity_torques", lambda q: factor * kl.gravity_torques(arm, q),
+                        samples=20)  # fmt: skip
+    assert not found.agrees
+    assert found.grade == "not sure"
+    assert found.verdict == "nearly agrees, cause unknown"
+    assert "digits only" in found.sentence
 
 
 def with_row(**columns):
@@ -114,6 +125,29 @@ def test_a_number_of_the_robot_is_another(columns, words) -> None:
         assert not found.agrees
         return
     assert words in found.sentence
+
+
+def test_statics_from_link_to_link() -> None:
+    rows, tool = ARM.table.links, np.asarray(ARM.table.tool)
+
+    def torques(q, wrench, lever=1.0):
+        ways = [turned([row], [x]) @ np.linalg.inv(tool) for row, x in zip(rows, q, strict=True)]
+        last = ways[0] @ ways[1] @ ways[2]
+        force = last[:3, :3].T @ wrench[:3]
+        moment = last[:3, :3].T @ wrench[3:] + np.cross(tool[:3, 3], force)
+        out = np.zeros(3)
+        for i in (2, 1, 0):
+            out[i] = moment[2]
+            turn, place = ways[i][:3, :3], ways[i][:3, 3]
+            force = turn @ force
+            moment = turn @ moment + lever * np.cross(place, force)
+        return out
+
+    assert kl.diagnose(ARM, "statics", torques, samples=20).agrees
+    found = kl.diagnose(ARM, "statics", lambda q, w: torques(q, w, 0.0), samples=20)
+    assert "leaves P x f out in the moment n" in found.sentence
+    found = kl.diagnose(ARM, "statics", lambda q, w: torques(q, w, -1.0), samples=20)
+    assert "sign" in found.sentence
 
 
 def test_the_rotors_are_left_out() -> None:

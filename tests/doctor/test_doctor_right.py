@@ -60,6 +60,13 @@ def test_an_error_is_not_laid_into_an_exact_number(tmp_path: Path, text: str) ->
     assert judge(tmp_path, M22=text).grade == "wrong"
 
 
+def test_an_error_is_not_laid_into_another_term(tmp_path: Path) -> None:
+    text = "1.000*m1*l1**2 + 1.000*m2*l1**2 + 1.001*m2*l2**2 + 2.000*m2*l1*l2*c2"
+    assert judge(tmp_path, M11=text).grade == "wrong"
+    right = text.replace("1.001", "1.000").replace("m2*l1*l2", "0.3000")
+    assert judge(tmp_path, M11=right).agrees
+
+
 @pytest.mark.parametrize("text", ["1.5*0.4*9.8*c12", "0.60*9.8*c12", "9.82*0.6*c12", "m2*3.92*c12",
                                   "(1.5708/3.1416)*2*m2*9.8*l2*c12"])  # fmt: skip
 def test_numbers_beside_exact_ones_are_rounded(tmp_path: Path, text: str) -> None:

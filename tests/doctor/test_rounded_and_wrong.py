@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+import kinlab as kl
 from kinlab.doctor.report import of_document
 
 
@@ -75,3 +77,33 @@ def test_one_entry_of_C_is_said_to_be_judged_by_christoffel_s():
     assert "Christoffel's C is meant" in found.causes[0].sentence
     whole_row = judged(C11="0", C12="-m2*l1*l2*s2*(2*qd1+qd2)")
     assert [one.form for one in whole_row] == ["unusual"]
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "right"),
+    [
+        ("planar2r", "M22", "0.2412", "0.24"),
+        ("planar2r", "g1", "(m1 + m2)*g*l1*c1 + 5.913*c12", "(m1 + m2)*g*l1*c1 + 5.886*c12"),
+        ("planar2r", "J11", "-l1*s1 - 0.402*s12", "-l1*s1 - l2*s12"),
+        ("planar2r_rods", "M22", "0.3344*m2*l2**2", "(1/3)*m2*l2**2"),
+        ("planar2r", "M22", "1.5*0.16*1.001", "1.5*0.16"),
+    ],
+)
+def test_a_number_that_is_off_is_put_right(robot, entry, text, right):
+    (found,) = judged(robot, **{entry: text})
+    assert found.grade == "wrong"
+    assert found.causes[0].shown == {entry: right}
+    assert len(found.causes[0].kinds) == 1
+
+
+def test_a_slide_is_called_d_as_in_the_table():
+    links = (
+        kl.DHLink(joint="revolute", alpha=np.pi / 2, mass=1.0),
+        kl.DHLink(joint="prismatic", mass=2.0),
+    )
+    arm = kl.Robot.from_dh(kl.DHTable("polar", "standard", links, gravity=(0.0, -9.81, 0.0)))
+    tau2 = r"$m_2 \ddot{d}_2 - m_2 d_2 \dot{\theta}_1^2 - m_2 g \cos\theta_1$"
+    assert kl.diagnose(arm, "tau2", tau2, samples=30).agrees
+    lost = kl.diagnose(arm, "tau2", tau2.replace("_1^2", "_1"), samples=30)
+    assert lost.causes[0].shown == {"tau2": tau2.strip("$")}
+    assert kl.diagnose(arm, "tau1", "m2*(d2^2*qdd1 + 2*d2*d2_dot*qd1 + g*d2*s1)").agrees

@@ -211,3 +211,33 @@ def test_a_file_of_one_writer():
             formula_file({"robot": "planar2r", "formulas": formulas}, "f.toml")
     given = {"robot": "planar2r", "symbols": {"omega2": "qd2"}, "tau1": "omega2*m1"}
     assert formula_file(given, "f.toml").texts["tau1"] == "omega2*m1"
+
+
+@pytest.mark.parametrize(
+    ("text", "plain"),
+    [
+        (r"$l_1 C_1 + l_2 C_{1+2}$", "l1*c1 + l2*c12"),
+        (r"$m_2 l_{c_2}^2 \ddot{q_1}$", "m2*lc2**2*qdd1"),
+        (r"$m_2 l_{c_{2}}$", "m2*lc2"),
+        ("m2*θ1'' + θ2'²", "m2*thetadd1 + thetad2**2"),
+        ("m₂lc₂² + m₂l₁lc₂cosθ₂", "m2*lc2**2 + m2*l1*lc2*cos(theta2)"),
+        ("lc2² + l1·lc2·cos(q2)", "lc2**2 + l1*lc2*cos(q2)"),
+        ("m1＊（l1＋l２）", "m1*(l1+l2)"),
+        ("0。5*m1", "0.5*m1"),
+    ],
+)
+def test_more_ways_of_typing(text, plain):
+    assert " ".join(plain_formula(text).split()) == plain
+
+
+@pytest.mark.parametrize("text", [r"$c_{2+1}$", r"$c_{1+}$", r"$l_{1+x}$", "m1*l1'", "q1'''"])
+def test_what_has_two_meanings_or_none_is_refused(text):
+    with pytest.raises(ExpressionError):
+        parse(plain_formula(text))
+
+
+def test_a_left_side_of_the_same_entry_by_another_letter():
+    given = {"robot": "planar2r", "formulas": {"g2": "G_2 = m2*g", "tau1": r"$\tau = m_1$"}}
+    assert formula_file(given, "f.toml").texts == {"g2": "m2*g", "tau1": "m1"}
+    with pytest.raises(ExpressionError, match="another"):
+        formula_file({"robot": "planar2r", "formulas": {"g2": "G_1 = m2*g"}}, "f.toml")

@@ -233,6 +233,14 @@ def test_results_as_gradescope_reads_them():
     assert {"name", "number", "output_format", "visibility"} <= result["tests"][0].keys()
 
 
+@pytest.mark.parametrize(
+    "start", ["=", "+", "-", "@", "|", "%", "＝", "＋", "－", "＠", " =", "\t="]
+)
+def test_no_cell_begins_as_a_formula(start):
+    marks = kl.mark(SHEET, {f"{start}1+1": {}})
+    assert list(csv.reader(io.StringIO(as_csv(marks))))[1][0][0] == "'"
+
+
 def test_names_of_files():
     names = ["a.toml", "a.txt", "A b.toml", "a/b.toml", "a-b.toml", "ä.toml", "..toml", "x" * 300]
     slugs = [slug_of(name) for name in names]

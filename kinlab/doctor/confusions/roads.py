@@ -197,19 +197,10 @@ def _passed_on(case: Case, in_base: bool) -> Road:
             elif not in_tool and not in_base:
                 parts = [np.einsum("nji,nj->ni", turn, y) for y in parts]
             force, moment = parts
-            end = np.broadcast_to(tool[:3, 3], force.shape)
-            if in_base:
-                end = np.einsum("nij,nj->ni", last, end)
-            if standard:
-                arm = end if in_base else end @ tool[:3, :3]
-                moment = moment + np.cross(arm, force)
-            return {
-                **found,
-                "force": force,
-                "moment": moment,
-                "end": end,
-                "turn": tool[None, :3, :3],
-            }
+            arm = np.broadcast_to(tool[:3, 3], force.shape)
+            arm = np.einsum("nij,nj->ni", last, arm) if in_base else arm @ tool[:3, :3]
+            moment = moment + np.cross(arm, force)  # about the last frame's origin
+            return {**found, "force": force, "moment": moment, "turn": tool[None, :3, :3]}
 
         walk = Walk(of, give, x["q"], ways, robot.n)
         return walk.values("tau"), walk

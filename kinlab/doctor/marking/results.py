@@ -24,8 +24,8 @@ from kinlab.errors import FileError
 from kinlab.host.files import write_text
 from kinlab.host.language import _
 
-_FORMULA = ("=", "+", "-", "@", "\t", "\r", "\n", "|", "%")
-"""What a spreadsheet would take for the beginning of a formula or a command."""
+_FORMULA = (*"=+-@\t\r\n|%＝＋－＠",)
+"""What a spreadsheet would take for the beginning of a formula or a command, in any width."""
 
 
 def write_marks(marks: Marks, folder: Path) -> None:

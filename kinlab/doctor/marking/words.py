@@ -107,6 +107,10 @@ OTHERS = (
     N_("rotated twice"),
     N_("only one term"),
     N_("no value"),
+    N_("parentheses"),
+    N_("order of lines"),
+    N_("sum"),
+    N_("number"),
 )
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 
