@@ -143,9 +143,10 @@ def _explained(
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
-    if not causes and same and not written and not signs:
+    listed = all({*c.kinds} == {"coefficient"} and len(c.kinds) > 1 for c in causes)
+    if listed and same and not written and not signs:
         changed = list(other_numbers(case))
-        causes = [*_singly(case, changed)] or rough
+        causes = [*_singly(case, changed), *causes] or rough
         near = None if causes else verdicts.to_digits(worst)
         if near is not None:
             return [], (), near
@@ -392,6 +393,8 @@ def _in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
         if changed is None:
             continue
         partners = [r for r in (*before[k + 1 :], *answers) if _apart(first, r)]
+        if first.place:  # two links at once: that is another arm
+            partners = [r for r in partners if not (r.stage == "robot" and r.place)]
         chosen = ((first, second) for second in partners if _seems(changed, (*rest, second)))
         yield from _found(case, chosen)
 

@@ -38,6 +38,9 @@ _WEIGHED = {
 }
 """What depends on gravity."""
 
+_WITHOUT_GRAVITY = ("mass_matrix", "coriolis_torques", "inverse_without_gravity")
+"""What is asked of the recursion without gravity."""
+
 _JACOBIANS = {
     "base": N_("is the base Jacobian"),
     "tool": N_("is the tool Jacobian"),
@@ -155,6 +158,9 @@ def _engines(case: Case) -> Iterator[Confusion]:
         yield _other(
             "transposed", _("uses J for J^T (not transposed)"), otherwise.jacobian_itself, 1.1
         )
+    if name in _WITHOUT_GRAVITY:
+        said = _("has the gravity torques in it")
+        yield _other("gravity added", said, otherwise.with_gravity_torques, 1.1)
     if name == "mass_matrix" and case.robot.n > 1:
         said = _("is M for absolute angles (each counted from the base), not for the joint angles")
         for q_too in (False, True):

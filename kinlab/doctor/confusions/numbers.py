@@ -115,7 +115,7 @@ def other_numbers(case: Case) -> Iterator[Confusion]:
     engine = np.asarray(few.answer(()), dtype=float)
     if engine.shape != few.hand.shape:
         return
-    every = [*numbers_of(case.robot, still)]
+    every = [number for number in numbers_of(case.robot, still) if number.value]
     for number in every:
         solved = _solved(few, engine, number)
         if solved is None:

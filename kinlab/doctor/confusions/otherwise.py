@@ -8,7 +8,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Arguments, Engine
-from kinlab.engine.dynamics import coriolis_matrix
+from kinlab.engine.dynamics import coriolis_matrix, gravity_torques
 from kinlab.engine.kinematics import fk, jacobian, statics
 from kinlab.engine.lagrange import christoffel
 from kinlab.model.robot import Robot
@@ -44,6 +44,17 @@ def pseudo_inverse(engine: Engine) -> Engine:
     def changed(robot: Robot, x: Arguments) -> Array:
         out: Array = np.einsum("nij,nj->ni", np.linalg.pinv(jacobian(robot, x["q"])), x["wrench"])
         return out
+
+    return changed
+
+
+def with_gravity_torques(engine: Engine) -> Engine:
+    """The recursion asked without setting gravity to zero: g in the torques, or in each column."""
+
+    def changed(robot: Robot, x: Arguments) -> Array:
+        out = engine(robot, x)
+        weight: Array = gravity_torques(robot, x["q"])
+        return out + (weight if out.ndim == 2 else weight[:, :, None])
 
     return changed
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from functools import lru_cache
 
 from kinlab.doctor.confusions.operations import (
     Make,
@@ -35,7 +36,7 @@ from kinlab.doctor.confusions.words import (
     told_other,
     which,
 )
-from kinlab.host.language import _
+from kinlab.host.language import _, language
 
 _ALIKE = (
     "w dw",
@@ -79,6 +80,20 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
         n: number of joints.
         singly: at each joint alone.
     """
+    return list(_steps(of, tuple(sorted(axes.items())), n, singly, language()))
+
+
+@lru_cache(maxsize=64)
+def _steps(
+    of: Program,
+    shapes_of: tuple[tuple[int, tuple[int, ...]], ...],
+    n: int,
+    singly: bool,
+    spoken: str,
+) -> tuple[Step, ...]:
+    """The steps, each list made once for a language."""
+    del spoken
+    axes = dict(shapes_of)
     found: list[Step] = []
     shapes: dict[str, tuple[int, ...]] = {}
     for line in of.lines:
@@ -90,16 +105,16 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
     if not singly:
-        return [*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes)]
+        return (*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes))
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
-    return [
+    return tuple(
         Step(s.kind, at_joint.format(does=s.sentence, joint=i + 1), s.edits, s.cost + 0.2, i + 1)
         for s in found
         if s.cost < 1.3 and id(s.edits[0][0]) in looped
         for i in range(n)
         if n > 1
-    ]
+    )
 
 
 def _of_line(
@@ -196,7 +211,8 @@ def _terms(
             yield step(
                 "factor", _("counts {term} half").format(term=term), 1.15, (part, times(0.5, part))
             )
-            if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript):
+            summed = isinstance(part, ast.Name) and part.id in ("M", "G", "V")
+            if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript) and not summed:
                 does = _that_of(about, part)
                 yield step("only one term", does, 1.0, (node, again(part)))
 

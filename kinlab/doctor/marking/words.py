@@ -111,6 +111,7 @@ OTHERS = (
     N_("order of lines"),
     N_("sum"),
     N_("number"),
+    N_("gravity added"),
 )
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 
