@@ -107,6 +107,23 @@ class Tolerances:
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
     1e-3 or more."""
 
+    finite_differences: float = 5e-6
+    """Relative error that derivatives by differences may leave in a function. Forward differences
+    with steps of 1e-6 and central ones up to 1e-3 stay below it; a slip in a term that is
+    one per cent of its entry does not."""
+
+    coefficient_digits: float = 1e-4
+    """Relative error of every coefficient of a function up to which it is right to its digits:
+    constants of four digits."""
+
+    nearly_agrees: float = 2e-3
+    """Relative error up to which a function may be right with rounded constants inside; nobody
+    can tell."""
+
+    left_of_slip: float = 1e-4
+    """Share of what was off that may be left once a slip is undone, in a function that takes
+    derivatives by differences."""
+
     formula_differs: float = 1e-3
     """A misprint must show at least this relative disagreement to be called shown."""
 

@@ -42,8 +42,6 @@ _NAMED = 8
 """Causes that are kept."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
-_LOOSE, _PART = 1e-5, 1e-4
-"""Relative error that finite differences leave; share of what was off that may be left."""
 _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
@@ -94,7 +92,7 @@ def examine(
         partial = (meant,)
     ranked = _ranked(causes)
     right_parts = proved(case, engine) if same and not ranked else ()
-    close = same and not ranked and not written and worst <= verdicts.NEAR
+    close = same and not ranked and not written and worst <= TOLERANCES.nearly_agrees
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
@@ -134,7 +132,7 @@ def _explained(
     rough: list[Cause] = []
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
-        loose = case if written else replace(case, slack=_LOOSE)
+        loose = case if written else replace(case, slack=_left(worst))
         derived = [] if written and causes else [*_by_derivation(loose, signs)]
         every = [*_singly(loose, tried), *derived]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
@@ -147,7 +145,7 @@ def _explained(
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
         causes = [*_singly(case, changed), *causes] or rough
-        near = None if causes else verdicts.to_digits(worst)
+        near = None if causes else verdicts.to_digits(case, engine)
         if near is not None:
             return [], (), near
     if not causes and not signs:
@@ -202,9 +200,15 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     return Cause(told, ("no value",), ("",), error, 1.0)
 
 
+def _left(worst: float) -> float:
+    """The relative error that finite differences may leave once a slip of that size is undone."""
+    most = min(TOLERANCES.finite_differences, TOLERANCES.left_of_slip * worst)
+    return max(TOLERANCES.formula_agrees, most)
+
+
 def _roughly(causes: list[Cause], worst: float) -> list[Cause]:
     """Explanations that leave what finite differences leave, and far less than was off."""
-    near = [cause for cause in causes if cause.error_after <= _PART * worst]
+    near = [cause for cause in causes if cause.error_after <= _left(worst)]
     least = min((cause.error_after for cause in near), default=0.0)
     said = _("{slip} (what is left, {left:.0e}, is that of finite differences)")
     return [
@@ -287,7 +291,7 @@ def _hidden(
 
 def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
     """Why answers that are not the engine's are right, if they are."""
-    odd = verdicts.unusual(case, engine, 0.0 if written else _LOOSE)
+    odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
         return odd
     for said_of_all in rounding.roundings(case, engine, not written):
@@ -525,6 +529,8 @@ def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Ite
         off = [e for e in entries(changed, engine) if not e.agrees]
         if len(off) >= max(before, 2) or len(off) > _RIVALS:
             continue
+        if np.max(relative_errors(undone, engine)) >= np.max(relative_errors(case.hand, engine)):
+            continue  # what undoes a slip brings the answer nearer
         for cause in _slips(changed, off, {})[0]:
             yield Cause(
                 _("the formula {does}, and then {slips}").format(

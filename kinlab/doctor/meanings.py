@@ -106,19 +106,14 @@ class Meanings:
         return f"{value:.7g}"
 
     def credible(self, one: Literal, value: float) -> bool:
-        """Whether so few digits are a rounding at all: 0.3 may be 1/3, but is not 0.25."""
+        """Whether so few digits are a rounding at all: 0.33 may be 1/3, but 0.3 is not."""
         name = self.parameter(value)
         if one.whole:
             return name is not None
         gap = abs(value - one.value)
         if gap > one.half * (1 + TOLERANCES.same_relation):
             return name is not None and name[0] == "g"
-        close = gap <= CLOSE * abs(value)
-        fine = one.half < 0.01 or one.digits > 1
-        endless = any(
-            abs(value * k - round(value * k)) < TOLERANCES.same_relation for k in (3, 7, 9)
-        )
-        return close or fine or endless
+        return gap <= CLOSE * abs(value) or one.digits > 1
 
 
 def _subsets(values: list[float]) -> Iterator[tuple[float, ...]]:

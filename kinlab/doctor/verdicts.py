@@ -33,11 +33,6 @@ _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
 _FREE = 120
 """Literals of one formula above which they are not fitted."""
-NEAR = 2e-3
-"""Relative error up to which a function may be right with rounded constants inside."""
-_SAME_DIGITS = 1e-4
-"""Relative error below which a function that no slip explains is right to its digits: constants
-of four digits and forward differences reach it, no term that is left out does."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -256,9 +251,16 @@ def _kept(
     return found
 
 
-def to_digits(error: float) -> Excuse | None:
-    """A function that nothing explains, and that is right to so many digits that no slip is."""
-    if error > _SAME_DIGITS:
+def to_digits(case: Case, engine: Array) -> Excuse | None:
+    """A function that nothing explains, each entry of which has more digits right than slips leave.
+
+    An entry is measured by its own largest value: one per cent of a small inertia is no digit of
+    a large arm's mass matrix, but it is one per cent of the entry where it stands alone.
+    """
+    gap, own = (np.max(np.abs(x), axis=0) for x in (case.hand - engine, engine))
+    most = float(np.max(own))
+    error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
+    if error > TOLERANCES.finite_differences:
         return None
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
@@ -291,7 +293,7 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
         return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
     said = _("its coefficients agree to {digits} digits: finite differences, or rounded constants?")
     return Excuse(
-        "digits" if largest <= _SAME_DIGITS else "near",
+        "digits" if largest <= TOLERANCES.coefficient_digits else "near",
         (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)),
     )
 
@@ -317,7 +319,11 @@ def _of_function(
     known = np.abs(theirs) > TOLERANCES.no_share * size
     gap = float(np.max(np.abs(mine - theirs)[known] / np.abs(theirs)[known]))
     stray = float(np.max(np.abs(mine[~known]), initial=0.0))
-    return ([], gap) if stray <= TOLERANCES.formula_agrees * size and gap <= NEAR else None
+    return (
+        ([], gap)
+        if stray <= TOLERANCES.formula_agrees * size and gap <= TOLERANCES.nearly_agrees
+        else None
+    )
 
 
 def of_data(text: Written, entry: AnswerEntry, derived: Derivation, case: Case) -> str | None:
