@@ -107,14 +107,24 @@ class Tolerances:
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
     1e-3 or more."""
 
-    finite_differences: float = 5e-6
-    """Relative error that derivatives by differences may leave in a function. Forward differences
-    with steps of 1e-6 and central ones up to 1e-3 stay below it; a slip in a term that is
-    one per cent of its entry does not."""
+    finite_differences: float = 1e-5
+    """Relative error that derivatives by differences may leave in a function once a slip is
+    undone: forward differences with steps of 1e-5, central ones up to 1e-3."""
+
+    slips_leave: float = 1e-6
+    """Relative error, of an entry's own largest value, below which no slip is known to be: a
+    formula that nothing explains is right to its digits."""
+
+    noise_step: float = 1e-8
+    """Step in rad over which a smooth function is straight to 1e-16 of its size."""
+
+    noise_of_differences: float = 1e-13
+    """Noise of a function, relative to its size, that its own arithmetic does not make (1e-15)
+    and differences do: 1e-12 with steps of 1e-4."""
 
     coefficient_digits: float = 1e-4
     """Relative error of every coefficient of a function up to which it is right to its digits:
-    constants of four digits."""
+    constants of four digits; and of an answer that has the noise of differences."""
 
     nearly_agrees: float = 2e-3
     """Relative error up to which a function may be right with rounded constants inside; nobody

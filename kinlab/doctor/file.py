@@ -519,7 +519,7 @@ def typing_of(entry: str, file: FormulaFile) -> Typing | None:
         return typed.plain_formula(f"${line}$" if dollars else line, entry, file.writing)
 
     plain = tidied(reads(core))
-    if tidied(core) == plain:
+    if tidied(core) == plain and "^" not in core:
         return None
     return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
 

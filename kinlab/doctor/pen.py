@@ -11,7 +11,7 @@ from __future__ import annotations
 import ast
 import keyword
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
@@ -660,8 +660,14 @@ def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tu
 
 
 def _cheapest(line: Line, found: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
-    ranked = sorted(set(found), key=lambda way: (sum(line.changes[k].cost for k in way), way))
+    ranked = sorted(set(found), key=lambda way: (_cost([line.changes[k] for k in way]), way))
     return ranked[:_TRIED]
+
+
+def _cost(changes: Sequence[Change]) -> float:
+    """How far-fetched several changes are together."""
+    terms = {c.kind for c in changes} >= _TERMS
+    return sum(c.cost for c in changes) + 0.4 * (len(changes) - 1) + _EXCHANGED * terms
 
 
 def _covers(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tuple[int, ...]]:
@@ -705,9 +711,7 @@ def _checked(line: Line, found: list[tuple[int, ...]]) -> Iterator[Mended]:
         with np.errstate(all="ignore"):
             gap = np.max(np.abs(values - line.target))
         if gap <= TOLERANCES.effect_matches * line.scale:
-            kinds = {c.kind for c in changes}
-            cost = sum(c.cost for c in changes) + 0.4 * (len(changes) - 1)
-            yield Mended(changes, text, cost + _EXCHANGED * (kinds >= _TERMS))
+            yield Mended(changes, text, _cost(changes))
 
 
 def _same_formula(changes: tuple[Change, ...]) -> bool:

@@ -52,7 +52,7 @@ _SHORT = 40
 
 
 def diagnose(
-    robot: Any, quantity: str, formula: Callable[..., Any] | str, samples: int = 200, seed: int = 0
+    robot: Any, quantity: str, function: Callable[..., Any] | str, samples: int = 200, seed: int = 0
 ) -> Diagnosis:
     """Says whether a hand-derived formula is what it claims to be, and if not, what is wrong.
 
@@ -60,7 +60,7 @@ def diagnose(
         robot: a Robot, DHTable, name or path.
         quantity: what the formula claims to be, such as ``"inverse_dynamics"``, or a book's name of
             an entry, ``"tau2"``; an index picks entries: ``"inverse_dynamics[0]"``.
-        formula: a function of one state, the quantity's arguments in order: ``f(q, v, a)``; or the
+        function: a function of one state, the quantity's arguments in order: ``f(q, v, a)``; or the
             formula as text, LaTeX, MATLAB or Python.
         samples: how many random states must be explained.
         seed: the same seed gives the same states.
@@ -75,18 +75,18 @@ def diagnose(
         ExpressionError: a text that is no formula.
         FormulaError: the function failed.
     """
-    if isinstance(formula, str):
+    if isinstance(function, str):
         arm = SERIAL.load(robot)
-        file = formula_file({"robot": arm.name, "formulas": {quantity: formula}}, "formula")
+        file = formula_file({"robot": arm.name, "formulas": {quantity: function}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         return next((one for one in judged if not one.agrees), judged[0])
-    need_function(formula)
+    need_function(function)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
-    stacked = state_by_state(formula)
+    stacked = state_by_state(function)
     case = replace(case, again=lambda states: np.asarray(stacked(None, *states.values())))
     hand = np.asarray(stacked(None, *case.arguments.values()))
-    return examine(case, hand, engine, quantity, function_name(formula), {})
+    return examine(case, hand, engine, quantity, function_name(function), {})
 
 
 def _in_full(quantity: str, robot: Any) -> str:

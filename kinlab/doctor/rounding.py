@@ -386,9 +386,12 @@ def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> li
 
 
 def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
-    """How a coefficient is rounded: itself, or a third in front of a rod's m l²."""
+    """How a coefficient is rounded: itself, or a third in front of a rod's m l².
+
+    Its digits are not seen, as they are in a text: 1.12 for 1.115 may as well be a mass of 2.02.
+    """
     whole = short(one, two)
-    if whole is not None:
+    if whole is not None and abs(one - two) <= TOLERANCES.nearly_agrees * abs(two):
         said = _("the coefficient {written} stands for {meant:.7g}")
         return said.format(written=whole.text, meant=abs(two))
     said = _("{written} stands for {meant}")

@@ -4,7 +4,8 @@
 
 Each edit's effect is computed at random points by climbing from the changed place to the root.
 One slip: an effect equal to what is missing. Two slips in different terms: two effects that add
-up to it, found by sorting one projection of them (no pair is tried in vain).
+up to it, found by sorting one projection of them (no pair is tried in vain). Two slips in one
+product multiply instead: the logarithms of their ratios add up.
 """
 
 from __future__ import annotations
@@ -309,6 +310,75 @@ def double(case: Study) -> list[Repair]:
         return []
     pairs = pairs_adding_up(case.effects, case.wanted, TOLERANCES.effect_matches * case.scale)
     return _together(case, [(case.found[one], case.found[two]) for one, two in pairs])
+
+
+def double_in_term(case: Study) -> list[Repair]:
+    """As :func:`double` for two edits in factors of one term: their ratios multiply up to it."""
+    root = case.root
+    terms = [((k,), a) for k, a in enumerate(root.args)] if root.op == "add" else [((), root)]
+    repairs: list[Repair] = []
+    for path, term in terms:
+        old = np.broadcast_to(tree.evaluate(term, case.at), case.value.shape)
+        inside = [
+            k
+            for k, e in enumerate(case.found)
+            if e.path[: len(path)] == path
+            and e.kind != "missing term"
+            and (len(e.path) > len(path) or e.times is not None)
+        ]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            goal = _log_size(1 + case.wanted / old)
+            logs = _log_size(1 + case.effects[inside] / old)
+        usable = np.isfinite(logs).all(axis=1)
+        chosen = [inside[k] for k in np.flatnonzero(usable)]
+        if not chosen or not np.isfinite(goal).all():
+            continue
+        pairs = pairs_adding_up(logs[usable], goal, 1e-8)
+        both = [(case.found[chosen[one]], case.found[chosen[two]]) for one, two in pairs]
+        repairs += _together(case, both)
+    return _best(repairs)
+
+
+def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
+    """The pairs that really give the values wanted."""
+    apart = [(one, two) for one, two in pairs if not _nested(one, two)]
+    cheapest = sorted(apart, key=lambda both: both[0].cost + both[1].cost)[:_TRIED]
+    made = (_both(case.root, one, two) for one, two in cheapest)
+    return _best(repair for repair in made if case.fits(repair.result))
+
+
+def _best(repairs: Iterable[Repair]) -> list[Repair]:
+    return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
+
+
+def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
+    """Pairs of rows that add up to the goal, by sorting one projection."""
+    weights = np.random.default_rng(5).uniform(0.5, 1.5, rows.shape[1])
+    line = rows @ weights
+    order = np.argsort(line, kind="stable")
+    line = line[order]
+    wide = allowance * rows.shape[1]
+    low = np.searchsorted(line, goal @ weights - line - wide)
+    high = np.searchsorted(line, goal @ weights - line + wide)
+    # rows with equal projections stand in the order of the list, and are taken or left together
+    group = np.concatenate([[0], np.cumsum(np.diff(line) > wide)])
+    order = order[np.lexsort((order, group))]
+    pairs = []
+    for i in np.flatnonzero(high > low):
+        first = np.searchsorted(group, group[low[i]])
+        last = np.searchsorted(group, group[high[i] - 1], side="right")
+        for j in range(first, min(last, first + _DENSE)):
+            one, two = int(order[i]), int(order[j])
+            if one < two and np.max(np.abs(rows[one] + rows[two] - goal)) <= allowance:
+                pairs.append((one, two))
+    return pairs
+
+
+def _log_size(ratio: Array) -> Array:
+    """log|ratio|; minus infinity where the ratio is rounding about zero."""
+    size = np.abs(ratio)
+    logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
+    return logs
 
 
 def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:

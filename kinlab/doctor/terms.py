@@ -307,6 +307,7 @@ def in_function(
     alone = [found for found in sums if len(found) == 1][:1]
     if len(poly) <= _SHORT:
         repairs = [(c.root, r) for c in cases for r in search.double(c)]
+        repairs += [(c.root, r) for c in cases for r in search.double_in_term(c)]
     slips = _by_effect(label, right, repairs, everywhere)
     slips += [_as_terms(label, right, found, names, everywhere) for found in alone]
     if not slips:

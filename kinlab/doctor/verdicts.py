@@ -33,6 +33,8 @@ _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
 _FREE = 120
 """Literals of one formula above which they are not fitted."""
+_FEW = 8
+"""States at which the noise of a function is measured."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -252,18 +254,37 @@ def _kept(
 
 
 def to_digits(case: Case, engine: Array) -> Excuse | None:
-    """A function that nothing explains, each entry of which has more digits right than slips leave.
+    """A function that nothing explains, and whose differences from the engine are its rounding.
 
-    An entry is measured by its own largest value: one per cent of a small inertia is no digit of
-    a large arm's mass matrix, but it is one per cent of the entry where it stands alone.
+    Either each entry has so many digits right, by its own largest value, that no slip is so small
+    (one per cent of a small inertia is no digit of a large arm's mass matrix, but it is one per
+    cent of the entry where it stands alone); or the function has the noise of differences.
     """
     gap, own = (np.max(np.abs(x), axis=0) for x in (case.hand - engine, engine))
     most = float(np.max(own))
     error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
-    if error > TOLERANCES.finite_differences:
+    noisy = error <= TOLERANCES.coefficient_digits and _takes_differences(case, most)
+    if not noisy and error > TOLERANCES.slips_leave:
         return None
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
+
+
+def _takes_differences(case: Case, size: float) -> bool:
+    """Whether a function has more noise than its own arithmetic: a derivative by differences.
+
+    Over steps of 1e-8 rad a smooth function is straight to 1e-16 of its size; one that divides a
+    difference by its step h carries the rounding of what it subtracts, divided by h.
+    """
+    if case.again is None or "q" not in case.arguments:
+        return False
+    few = {name: stack[:_FEW] for name, stack in case.arguments.items()}
+    before, at, after = (
+        np.asarray(case.again({**few, "q": few["q"] + k * TOLERANCES.noise_step}))
+        for k in (-1, 0, 1)
+    )
+    noise = float(np.max(np.abs(before - 2.0 * at + after)))
+    return noise > TOLERANCES.noise_of_differences * size
 
 
 def _digits(error: float) -> int:
