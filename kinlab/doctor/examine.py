@@ -92,7 +92,7 @@ def examine(
         partial = (meant,)
     ranked = _ranked(causes)
     right_parts = proved(case, engine) if same and not ranked else ()
-    close = same and not ranked and not written and worst <= TOLERANCES.nearly_agrees
+    close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(

@@ -372,7 +372,11 @@ def coefficients(
 
 
 def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> list[str] | None:
-    """Coefficients that are the derived ones to a few digits, in words, or None."""
+    """Coefficients that are the derived ones to a few digits, in words, or None.
+
+    Empty where they may be: their digits are not seen, as they are in a text, and 1.12 for 1.115
+    may as well be a mass of 2.02.
+    """
     meanings, size = Meanings.at(at), float(np.max(np.abs(theirs)))
     said = []
     for one, two in zip(mine.tolist(), theirs.tolist(), strict=True):
@@ -382,14 +386,13 @@ def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> li
         if found is None:
             return None
         said.append(found)
-    return list(dict.fromkeys(said)) or None
+    if not said:
+        return None
+    return list(dict.fromkeys(said)) if all(said) else []
 
 
 def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
-    """How a coefficient is rounded: itself, or a third in front of a rod's m l².
-
-    Its digits are not seen, as they are in a text: 1.12 for 1.115 may as well be a mass of 2.02.
-    """
+    """How a coefficient is rounded: itself, or a third in front of a rod's m l²; "" if in doubt."""
     whole = short(one, two)
     if whole is not None and abs(one - two) <= TOLERANCES.nearly_agrees * abs(two):
         said = _("the coefficient {written} stands for {meant:.7g}")
@@ -401,7 +404,7 @@ def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
             gap = abs(one - two) / abs(part.value - exact) if part.value != exact else 0.0
             if any(abs(rod - gap) <= TOLERANCES.same_relation * gap for rod in meanings.rods):
                 return said.format(written=part.text, meant=meanings.named(exact))
-    return None
+    return None if whole is None else ""
 
 
 def data_rounded(

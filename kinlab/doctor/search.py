@@ -351,46 +351,11 @@ def _best(repairs: Iterable[Repair]) -> list[Repair]:
     return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
 
 
-def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
-    """Pairs of rows that add up to the goal, by sorting one projection."""
-    weights = np.random.default_rng(5).uniform(0.5, 1.5, rows.shape[1])
-    line = rows @ weights
-    order = np.argsort(line, kind="stable")
-    line = line[order]
-    wide = allowance * rows.shape[1]
-    low = np.searchsorted(line, goal @ weights - line - wide)
-    high = np.searchsorted(line, goal @ weights - line + wide)
-    # rows with equal projections stand in the order of the list, and are taken or left together
-    group = np.concatenate([[0], np.cumsum(np.diff(line) > wide)])
-    order = order[np.lexsort((order, group))]
-    pairs = []
-    for i in np.flatnonzero(high > low):
-        first = np.searchsorted(group, group[low[i]])
-        last = np.searchsorted(group, group[high[i] - 1], side="right")
-        for j in range(first, min(last, first + _DENSE)):
-            one, two = int(order[i]), int(order[j])
-            if one < two and np.max(np.abs(rows[one] + rows[two] - goal)) <= allowance:
-                pairs.append((one, two))
-    return pairs
-
-
 def _log_size(ratio: Array) -> Array:
     """log|ratio|; minus infinity where the ratio is rounding about zero."""
     size = np.abs(ratio)
     logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
     return logs
-
-
-def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
-    """The pairs that really give the values wanted."""
-    apart = [(one, two) for one, two in pairs if not _nested(one, two)]
-    cheapest = sorted(apart, key=lambda both: both[0].cost + both[1].cost)[:_TRIED]
-    made = (_both(case.root, one, two) for one, two in cheapest)
-    return _best(repair for repair in made if case.fits(repair.result))
-
-
-def _best(repairs: Iterable[Repair]) -> list[Repair]:
-    return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
 
 
 def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:

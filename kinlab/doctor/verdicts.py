@@ -333,12 +333,14 @@ def _of_function(
     if both is None:
         return None
     told = coefficients_rounded(*both, at)
-    if told is not None:
+    if told:
         return told, 0.0
     mine, theirs = both
     size = float(np.max(np.abs(theirs)))
     known = np.abs(theirs) > TOLERANCES.no_share * size
     gap = float(np.max(np.abs(mine - theirs)[known] / np.abs(theirs)[known]))
+    if told is not None:
+        return [], gap
     stray = float(np.max(np.abs(mine[~known]), initial=0.0))
     return (
         ([], gap)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -185,3 +187,46 @@ def test_what_can_be_proved_by_entries() -> None:
     found = kl.diagnose(ARM, "jacobian", jacobian, samples=20)
     assert not found.causes
     assert "columns 1 and 3: right" in found.sentence
+
+
+def _by_numbers(constant: float):
+    def mass(q):
+        c = 0.3 * np.cos(q[1])
+        return np.array([[constant + 2 * c, 0.24 + c], [0.24 + c, 0.24]])
+
+    return mass
+
+
+def test_three_digits_of_a_function_are_neither_right_nor_wrong() -> None:
+    """1.12 is 1.115 rounded, and it is what a mass of 2.02 kg instead of 2 gives."""
+    assert kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.115)).grade == "right"
+    rounded = kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.12))
+    assert (rounded.agrees, rounded.grade, rounded.causes) == (False, "not sure", ())
+    assert kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.13)).grade == "wrong"
+
+
+def test_a_slip_in_a_small_inertia_is_not_called_right() -> None:
+    puma = kl.load("puma560")
+    *links, last = puma.table.links
+    heavier = replace(last, inertia=1.1 * np.asarray(last.inertia))
+    other = kl.Robot.from_dh(replace(puma.table, links=[*links, heavier]))
+    found = kl.diagnose(puma, "mass_matrix", lambda q: kl.mass_matrix(other, q), samples=20)
+    assert found.error_before < 1e-5
+    assert not found.agrees and found.grade == "not sure"
+
+
+def test_the_noise_of_differences_is_told_from_a_small_slip() -> None:
+    """Both are off by 1e-5; one of them has the rounding of what it subtracts."""
+    arm = kl.load("planar2r")
+
+    def slip(q):
+        return kl.gravity_torques(arm, q) + np.array([2e-4 * q[0], 0.0])
+
+    def forward(q):
+        step, energy = 1e-5 * np.eye(2), kl.potential_energy(arm, q)
+        return np.array([(kl.potential_energy(arm, q + e) - energy) / 1e-5 for e in step])
+
+    assert not kl.diagnose(arm, "gravity_torques", slip).agrees
+    found = kl.diagnose(arm, "gravity_torques", forward)
+    assert found.error_before > 1e-6
+    assert (found.agrees, found.grade) == (True, "right to its digits")

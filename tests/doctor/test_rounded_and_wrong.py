@@ -107,3 +107,24 @@ def test_a_slide_is_called_d_as_in_the_table():
     lost = kl.diagnose(arm, "tau2", tau2.replace("_1^2", "_1"), samples=30)
     assert lost.causes[0].shown == {"tau2": tau2.strip("$")}
     assert kl.diagnose(arm, "tau1", "m2*(d2^2*qdd1 + 2*d2*d2_dot*qd1 + g*d2*s1)").agrees
+
+
+def test_one_digit_is_no_rounding_of_a_third():
+    (found,) = judged("planar3r", M33="0.3*m3*l3**2")
+    assert not found.agrees and "0.3 should be (1/3)" in found.sentence
+    (found,) = judged("planar3r", M33="0.33*m3*l3**2")
+    assert found.agrees and "0.33 stands for 1/3" in found.sentence
+
+
+@pytest.mark.parametrize(
+    "energy", ["17.0*sin(q1) + 5.9*sin(q1+q2)", "17.2*s1+5.8*s12", "16.9*s1 + 5.886*s12"]
+)
+def test_a_number_that_is_off_is_no_opposite_sign(energy):
+    (found,) = judged(V=energy)
+    assert not found.agrees
+    assert all("sign" not in cause.kinds for cause in found.causes)
+
+
+def test_a_power_is_written_back_as_it_was_typed():
+    (found,) = judged(M12="m2*l2^2 + 2*m2*l1*l2*cos(theta2)")
+    assert "correct: M12 = m2*l2^2 + m2*l1*l2*cos(theta2)" in str(found)
