@@ -464,3 +464,20 @@ def test_a_formula_that_is_right_for_positive_angles_only_is_wrong(answer):
     """The sheet's own answer is m1*g*l1*sin(q1); no engine stands beside it."""
     found = marked({**RIGHT, "q4": answer})
     assert [one.verdict for one in found.outcomes] == ["right", "right", "right", "wrong"]
+
+
+NEARLY = """
+import numpy as np
+def q3(q):
+    c = 0.3 * np.cos(q[1])
+    return np.array([[{first} + 2 * c, 0.24 + c], [0.24 + c, 0.24]])
+"""
+
+
+@pytest.mark.parametrize(("first", "told"), [("1.115", ""), ("1.12", "mark it by hand"), ("2", "")])
+def test_what_is_nearly_right_is_left_to_the_teacher(first, told):
+    """1.12 is 1.115 rounded, and it is what a mass of 2.02 kg instead of 2 gives."""
+    program = Submission("a.py", "ada", program=NEARLY.format(first=first))
+    outcomes, _ = judge_program(sheet_of(SHEET, "s"), program, "cause")
+    assert outcomes[2].right == (first == "1.115")
+    assert told in outcomes[2].remark and bool(told) == bool(outcomes[2].remark)

@@ -222,7 +222,10 @@ def _of_diagnoses(
     if all(one.agrees for one in asked):
         return _right(question, asked, file)
     wrong = next(one for one in asked if not one.agrees)
-    return _wrong(question, wrong, file, robot)
+    outcome = _wrong(question, wrong, file, robot)
+    if wrong.form != "near":
+        return outcome
+    return replace(outcome, remark=_("nearly right, and nobody can tell why: mark it by hand"))
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
