@@ -9,7 +9,7 @@ module          what it holds
                 cancelled
 ``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
                 reads
-``lines``         A file of formulas, line by line: one line that is no TOML costs that line and
+``lines``       A file of formulas, line by line: one line that is no TOML costs that line and
                 not the file
 ``marks``       Where a formula and its corrected form differ, for the eye
 ``numbers``     Numbers and angles written as text: ``"pi/2"``, ``"-90 deg"``, ``"sqrt(2)*0.3"``
