@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
-from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
 from kinlab.host.files import read_text, read_toml

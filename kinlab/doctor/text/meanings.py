@@ -12,7 +12,7 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.written import Literal
+from kinlab.doctor.text.written import Literal
 from kinlab.tolerances import TOLERANCES
 
 CLOSE = 0.025
