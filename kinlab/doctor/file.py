@@ -16,7 +16,8 @@ from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
-from kinlab.doctor.text.own_names import in_robot_names, stands_for, written_as
+from kinlab.doctor.text.meanings import stands_for
+from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
 from kinlab.doctor.text.written import Written
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
@@ -149,11 +150,10 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
     numbers: dict[str, str] = {}
 
     def named(found: re.Match[str]) -> str:
-        if not size or not stands_for(found[0], size):
+        if not size or not may_be(found[0], size):
             return found[0]
         if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
-            told = _("{written} stands for {meant}")
-            said[found[0]] = told.format(written=found[0], meant=f"g = {size:.10g}")
+            said[found[0]] = stands_for(found[0], f"g = {size:.10g}")
         name = f"g_{found[0].replace('.', '_')}"
         numbers[name] = found[0]
         return name

@@ -15,7 +15,7 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.numbers import rounded_robots
 from kinlab.doctor.confusions.robots import with_gravity
-from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings
+from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -124,8 +124,7 @@ def gravity_rounded(case: Case, engine: Array) -> tuple[str, ...] | None:
         or not same_values(rest, share * weight, engine)
     ):
         return None
-    said = _("{written} stands for {meant}")
-    return (said.format(written=f"g = {one.text}", meant=f"{size:.10g}"),)
+    return (stands_for(f"g = {one.text}", f"{size:.10g}"),)
 
 
 def _decimal(value: float) -> Literal | None:
@@ -198,13 +197,12 @@ def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
     if whole is not None and abs(one - two) <= TOLERANCES.nearly_agrees * abs(two):
         said = _("the coefficient {written} stands for {meant:.7g}")
         return said.format(written=whole.text, meant=abs(two))
-    said = _("{written} stands for {meant}")
     for exact in RODS:
         for digits in range(2, 7):
             part = literal(np.format_float_positional(exact, digits, fractional=False, trim="-"))
             gap = abs(one - two) / abs(part.value - exact) if part.value != exact else 0.0
             if any(abs(rod - gap) <= TOLERANCES.same_relation * gap for rod in meanings.rods):
-                return said.format(written=part.text, meant=meanings.named(exact))
+                return stands_for(part.text, meanings.named(exact))
     return None if whole is None else ""
 
 

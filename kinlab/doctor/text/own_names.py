@@ -85,7 +85,7 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     """A user's symbol with a number: the robot's parameter of that value, or the number."""
     value = float(given.value)
     if name in words:
-        if not stands_for(_digits(given), words[name]):
+        if not may_be(_digits(given), words[name]):
             raise ExpressionError(
                 f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
                 "give the robot's number, or another name"
@@ -104,7 +104,7 @@ def _digits(given: Node) -> str:
     return repr(float(given.value)).removesuffix(".0")
 
 
-def stands_for(digits: str, value: float) -> bool:
+def may_be(digits: str, value: float) -> bool:
     """Whether a number is another one, or that one rounded to its digits."""
     one = literal(digits.lstrip("-"))
     gap = abs((-one.value if digits.startswith("-") else one.value) - value)

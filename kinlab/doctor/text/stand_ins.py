@@ -16,9 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.meanings import Meanings
+from kinlab.doctor.text.meanings import Meanings, stands_for
 from kinlab.doctor.text.written import Literal, Written
-from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 STEPS, FREE = 12, 120
@@ -204,6 +203,5 @@ class _Search:
 
 def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Array]) -> list[str]:
     """Each rounded number once: ``9.8 stands for g = 9.81``."""
-    form, meanings = _("{written} stands for {meant}"), Meanings.at(at)
-    said = (form.format(written=one.text, meant=meanings.named(value)) for one, value in changed)
-    return list(dict.fromkeys(said))
+    meanings = Meanings.at(at)
+    return list(dict.fromkeys(stands_for(one.text, meanings.named(x)) for one, x in changed))
