@@ -19,7 +19,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.names import Names
-from kinlab.doctor.text.pairs import pairs_adding_up
+from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node, Path
 from kinlab.tolerances import TOLERANCES
@@ -292,15 +292,8 @@ def double_in_term(case: Study) -> list[Repair]:
             and e.kind != "missing term"
             and (len(e.path) > len(path) or e.times is not None)
         ]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            goal = _log_size(1 + case.wanted / old)
-            logs = _log_size(1 + case.effects[inside] / old)
-        usable = np.isfinite(logs).all(axis=1)
-        chosen = [inside[k] for k in np.flatnonzero(usable)]
-        if not chosen or not np.isfinite(goal).all():
-            continue
-        pairs = pairs_adding_up(logs[usable], goal, 1e-8)
-        both = [(case.found[chosen[one]], case.found[chosen[two]]) for one, two in pairs]
+        pairs = pairs_in_product(case.effects[inside], case.wanted, old)
+        both = [(case.found[inside[one]], case.found[inside[two]]) for one, two in pairs]
         repairs += _together(case, both)
     return _best(repairs)
 
@@ -315,13 +308,6 @@ def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
 
 def _best(repairs: Iterable[Repair]) -> list[Repair]:
     return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
-
-
-def _log_size(ratio: Array) -> Array:
-    """log|ratio|; minus infinity where the ratio is rounding about zero."""
-    size = np.abs(ratio)
-    logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
-    return logs
 
 
 def apply(root: Node, edit: Edit) -> Node:

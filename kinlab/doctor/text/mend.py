@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.text.alternatives import study
 from kinlab.doctor.text.line import Change, Line, inside_call, is_sum, is_term, words_in
-from kinlab.doctor.text.pairs import pairs_adding_up
+from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.tolerances import TOLERANCES
 
 _TRIED = 60
@@ -75,14 +75,8 @@ def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tu
             continue
         slope = line.climbed(place, np.zeros(line.count))
         own = value - slope  # the share of this term in the whole
-        with np.errstate(all="ignore"):
-            goal = np.log(np.abs(1 + wanted / own))
-            logs = np.log(np.abs(1 + effects[inside] / own))
-        good = np.isfinite(logs).all(axis=1)
-        if not np.isfinite(goal).all() or not good.any():
-            continue
-        kept = [inside[k] for k in np.flatnonzero(good)]
-        found += [(kept[a], kept[b]) for a, b in pairs_adding_up(logs[good], goal, 1e-8)]
+        pairs = pairs_in_product(effects[inside], wanted, own)
+        found += [(inside[a], inside[b]) for a, b in pairs]
     return _cheapest(line, found)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.tolerances import TOLERANCES
 
 _DENSE = 50
 """Changes with equal effects that are tried as partners of one change."""
@@ -31,3 +32,27 @@ def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[in
             if one < two and np.max(np.abs(rows[one] + rows[two] - goal)) <= allowance:
                 pairs.append((one, two))
     return pairs
+
+
+def pairs_in_product(effects: Array, wanted: Array, own: Array) -> list[tuple[int, int]]:
+    """Pairs of changes of one product: their ratios multiply, so the logarithms add up.
+
+    Args:
+        effects: what each adds to the product, (E, P).
+        wanted: what is missing, (P,).
+        own: the product's value, (P,).
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        goal, logs = _log_size(1 + wanted / own), _log_size(1 + effects / own)
+    usable = np.flatnonzero(np.isfinite(logs).all(axis=1))
+    if not len(usable) or not np.isfinite(goal).all():
+        return []
+    pairs = pairs_adding_up(logs[usable], goal, 1e-8)
+    return [(int(usable[one]), int(usable[two])) for one, two in pairs]
+
+
+def _log_size(ratio: Array) -> Array:
+    """log|ratio|; minus infinity where the ratio is rounding about zero."""
+    size = np.abs(ratio)
+    logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
+    return logs
