@@ -11,8 +11,8 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
-from kinlab.doctor.rounding import stand_ins
-from kinlab.doctor.written import Written
+from kinlab.doctor.text.stand_ins import stand_ins
+from kinlab.doctor.text.written import Written
 from kinlab.errors import ExpressionError, KinlabError, near
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical, formula_file
