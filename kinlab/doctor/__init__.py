@@ -11,6 +11,8 @@ module              what it holds
                     rank what explains
 ``file``            A file of formulas as text: what its names claim to be, each examined entry by
                     entry
+``inverse``         Inverse kinematics judged: right where Pinocchio finds the tool at the
+                    target, on any branch
 ``meanings``        What a number in a formula may stand for: the robot's own, products and sums
                     of these, constants
 ``pen``             Slips of the pen in a text, found and mended in the line itself

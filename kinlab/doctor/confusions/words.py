@@ -72,6 +72,8 @@ _SPELT = {
     "both": "R",
 }
 
+_CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
+
 KNOWN = {
     "w x (I w)": N_("the gyroscopic term"),
     "w x (w x P)": N_("the centripetal term of the link's origin"),
@@ -149,7 +151,9 @@ def name_of(node: ast.expr) -> str:
 
 
 def meant(node: ast.expr) -> str:
-    found = MEANT.get(name_of(node))
+    """What a name stands for; l1 and l2 are a five-bar's where they have an index."""
+    plain = isinstance(node, ast.Name) and node.id in ("l1", "l2")
+    found = None if plain else MEANT.get(name_of(node))
     return spelt(node) if found is None else _(found)
 
 
@@ -184,8 +188,13 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
             return f"D_{node.func.id}"
         if node.func.id == "solve":
             return f"{spelt(node.args[0])}^-1 {_closed(node.args[1], indexed)}"
-        return f"{node.func.id}({', '.join(spelt(x, indexed) for x in node.args)})"
+        if node.func.id == "clamp":
+            return spelt(node.args[0], indexed)
+        called = _CALLED.get(node.func.id, node.func.id)
+        return f"{called}({', '.join(spelt(x, indexed) for x in node.args)})"
     if isinstance(node, ast.BinOp):
+        if isinstance(node.op, ast.Pow) and ast.unparse(node.right) == "1":
+            return spelt(node.left, indexed)
         if is_sum(node):
             sign = "+" if isinstance(node.op, ast.Add) else "-"
             return f"{spelt(node.left, indexed)} {sign} {spelt(node.right, indexed)}"
