@@ -21,8 +21,9 @@ from kinlab.doctor.confusions.derivations import (
     Found,
     several_taken_otherwise,
     taken_otherwise,
+    with_these,
 )
-from kinlab.doctor.confusions.solved import closed_forms, compared, slides
+from kinlab.doctor.confusions.solved import Branches, closed_forms, compared, slides
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _, ngettext
 from kinlab.model.robot import Robot
@@ -126,15 +127,16 @@ def _ranked(causes: list[Cause]) -> Iterator[Cause]:
 
 def _branches_told(found: Solutions) -> Iterator[str]:
     """How many solutions were shown to be right, and of how many there are."""
-    count, most = found.q.shape[:2]
-    least = int(found.right.sum(axis=1).min())
+    number = found.right.sum(axis=1)
+    least, most = int(number.min()), int(number.max())
     said = ngettext(
         "{count} solution of each of {targets} targets, verified by Pinocchio's forward kinematics",
         "{count} solutions of each of {targets} targets, verified by Pinocchio's forward "
         "kinematics",
-        least,
+        most,
     )
-    yield said.format(count=least, targets=count)
+    count = str(least) if least == most else f"{least}–{most}"
+    yield said.format(count=count, targets=len(number))
     mine = compared(found.case.robot, found.q)
     there = []
     for one, at in next(closed_forms(found.case, False), []):
@@ -180,7 +182,7 @@ def _causes(found: Solutions, engine: Array) -> list[Cause]:
     silent = _without_solution(found)
     if silent is not None:
         return [silent]
-    whole = list(_by_reading(found, engine))
+    whole = list(_by_reading(found, engine)) or list(_by_mixing(found))
     if whole:
         return whole
     for search in (taken_otherwise, several_taken_otherwise):
@@ -229,6 +231,28 @@ def _by_reading(found: Solutions, engine: Array) -> Iterator[Cause]:
             yield Cause(told, (kind,), ("",), float(np.max(_worst(other))), 1.0)
 
 
+def _by_mixing(found: Solutions) -> Iterator[Cause]:
+    """Beside right rows others, each joint of which is that of a branch, but not of one branch."""
+    off = found.wrong.any(axis=0)
+    if off.all() or not found.given.all():
+        return
+    n, mine = found.case.robot.n, compared(found.case.robot, found.q[:, off])
+    own: list[Array] = []
+    for one, at in next(closed_forms(found.case, False), []):
+        if not at.all():
+            return
+        gap = np.abs(mine - one.answer(())[:, None])
+        own.append(np.max(np.maximum(gap[..., :n], gap[..., n:]), axis=0) <= TOLERANCES.same_branch)
+    # (branches, rows, joints)
+    if own and np.any(own, axis=0).all():
+        places = ", ".join(str(k + 1) for k in np.flatnonzero(off))
+        told = _(
+            "the formula joins angles of different branches: each angle is right on a branch of "
+            "its own (in solution {places}; the others are right)"
+        ).format(places=places)
+        yield Cause(told, ("branches mixed",), ("",), 0.0, 1.0)
+
+
 def _by_derivation(
     found: Solutions, search: Callable[[Case], Iterable[Found]], limited: bool
 ) -> list[Cause]:
@@ -237,10 +261,13 @@ def _by_derivation(
     Nothing where a row stays unexplained.
     """
     off = [k for k in range(found.q.shape[1]) if found.wrong[:, k].any()]
+    forms = list(closed_forms(found.case, limited))
     explained: list[dict[str, Found]] = []
     for k in off:
         ways: dict[str, Found] = {}
-        for one in _of_row(found, k, search, limited):
+        known = [one for ways_ in explained for one in ways_.values()]
+        again = _of_row(found, k, forms, lambda case: with_these(case, known)) if known else ()
+        for one in [*again] or _of_row(found, k, forms, search):
             said = _(" and ").join(step.sentence for step in one.steps)
             if said not in ways or one.cost < ways[said].cost:
                 ways[said] = one
@@ -283,10 +310,10 @@ def _by_derivation(
 
 
 def _of_row(
-    found: Solutions, k: int, search: Callable[[Case], Iterable[Found]], limited: bool
+    found: Solutions, k: int, forms: list[Branches], search: Callable[[Case], Iterable[Found]]
 ) -> Iterator[Found]:
     """What gives one row at every target, from whichever branch."""
-    for one, at in (pair for form in closed_forms(found.case, limited) for pair in form):
+    for one, at in (pair for form in forms for pair in form):
         row = found.q[at, k]
         known = np.isfinite(row).all(axis=1)
         if np.sum(known) >= _FEWEST:

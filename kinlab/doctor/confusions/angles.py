@@ -7,11 +7,12 @@ supplementary angle; the root forgotten; ``a/2*l1*l2`` for ``a/(2*l1*l2)``; l1 a
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 
 from kinlab.doctor.confusions.operations import Make
-from kinlab.doctor.confusions.walk import Program, Step, again
-from kinlab.doctor.confusions.words import is_sum, minus, name_of, spelt
+from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
+from kinlab.doctor.confusions.words import is_sum, minus, name_of, spelt, times
 from kinlab.host.language import _
 
 _EXCHANGED = (("l1", "l2"), ("l2", "l3"), ("x", "y"), ("px", "py"), ("s2", "c2"), ("s3", "c3"))
@@ -34,6 +35,13 @@ def at_angle(node: ast.Call, step: Make) -> Iterator[Step]:
             does = _("has {new} for {old} (the sign)")
             new = ast.Call(node.func, other, [])
             yield step("sign", does.format(new=spelt(new), old=spelt(node)), 1.06, (node, new))
+        if name_of(x[0])[:1] == "s" and name_of(x[1])[:1] == "c":
+            for inverse, part in (("arcsin", x[0]), ("arccos", x[1])):
+                alone = ast.Call(ast.Name(inverse), [part], [])
+                does = _("has {new} for {old} (the quadrant is lost)")
+                does = does.format(new=spelt(alone), old=spelt(node))
+                cost = 1.0 if inverse == "arcsin" else 1.03
+                yield step("quadrant", does, cost, (node, alone))
     elif name == "arccos":
         other = ast.Call(node.func, [minus(x[0])], [])
         does = _("has the supplementary angle {new} for {old}")
@@ -77,10 +85,9 @@ def exchanged(of: Program) -> Iterator[Step]:
     for one, two in _EXCHANGED:
         every: list[tuple[ast.expr, ast.expr]] = []
         for line in of.lines:
-            assert isinstance(line.statement, ast.Assign)
             found = [
                 node
-                for node in ast.walk(line.statement.value)
+                for node in ast.walk(_assigned(line).value)
                 if isinstance(node, ast.Name) and node.id in (one, two) and line.about
             ]
             edits = [(x, again(ast.Name(two if x.id == one else one))) for x in found]
@@ -92,3 +99,31 @@ def exchanged(of: Program) -> Iterator[Step]:
         if len({x.id for x, _new in every if isinstance(x, ast.Name)}) == 2:
             does = _("has {one} and {two} exchanged in every line")
             yield Step("exchanged", does.format(one=one, two=two), tuple(every), 1.03)
+
+
+def of_angles(of: Program) -> Iterator[Step]:
+    """The lines of a closed form: an angle with the other sign, a length left out of every line."""
+    made = {name_of(target) for line in of.lines for target in _assigned(line).targets}
+    places: dict[str, list[ast.expr]] = {}
+    for line in of.lines:
+        target, whole = _assigned(line).targets[0], _assigned(line).value
+        if not line.about:
+            continue
+        angle = isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Constant)
+        if angle and is_sum(whole):
+            does = _("has {what} with the opposite sign").format(what=_(line.about))
+            yield Step("sign", does, ((whole, ast.UnaryOp(ast.USub(), again(whole))),), 1.02)
+        for node in ast.walk(whole):
+            if isinstance(node, ast.Name) and re.fullmatch(r"[lad]\d", node.id):
+                places.setdefault(node.id, []).append(node)
+    for name, found in places.items():
+        if len(found) > 1 and name not in made:
+            does = _("leaves {term} out in every line").format(term=name)
+            yield Step("missing term", does, tuple((x, times(0, x)) for x in found), 1.06)
+            does = _("has {term} with the opposite sign in every line").format(term=name)
+            yield Step("sign", does, tuple((x, minus(x)) for x in found), 1.06)
+
+
+def _assigned(line: Assignment) -> ast.Assign:
+    assert isinstance(line.statement, ast.Assign)
+    return line.statement

@@ -176,6 +176,8 @@ LINES = (
 
 _SIDES = ("elbow", "front", "side", "wrist")
 """Names that stand for +1 or -1: which branch."""
+_MOST_FOR_PAIRS = 4
+"""Joints up to which two steps are tried together."""
 Numbers = dict[str, float]
 _FEWEST = 10
 """Targets that a branch must reach to be looked at."""
@@ -226,6 +228,8 @@ def closed_forms(case: Case, limited: bool) -> Iterator[Branches]:
         limited: with the cosines limited to [-1, 1], as careful writers have them.
     """
     for text, numbers in _closed_forms(case.robot, case.quantity.name):
+        if limited and "clamp(" not in text:
+            continue
         names = [side for side in _SIDES if re.search(rf"\b{side}\b", text)]
         written = text if limited else text.replace("clamp(", "(")
         found = []
@@ -261,7 +265,7 @@ def _road(case: Case, text: str, numbers: Numbers) -> Road:
         walk = Walk(of, lambda _: named, next(iter(x.values())), ways, 0)
         return compared(robot, walk.values("q")), walk
 
-    return Road(of, walked, 0)
+    return Road(of, walked, 0, pairs=robot.n <= _MOST_FOR_PAIRS)
 
 
 def _entries(robot: Robot, x: Stacks) -> Stacks:

@@ -13,7 +13,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged
+from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles
 from kinlab.doctor.confusions.operations import (
     Make,
     at_call,
@@ -114,7 +114,7 @@ def _steps(
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
-    found += exchanged(of)
+    found += [*exchanged(of), *of_angles(of)]
     if not singly:
         return (*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes))
     at_joint = _("{does}, at joint {joint}")

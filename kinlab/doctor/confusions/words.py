@@ -151,16 +151,22 @@ def name_of(node: ast.expr) -> str:
 
 
 def meant(node: ast.expr) -> str:
-    """What a name stands for; l1 and l2 are a five-bar's where they have an index."""
-    plain = isinstance(node, ast.Name) and node.id in ("l1", "l2")
-    found = None if plain else MEANT.get(name_of(node))
+    """What a name stands for."""
+    found = _meaning(node)
     return spelt(node) if found is None else _(found)
+
+
+def _meaning(node: ast.expr) -> str | None:
+    """Of l1, l2 and z only where they have an index: alone they are a serial arm's, and a height."""
+    alone = isinstance(node, ast.Name) and node.id in ("l1", "l2", "z")
+    numbered = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant)
+    return None if alone or numbered else MEANT.get(name_of(node))
 
 
 def told(node: ast.expr) -> str:
     """A term, with what it is called."""
     text = spelt(node)
-    called = KNOWN.get(text, MEANT.get(name_of(node), ""))
+    called = KNOWN.get(text) or _meaning(node)
     return f"{text} ({_(called)})" if called and called != text else text
 
 
@@ -170,6 +176,8 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
         return f"{float(str(node.value)):g}"
     if isinstance(node, ast.Subscript):
         name = spelt(node.value)
+        if isinstance(node.slice, ast.Constant):
+            return f"{name}{node.slice.value}"
         index = ast.unparse(node.slice).replace(" ", "")
         return (
             name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"
