@@ -30,8 +30,9 @@ from kinlab.doctor.confusions.numbers import other_numbers
 from kinlab.doctor.confusions.parts import proved
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
+from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
+from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
-from kinlab.doctor.written import Written
 from kinlab.errors import KinlabError, OptionError
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
@@ -308,7 +309,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
         text = written.get(entry.label)
         if text is not None:
             at = verdicts.numbers_at(case)
-            changed = rounding.stand_ins(text, at, entry.engine, entry.scale)
+            changed = stand_ins(text, at, entry.engine, entry.scale)
             if changed is None and derived is not None:
                 said = verdicts.of_data(text, entry, derived, case)
                 if said is None:
@@ -317,7 +318,7 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | 
                 continue
             if changed is None:
                 return None
-            remarks += [*text.rounded, *rounding.rounding_remarks(changed, at)]
+            remarks += [*text.rounded, *rounding_remarks(changed, at)]
             continue
         return None
     return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None

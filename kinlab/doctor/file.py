@@ -1,4 +1,4 @@
-"""A file of formulas as text: what its names claim to be, each examined entry by entry."""
+"""A file of formulas as text, each examined entry by entry."""
 
 from __future__ import annotations
 
@@ -11,89 +11,26 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
-from kinlab.doctor.written import Written, literal
-from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError, near
-from kinlab.formulas import tree, typed
+from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.meanings import stands_for
+from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
+from kinlab.doctor.text.written import Written
+from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
+from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
-from kinlab.formulas.retyped import Typing
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, formula_file, parse, tidied
-from kinlab.formulas.tree import Node
+from kinlab.formulas.text import FormulaFile, formula_file, parse
 from kinlab.host.files import read_text
 from kinlab.host.language import _
-from kinlab.model.dh import DHTable
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import is_planar, vocabulary
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
-
-# -------- What the names in a formula file claim to be: tau1, g2, M12, C11, J11, x, T, V
-
-_VECTORS = {
-    "inverse_dynamics": "tau Q torque",
-    "gravity_torques": "g G D",
-    "coriolis_torques": "c h V b",
-}
-_MATRICES = {
-    "mass_matrix": "M D H B",
-    "coriolis_matrix": "C",
-    "jacobian": "J",
-    "fk": "T R r",
-}
-_NUMBERS = {
-    "fk[0,3]": "x px",
-    "fk[1,3]": "y py",
-    "fk[2,3]": "z pz",
-    "kinetic_energy": "T K kinetic",
-    "potential_energy": "V U P potential",
-}
-"""Each quantity with the letters that its vectors, matrices and numbers go by."""
-
-
-def _by_letter(table: dict[str, str]) -> dict[str, str]:
-    return {letter: name for name, letters in table.items() for letter in letters.split()}
-
-
-_VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
-_VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
-_MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
-
-
-def quantity_of(entry: str, table: DHTable | None) -> str:
-    """The quantity that an entry's name stands for, such as ``"inverse_dynamics[0]"``.
-
-    Args:
-        entry: ``tau1``, ``M12``, ... (rows and columns from 1), or the quantity itself.
-        table: the robot's table; of a planar arm ``J11`` ... are the rows vx, vy, wz.
-
-    Raises:
-        ExpressionError: a name that says nothing.
-    """
-    plain = entry.split("[")[0].strip()
-    if plain in quantities():
-        return entry.strip()
-    if entry in _NUMBER_OF:
-        return _NUMBER_OF[entry]
-    matrix = _MATRIX.fullmatch(entry)
-    if matrix and matrix.group(1) in _MATRIX_OF:
-        name = _MATRIX_OF[matrix.group(1)]
-        if name == "jacobian" and table is not None and is_planar(table):
-            name = "planar_jacobian"
-        return f"{name}[{int(matrix.group(2)) - 1},{int(matrix.group(3)) - 1}]"
-    vector = _VECTOR.fullmatch(entry)
-    if vector and vector.group(1) in _VECTOR_OF:
-        return f"{_VECTOR_OF[vector.group(1)]}[{int(vector.group(2)) - 1}]"
-    choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
-    raise ExpressionError(f"{entry!r} names no quantity; {choices}")
-
-
-# -------- A file of formulas as text, examined entry by entry
 
 _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
@@ -213,11 +150,10 @@ def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[s
     numbers: dict[str, str] = {}
 
     def named(found: re.Match[str]) -> str:
-        if not size or not _stands_for(found[0], size):
+        if not size or not may_be(found[0], size):
             return found[0]
         if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
-            told = _("{written} stands for {meant}")
-            said[found[0]] = told.format(written=found[0], meant=f"g = {size:.10g}")
+            said[found[0]] = stands_for(found[0], f"g = {size:.10g}")
         name = f"g_{found[0].replace('.', '_')}"
         numbers[name] = found[0]
         return name
@@ -288,7 +224,7 @@ def _claims(
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
         label = f"{plain}[{','.join(map(str, index))}]" if index else plain
         node = in_robot_names(text, file, robot, entry)
-        wanted.setdefault(plain, {})[label] = _written(entry, node, file, robot)
+        wanted.setdefault(plain, {})[label] = written_as(entry, node, file, robot)
         titles[label] = entry
     return wanted, titles
 
@@ -385,143 +321,6 @@ def robot_of(file: FormulaFile) -> Robot:
         raise NameUnknownError(f"{file.path}: {problem}") from None
     except FileError as problem:
         raise FileError(f"{file.path}: robot: {problem}") from None
-
-
-def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
-    """A formula with the robot's own names in place of the user's.
-
-    Raises:
-        ExpressionError: a name without a meaning; the message names the entry.
-    """
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
-    place = f"{file.path}: {entry}"
-    _refuse_large(text, file, place, {}, ())
-    return _resolved(text, file, words, known, place)
-
-
-def _refuse_large(
-    text: Node, file: FormulaFile, place: str, sizes: dict[str, int], open_names: tuple[str, ...]
-) -> int:
-    """Counts the terms and factors with all symbols written out, before they are.
-
-    Raises:
-        ExpressionError: more than a formula of an arm can have, or a symbol explained by itself.
-    """
-    total = 0
-    for _path, node in tree.nodes(text):
-        total += 1
-        if node.op != "sym" or node.value not in file.symbols:
-            continue
-        name = node.value
-        if name in open_names:
-            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
-        if name not in sizes:
-            way = (*open_names, name)
-            sizes[name] = _refuse_large(file.symbols[name], file, place, sizes, way)
-        total += sizes[name]
-        if total > MOST_NODES:
-            break
-    if total > MOST_NODES:
-        raise ExpressionError(
-            f"{place}: with its symbols written out it has more than {MOST_NODES} terms and factors"
-        )
-    return total
-
-
-def _resolved(
-    text: Node, file: FormulaFile, words: dict[str, float], known: set[str], place: str
-) -> Node:
-    mapping = {}
-    for name in sorted(tree.names(text)):
-        if name in file.symbols:
-            given = file.symbols[name]
-            if given.op == "num":
-                mapping[name] = _by_value(name, given, words, place)
-            else:
-                mapping[name] = _resolved(given, file, words, known, place)
-            continue
-        if name in words:
-            continue
-        meant = canonical(name)
-        if not tree.names(meant) <= known:
-            choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
-            raise ExpressionError(
-                f"{place}: {name[:40]!r} is unknown; {choices}; or give it a meaning in [symbols]"
-            )
-        mapping[name] = meant
-    return tree.renamed(text, mapping)
-
-
-def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> Node:
-    """A user's symbol with a number: the robot's parameter of that value, or the number."""
-    value = float(given.value)
-    if name in words:
-        if not _stands_for(_digits(given), words[name]):
-            raise ExpressionError(
-                f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
-                "give the robot's number, or another name"
-            )
-        return tree.sym(name)
-    alike = [w for w, x in words.items() if abs(x - value) <= TOLERANCES.same_number * abs(x)]
-    close = [w for w in alike if w[0].lower() == name[0].lower()]
-    for found in (alike, close):
-        if len(found) == 1:
-            return tree.sym(found[0])
-    return given
-
-
-def _digits(given: Node) -> str:
-    """A symbol's number as digits; 10.0 was 10 before it was read."""
-    return repr(float(given.value)).removesuffix(".0")
-
-
-def _stands_for(digits: str, value: float) -> bool:
-    """Whether a number is another one, or that one rounded to its digits."""
-    one = literal(digits.lstrip("-"))
-    gap = abs((-one.value if digits.startswith("-") else one.value) - value)
-    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.reach)
-
-
-def _written(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:
-    """A formula with what its writer's names stand for."""
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    known: dict[str, Node] = {}
-    texts: dict[str, str] = {}
-    rounded: dict[str, str] = {}
-    for name, given in file.symbols.items():
-        texts[name] = file.symbol_texts[name]
-        if given.op != "num":
-            continue
-        texts[name] = _digits(given)
-        meant = _by_value(name, given, words, f"{file.path}: {entry}")
-        if meant.op == "sym":
-            known[name] = meant
-            exact = words[str(meant.value)]
-            if abs(float(given.value) - exact) > TOLERANCES.same_number * abs(exact):
-                rounded[name] = _("{name} = {written} in [symbols] stands for {meant:.10g}").format(
-                    name=name, written=texts[name], meant=exact
-                )
-    inside = tree.names(file.formulas[entry])
-    used = [note for name, note in rounded.items() if name in inside]
-    written = file.texts[entry]
-    return Written(
-        entry, written, node, texts, known, tuple(used), file.numbers, typing_of(entry, file)
-    )
-
-
-def typing_of(entry: str, file: FormulaFile) -> Typing | None:
-    """An entry as it was typed; None where that is its plain text."""
-    given = file.as_typed[entry]
-    core, dollars = typed.bare(given), typed.is_latex(given)
-
-    def reads(line: str) -> str:
-        return typed.plain_formula(f"${line}$" if dollars else line, entry, file.writing)
-
-    plain = tidied(reads(core))
-    if tidied(core) == plain and "^" not in core:
-        return None
-    return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
 
 
 def _entry_of(label: str, titles: dict[str, str]) -> str:

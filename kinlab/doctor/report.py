@@ -21,11 +21,11 @@ from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import (
     examine_formulas,
-    quantity_of,
     require_sound,
     robot_of,
 )
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences

@@ -1,18 +1,10 @@
-"""Rounded numbers: what a written number may stand for, and whether that explains a difference.
-
-A number stands for anything within half a unit of its last digit. A formula is right with rounded
-numbers only if there are numbers within those digits that give the engine's values at every state
-to 1e-9, and each of them means something: a number of the robot, a product or sum of these, a
-constant such as 1/3; or else it is the only number in its term, so that the engine's own
-coefficient is what it stands for. Two numbers in one term that mean nothing excuse nothing: any
-error could be laid between them.
-"""
+"""Rounded numbers of a function and of the robot's data, and whether they explain a difference."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,207 +15,16 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.numbers import rounded_robots
 from kinlab.doctor.confusions.robots import with_gravity
-from kinlab.doctor.meanings import CLOSE, RODS, Meanings
-from kinlab.doctor.written import Literal, Written, literal
+from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, stands_for
+from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
-_STEPS = 12
 _ROUGH = 0.03
 """Share of a function's answer that rounded constants may change: g = 10 is 2 %."""
-_FREE = 120
-"""Literals of one formula above which they are not fitted."""
-_FITS = 200
-"""Sets of numbers tried for one formula in which several numbers can share an error."""
-# -------- Numbers of a text, within their digits
-
-
-def stand_ins(
-    text: Written, at: Mapping[str, Array], target: Array, scale: Array
-) -> list[tuple[Literal, float]] | None:
-    """Numbers within the digits of those written that give the wanted values at every state.
-
-    Args:
-        text: the formula.
-        at: values of the robot's names, (N,) each.
-        target: the values wanted, (N,).
-        scale: what differences are relative to, (N,).
-
-    Returns:
-        The literals that must be other numbers, each with its number; None where none will do.
-    """
-    literals = text.literals
-    inexact = [k for k, one in enumerate(literals) if one.half > 0]
-    if not inexact or len(inexact) > _FREE:
-        return None
-    search = _Search(text, at, target, scale, Meanings.at(at))
-    # numbers that are the robot's in full are exact
-    rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
-    groups: dict[str, list[int]] = {}
-    for k in rest:
-        groups.setdefault(literals[k].text, []).append(k)
-    singly = [search.explained([members]) for members in groups.values()]
-    found = [way for way in singly if way]
-    if found:
-        return min(found, key=lambda way: search.oddness(*way[0]))
-    for ways in (list(groups.values()), [[k] for k in rest]):
-        together = search.explained(ways) if len(ways) > 1 else None
-        if together is not None:
-            return together
-    return None
-
-
-@dataclass(eq=False)
-class _Search:
-    """Looks for numbers that explain a text's difference."""
-
-    text: Written
-    at: Mapping[str, Array]
-    target: Array
-    scale: Array
-    meanings: Meanings
-    left: int = _FITS
-
-    def oddness(self, one: Literal, value: float) -> tuple[bool, int]:
-        """Of several numbers that would do, the one that means something, and the roughest."""
-        return self.meanings.named(value) == f"{value:.7g}", one.digits
-
-    def explained(self, ways: list[list[int]]) -> list[tuple[Literal, float]] | None:
-        """The literals that change, where each group moves as one within its digits, or None."""
-        found = self._settled(ways, {}, False)
-        return found if found is not None else self._settled(ways, {}, True)
-
-    def _settled(
-        self, ways: list[list[int]], fixed: Mapping[int, float], own: bool
-    ) -> list[tuple[Literal, float]] | None:
-        """The same with the values of some groups settled, by their first member.
-
-        An error that could lie in either of two numbers is laid into neither unless all of them
-        mean something, or the one is the robot's ``own`` number and the other its coefficient.
-        """
-        fitted = self._fitted(ways, fixed) if self.left > 0 else None
-        self.left -= 1
-        if fitted is None:
-            return None
-        numbers, loose = fitted
-        if loose is None:
-            return self._sound(ways, numbers, own or not fixed)
-        one = self.text.literals[loose[0]]
-        for value in (one.value, *self.meanings.around(one)):
-            if not own or value == one.value or self.meanings.parameter(value) is not None:
-                found = self._settled(ways, {**fixed, loose[0]: value}, own)
-                if found is not None:
-                    return found
-        return None
-
-    def _fitted(
-        self, ways: list[list[int]], fixed: Mapping[int, float]
-    ) -> tuple[Array, list[int] | None] | None:
-        """All literals' numbers, and a group that the values leave undecided."""
-        literals = self.text.literals
-        start = np.array([one.value for one in literals])
-        for members in ways:
-            start[members] = fixed.get(members[0], literals[members[0]].value)
-        free = [members for members in ways if members[0] not in fixed]
-        reach = np.array([literals[members[0]].reach for members in free])
-        moved = np.zeros(len(free))
-        turned = np.zeros((len(self.target), len(free)))
-
-        def numbers(share: Array) -> Array:
-            out = start.copy()
-            for members, size, part in zip(free, reach, share, strict=True):
-                out[members] += size * part
-            return out
-
-        for _step in range(_STEPS):
-            values = self.text.values(self.at, numbers(moved))
-            rest = (self.target - values) / self.scale
-            if not np.isfinite(rest).all():
-                return None
-            slopes = [
-                (self.text.values(self.at, numbers(moved + 1e-3 * step)) - values)
-                / (1e-3 * self.scale)
-                for step in np.eye(len(free))
-            ]
-            turned = np.array(slopes).reshape(len(free), -1).T
-            if not np.isfinite(turned).all():
-                return None
-            if not free or np.max(np.abs(rest)) <= 0.01 * TOLERANCES.formula_agrees:
-                break
-            moved = moved + np.linalg.lstsq(turned, rest, rcond=1e-10)[0]
-            if np.max(np.abs(moved)) > 10.0:
-                return None
-        final = numbers(moved)
-        gap = np.abs(self.target - self.text.values(self.at, final)) / self.scale
-        fits = np.isfinite(gap).all() and float(np.max(gap)) <= TOLERANCES.formula_agrees
-        within = not free or np.max(np.abs(moved)) <= 1.0 + TOLERANCES.same_relation
-        if not fits or not within:
-            return None
-        return final, self._loose(free, turned)
-
-    def _loose(self, free: list[list[int]], turned: Array) -> list[int] | None:
-        """The group that can move most while others make up for it."""
-        if len(free) < 2:
-            return None
-        _u, sizes, axes = np.linalg.svd(turned, full_matrices=True)
-        rank = int(np.sum(sizes > TOLERANCES.same_relation * sizes[0])) if sizes[0] else 0
-        share = np.sum(axes[rank:] ** 2, axis=0)
-        # what changes nothing at all is no matter
-        felt = np.max(np.abs(turned), axis=0) > TOLERANCES.no_effect
-        share = np.where(felt, share, 0.0)
-        k = int(np.argmax(np.round(share, 6)))
-        return free[k] if share[k] > TOLERANCES.same_relation else None
-
-    def _sound(
-        self, ways: list[list[int]], numbers: Array, alone: bool
-    ) -> list[tuple[Literal, float]] | None:
-        """What changes, if every number means something or, as is allowed, is alone in its term."""
-        literals = self.text.literals
-        changed = [
-            (literals[k], float(numbers[k]))
-            for k in (members[0] for members in ways)
-            if abs(numbers[k] - literals[k].value)
-            > TOLERANCES.formula_agrees * abs(literals[k].value)
-        ]
-        if not changed or not all(self.meanings.credible(*pair) for pair in changed):
-            return None
-        bare = [
-            k
-            for k, one in enumerate(literals)
-            if one.half > 0 and not self.meanings.holds(float(numbers[k]))
-        ]
-        if bare and not (alone and self._told_apart(bare, numbers)):
-            return None
-        return changed
-
-    def _told_apart(self, bare: list[int], numbers: Array) -> bool:
-        """Whether no error of one number could be another's: not of one term or one coefficient."""
-        if len(bare) < 2:
-            return True
-        here = self.text.values(self.at, numbers)
-        columns = []
-        for k in bare:
-            moved = numbers.copy()
-            moved[k] += 1e-3 * self.text.literals[k].reach
-            column = (self.text.values(self.at, moved) - here) / self.scale
-            size = float(np.linalg.norm(column))
-            if size == 0.0 or not np.isfinite(size):
-                return False
-            columns.append(column / size)
-        return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(bare))
-
-
-def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Array]) -> list[str]:
-    """Each rounded number once: ``9.8 stands for g = 9.81``."""
-    form, meanings = _("{written} stands for {meant}"), Meanings.at(at)
-    said = (form.format(written=one.text, meant=meanings.named(value)) for one, value in changed)
-    return list(dict.fromkeys(said))
-
-
-# -------- Numbers of a function, and of the robot's own data
 
 
 def roundings(case: Case, engine: Array, function: bool) -> Iterator[tuple[str, ...]]:
@@ -323,8 +124,7 @@ def gravity_rounded(case: Case, engine: Array) -> tuple[str, ...] | None:
         or not same_values(rest, share * weight, engine)
     ):
         return None
-    said = _("{written} stands for {meant}")
-    return (said.format(written=f"g = {one.text}", meant=f"{size:.10g}"),)
+    return (stands_for(f"g = {one.text}", f"{size:.10g}"),)
 
 
 def _decimal(value: float) -> Literal | None:
@@ -397,13 +197,12 @@ def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
     if whole is not None and abs(one - two) <= TOLERANCES.nearly_agrees * abs(two):
         said = _("the coefficient {written} stands for {meant:.7g}")
         return said.format(written=whole.text, meant=abs(two))
-    said = _("{written} stands for {meant}")
     for exact in RODS:
         for digits in range(2, 7):
             part = literal(np.format_float_positional(exact, digits, fractional=False, trim="-"))
             gap = abs(one - two) / abs(part.value - exact) if part.value != exact else 0.0
             if any(abs(rod - gap) <= TOLERANCES.same_relation * gap for rod in meanings.rods):
-                return said.format(written=part.text, meant=meanings.named(exact))
+                return stands_for(part.text, meanings.named(exact))
     return None if whole is None else ""
 
 

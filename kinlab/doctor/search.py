@@ -14,11 +14,12 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
 
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node, Path
 from kinlab.tolerances import TOLERANCES
@@ -28,9 +29,6 @@ _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
 _TRIED = 150
 """Pairs that are written out and evaluated, the simplest first."""
-_DENSE = 50
-"""Edits with equal effects that are tried as partners of one edit."""
-
 
 _INDEXED = re.compile(r"([A-Za-z_]+?)(\d+)")
 _FACTORS = tuple(
@@ -56,38 +54,6 @@ class Edit:
     kind: str
     cost: float
     times: Node | None = None
-
-
-@dataclass(frozen=True)
-class Names:
-    """The names that may stand in a formula.
-
-    Attributes:
-        parameters: l1, m1, g, ...
-        n: number of joints.
-        letters: which of q, qd, qdd the quantity depends on.
-    """
-
-    parameters: tuple[str, ...]
-    n: int
-    letters: tuple[str, ...]
-
-    @property
-    def angles(self) -> tuple[Node, ...]:
-        """Sums of neighbouring joint positions, differences of two, and doubled ones.
-
-        Joints that slide are among them: a wrong index may point at one.
-        """
-        joints = [tree.sym(f"q{i + 1}") for i in range(self.n)]
-        sums = [
-            tree.add(*joints[i:j])
-            for i in range(len(joints))
-            for j in range(i + 1, len(joints) + 1)
-        ]
-        differences = [tree.add(a, tree.mul(tree.num(-1), b)) for a, b in combinations(joints, 2)]
-        gaps = [tree.add(a, b) for a, b in combinations(joints, 2)]
-        twice = [tree.mul(tree.num(2), a) for a in joints]
-        return tuple(dict.fromkeys([*sums, *gaps, *differences, *twice]))
 
 
 def edits(root: Node, names: Names) -> Iterator[Edit]:
@@ -326,15 +292,8 @@ def double_in_term(case: Study) -> list[Repair]:
             and e.kind != "missing term"
             and (len(e.path) > len(path) or e.times is not None)
         ]
-        with np.errstate(divide="ignore", invalid="ignore"):
-            goal = _log_size(1 + case.wanted / old)
-            logs = _log_size(1 + case.effects[inside] / old)
-        usable = np.isfinite(logs).all(axis=1)
-        chosen = [inside[k] for k in np.flatnonzero(usable)]
-        if not chosen or not np.isfinite(goal).all():
-            continue
-        pairs = pairs_adding_up(logs[usable], goal, 1e-8)
-        both = [(case.found[chosen[one]], case.found[chosen[two]]) for one, two in pairs]
+        pairs = pairs_in_product(case.effects[inside], case.wanted, old)
+        both = [(case.found[inside[one]], case.found[inside[two]]) for one, two in pairs]
         repairs += _together(case, both)
     return _best(repairs)
 
@@ -349,36 +308,6 @@ def _together(case: Study, pairs: list[tuple[Edit, Edit]]) -> list[Repair]:
 
 def _best(repairs: Iterable[Repair]) -> list[Repair]:
     return sorted(repairs, key=lambda r: r.cost)[:_CANDIDATES]
-
-
-def _log_size(ratio: Array) -> Array:
-    """log|ratio|; minus infinity where the ratio is rounding about zero."""
-    size = np.abs(ratio)
-    logs: Array = np.log(np.where(size > TOLERANCES.no_effect, size, 0.0))
-    return logs
-
-
-def pairs_adding_up(rows: Array, goal: Array, allowance: float) -> list[tuple[int, int]]:
-    """Pairs of rows that add up to the goal, by sorting one projection."""
-    weights = np.random.default_rng(5).uniform(0.5, 1.5, rows.shape[1])
-    line = rows @ weights
-    order = np.argsort(line, kind="stable")
-    line = line[order]
-    wide = allowance * rows.shape[1]
-    low = np.searchsorted(line, goal @ weights - line - wide)
-    high = np.searchsorted(line, goal @ weights - line + wide)
-    # rows with equal projections stand in the order of the list, and are taken or left together
-    group = np.concatenate([[0], np.cumsum(np.diff(line) > wide)])
-    order = order[np.lexsort((order, group))]
-    pairs = []
-    for i in np.flatnonzero(high > low):
-        first = np.searchsorted(group, group[low[i]])
-        last = np.searchsorted(group, group[high[i] - 1], side="right")
-        for j in range(first, min(last, first + _DENSE)):
-            one, two = int(order[i]), int(order[j])
-            if one < two and np.max(np.abs(rows[one] + rows[two] - goal)) <= allowance:
-                pairs.append((one, two))
-    return pairs
 
 
 def apply(root: Node, edit: Edit) -> Node:

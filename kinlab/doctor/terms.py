@@ -14,12 +14,14 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import shown_entry
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import pen, regression, search
+from kinlab.doctor import regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
-from kinlab.doctor.pen import Mended, brief
-from kinlab.doctor.search import Edit, Names, Repair
-from kinlab.doctor.written import Written
+from kinlab.doctor.search import Edit, Repair
+from kinlab.doctor.text.line import Line, brief
+from kinlab.doctor.text.mend import Mended, mended, together
+from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
@@ -195,11 +197,11 @@ def in_text(
     lines = []
     for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        lines.append(pen.Line(written, names, at, np.array(target), extra, numeric=at is own))
+        lines.append(Line(written, names, at, np.array(target), extra, numeric=at is own))
     tried = [(line, 1) for line in lines if numbers] + [(line, 2) for line in lines]
-    found: list[Mended] = next(filter(None, (pen.mended(*way) for way in tried)), [])
+    found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
     found = found or _part_by_part(lines[0], right)
-    found = found or next(filter(None, (pen.mended(line) for line in lines)), [])
+    found = found or next(filter(None, (mended(line) for line in lines)), [])
     return [_mended(written, one, here) for one in found]
 
 
@@ -224,20 +226,20 @@ def parts(right: Node, at: dict[str, Array]) -> list[dict[str, Array]]:
     return alone if len(alone) > 1 else []
 
 
-def _part_by_part(line: pen.Line, right: Node) -> list[Mended]:
+def _part_by_part(line: Line, right: Node) -> list[Mended]:
     """One or two slips in each of several parts, each found where the other parts are zero."""
     ways: list[list[Mended]] = []
     for at in parts(right, dict(line.at)):
         target = np.array(np.broadcast_to(tree.evaluate(right, at), line.target.shape))
-        part = pen.Line(line.text, line.names, at, target, line.terms)
+        part = Line(line.text, line.names, at, target, line.terms)
         if np.max(np.abs(part.root.value - target)) <= TOLERANCES.effect_matches * line.scale:
             continue
-        ways.append(pen.mended(part, 2)[:_WAYS])
+        ways.append(mended(part, 2)[:_WAYS])
     good = []
     for chosen in product(*ways) if len(ways) > 1 else ():
         changes = tuple(dict.fromkeys(change for way in chosen for change in way.changes))
         if len(changes) <= _SLIPS:
-            good += pen.together(line, changes)
+            good += together(line, changes)
     return sorted(good, key=lambda m: m.cost)[:_WAYS]
 
 

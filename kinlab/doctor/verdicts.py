@@ -20,7 +20,8 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.written import Written
+from kinlab.doctor.text.stand_ins import FREE, STEPS
+from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -28,11 +29,8 @@ from kinlab.symbolic.trig import Poly
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
-_STEPS = 12
 _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
-_FREE = 120
-"""Literals of one formula above which they are not fitted."""
 _FEW = 8
 """States at which the noise of a function is measured."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
@@ -89,7 +87,7 @@ def holds_with_other_numbers(
         if one.whole and one.value != 1 and not one.exponent
     }
     whole = {k: names for k, names in whole.items() if names}
-    if (not decimal and not whole) or len(literals) > _FREE:
+    if (not decimal and not whole) or len(literals) > FREE:
         return False
     choices = list(product(*([None, *names] for names in whole.values())))[:32]
     rounds = [next(states) for _ in range(_ROUNDS)]
@@ -109,7 +107,7 @@ def _free_fit(
     for k, name in put.items():
         numbers[k] = float(at[name][0])
     scale = float(np.max(np.abs(target))) or 1.0
-    for _step in range(2 * _STEPS):
+    for _step in range(2 * STEPS):
         values = text.values(at, numbers)
         rest = (target - values) / scale
         if not np.isfinite(rest).all():

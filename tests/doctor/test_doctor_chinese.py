@@ -22,9 +22,9 @@ from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.handout import handout
 from kinlab.doctor.marking.sheet import read_sheet, sheet_of
 from kinlab.doctor.marking.words import KINDS, OTHERS
-from kinlab.doctor.pen import brief
 from kinlab.doctor.report import of_document
 from kinlab.doctor.tables.report import page, text
+from kinlab.doctor.text.line import brief
 from kinlab.host.language import _, language, speaking
 
 PUMA, PANDA = kl.load("puma560").table, kl.load("panda").table

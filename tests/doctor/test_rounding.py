@@ -111,7 +111,7 @@ def test_equal_numbers_keep_their_order_whatever_their_last_bit():
 
 def test_pairs_are_found_whatever_the_last_bit():
     """Sixty rows of one effect: which fifty of them are tried must not hang on rounding."""
-    from kinlab.doctor.search import pairs_adding_up
+    from kinlab.doctor.text.pairs import pairs_adding_up
 
     rng = np.random.default_rng(1)
     one, goal = rng.standard_normal(24), rng.standard_normal(24)

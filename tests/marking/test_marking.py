@@ -19,6 +19,7 @@ from kinlab.doctor.marking.program import judge_program
 from kinlab.doctor.marking.results import as_csv, gradescope
 from kinlab.doctor.marking.sheet import sheet_of
 from kinlab.doctor.marking.submission import Submission, read_submission
+from kinlab.errors import FileError
 
 G1 = "(m1+m2)*g*l1*c1 + m2*g*l2*c12"
 M = "[(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2, m2*l2^2 + m2*l1*l2*c2; m2*l2^2 + m2*l1*l2*c2, m2*l2^2]"
@@ -117,6 +118,20 @@ def test_latex_and_text(tmp_path):
     twice = tmp_path / "c.txt"
     twice.write_text("x = l1\nx = l2\n")
     assert "twice" in read_submission(twice, sheet).problems["q1"]
+
+
+def test_a_broken_line_of_a_submission_costs_itself(tmp_path):
+    sheet = sheet_of(SHEET, "s")
+    lines = ['student = "eve"', 'q1 = "l1"', 'q1 = "l1*c1 + l2*c12"', f'q2 = "{G1}"', "so easy"]
+    (tmp_path / "a.toml").write_text("\n".join(lines))
+    found = read_submission(tmp_path / "a.toml", sheet)
+    assert (found.student, set(found.answers)) == ("eve", {"q2"})
+    assert found.problems == {"q1": "q1 is given twice, in lines 2 and 3; keep one"}
+    assert "line 5: 'so easy' is no entry" in found.note
+    assert kl.mark(sheet, tmp_path, workers=1)["eve"]["q2"].right
+    (tmp_path / "a.toml").write_text("so easy\n")
+    with pytest.raises(FileError, match="line 1: 'so easy' is no entry"):
+        read_submission(tmp_path / "a.toml", sheet)
 
 
 HOSTILE = {

@@ -16,7 +16,7 @@ from kinlab.doctor.confusions.parts import Apart, apart, joined, spoils
 from kinlab.doctor.confusions.roads import Road, Ways, roads
 from kinlab.doctor.confusions.steps import steps
 from kinlab.doctor.confusions.walk import Step
-from kinlab.doctor.search import pairs_adding_up
+from kinlab.doctor.text.pairs import pairs_adding_up
 from kinlab.tolerances import TOLERANCES
 
 _LIKELY = 1.215

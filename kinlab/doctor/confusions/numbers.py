@@ -17,6 +17,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case, Confusion
 from kinlab.doctor.confusions.robots import bodies_in_links, with_body
+from kinlab.doctor.text.meanings import stands_for
 from kinlab.errors import KinlabError, already_said
 from kinlab.host.language import N_, _
 from kinlab.model.dh import DHTable
@@ -214,9 +215,8 @@ def rounded_robots(robot: Robot) -> Iterator[tuple[Robot, tuple[str, ...]]]:
 
 def _angles(table: DHTable) -> Iterator[tuple[DHTable, tuple[str, ...]]]:
     seen = {_key(table)}
-    stands = _("{written} stands for {meant}")
     ways: list[tuple[Callable[[float], float], str]] = [
-        (lambda x, p=p: x * p / math.pi, stands.format(written=p, meant="pi"))  # type: ignore[misc]
+        (lambda x, p=p: x * p / math.pi, stands_for(p, "pi"))  # type: ignore[misc]
         for p in _PI
     ]
     to_places = _("angles to {places} decimals")

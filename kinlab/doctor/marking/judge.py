@@ -16,15 +16,17 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas, in_robot_names, quantity_of
+from kinlab.doctor.file import examine_formulas
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.marking.words import told
-from kinlab.doctor.rounding import stand_ins
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.own_names import in_robot_names
+from kinlab.doctor.text.stand_ins import stand_ins
+from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import together
-from kinlab.doctor.written import Written
 from kinlab.errors import ExpressionError, KinlabError, near
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences

@@ -18,12 +18,13 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
-from kinlab.doctor.file import quantity_of
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.terms import split_name
+from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, FileError, KinlabError
+from kinlab.formulas.lines import read_lines
 from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
-from kinlab.host.files import read_text, read_toml
+from kinlab.host.files import read_text
 from kinlab.host.language import _
 
 LARGEST = 256 * 1024
@@ -115,7 +116,8 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
         raise FileError(f"{shown}: not text")
     suffix = path.suffix.lower()
     if suffix == ".toml":
-        return of_document(read_toml(text, shown, FileError), sheet, shown, stem)
+        read = read_lines(text, shown)
+        return of_document(read.document, sheet, shown, stem, read.problems)
     if suffix == ".py":
         student, name = _people(_lines(text, "#"))
         return Submission(shown, student or _safe(stem), name, note=_note(student), program=text)
@@ -127,8 +129,25 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     return Submission(shown, who, name, answers, {}, problems, _note(student, unasked))
 
 
-def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str) -> Submission:
-    """A submission from a TOML document, or from a mapping in a notebook."""
+def of_document(
+    document: Mapping[str, Any],
+    sheet: Sheet,
+    shown: str,
+    stem: str,
+    broken: Sequence[tuple[str, FileError]] = (),
+) -> Submission:
+    """A submission from a TOML document, or from a mapping in a notebook.
+
+    Args:
+        document: as it was read.
+        sheet: what is asked.
+        shown: the file, for messages.
+        stem: the student, where the document names none.
+        broken: lines that could not be read, from :func:`kinlab.formulas.lines.read_lines`.
+
+    Raises:
+        FileError: symbols that are no table, or broken lines and no answer beside them.
+    """
     rest = dict(document)
     student = next((rest.pop(w) for w in ("student", "id", "student_id") if w in rest), "")
     name = rest.pop("name", "")
@@ -147,12 +166,23 @@ def of_document(document: Mapping[str, Any], sheet: Sheet, shown: str, stem: str
         else:
             given.append((key, value))
     answers, problems, unasked = _sorted(given, sheet)
+    lost: list[str] = []
+    for key, problem in broken:
+        told = str(problem).removeprefix(f"{shown}: ")
+        question = _question(key, sheet, hand([]))[0]
+        if question is None:
+            lost.append(told)
+        else:
+            problems.setdefault(question.id, told)
+    if broken and not answers and not problems:
+        raise broken[0][1]
     if isinstance(student, bool) or not isinstance(student, (str, int)):
         student = ""
     known = _safe(str(student))
     who = known or _safe(stem)
     called = _safe(name) if isinstance(name, str) else ""
-    return Submission(shown, who, called, answers, symbols, problems, _note(known, unasked))
+    note = _("; ").join(filter(None, (_note(known, unasked), *lost)))
+    return Submission(shown, who, called, answers, symbols, problems, note)
 
 
 def _note(student: str, unasked: Sequence[str] = ()) -> str:
@@ -273,14 +303,10 @@ def _sorted(
     unasked: list[str] = []
     answers: dict[str, dict[str, str]] = {}
     problems: dict[str, str] = {}
-    ids = {question.id.lower(): question for question in sheet.questions}
     writing = hand(str(value) for _, value in pieces)
     for key, value in pieces:
-        question = ids.get(key.strip().lower())
-        name = ""
-        if question is None:
-            left = key or _left(value)
-            question, name = _asked(left, sheet, writing)
+        left = key or _left(value)
+        question, name = _question(left, sheet, writing)
         if question is None:
             unasked.append(_safe(left or str(value))[:20])
             continue
@@ -298,6 +324,13 @@ def _sorted(
             answers.setdefault(question.id, {})[name] = value
     whole = len({*answers, *problems}) == len(sheet.questions)
     return answers, problems, [] if whole else unasked
+
+
+def _question(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str]:
+    """The question by its id, or by the left side of its answer, whose plain name comes too."""
+    ids = {question.id.lower(): question for question in sheet.questions}
+    found = ids.get(left.strip().lower())
+    return (found, "") if found is not None else _asked(left, sheet, writing)
 
 
 def _left(value: Any) -> str:

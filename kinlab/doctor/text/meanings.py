@@ -12,7 +12,8 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.written import Literal
+from kinlab.doctor.text.written import Literal
+from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 CLOSE = 0.025
@@ -114,6 +115,11 @@ class Meanings:
         if gap > one.half * (1 + TOLERANCES.same_relation):
             return name is not None and name[0] == "g"
         return gap <= CLOSE * abs(value) or one.digits > 1
+
+
+def stands_for(written: object, meant: str) -> str:
+    """``9.8 stands for g = 9.81``."""
+    return _("{written} stands for {meant}").format(written=written, meant=meant)
 
 
 def _subsets(values: list[float]) -> Iterator[tuple[float, ...]]:

@@ -1,0 +1,400 @@
+"""What may stand at a place of a text instead of what stands there, tried place by place.
+
+A repair replaces the changed piece of the text; the rest stays as the writer wrote it, in his names
+and his order.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Mapping
+from dataclasses import replace
+from fractions import Fraction
+
+import numpy as np
+
+from kinlab.doctor.text.line import Change, Line, Place, inside_call, is_sum, is_term, words_in
+from kinlab.formulas import tree
+from kinlab.formulas.text import canonical, parse
+from kinlab.formulas.tree import Node
+from kinlab.host.language import N_
+
+_NUMBERS = {"1": 1.0, "2": 2.0, "3": 3.0, "4": 4.0, "6": 6.0, "8": 8.0, "12": 12.0, "0.5": 0.5}
+_NUMBERS |= {"(1/3)": 1 / 3, "(1/4)": 0.25, "(1/12)": 1 / 12}
+_FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
+_MOTION = re.compile(r"(qdd|qd|q)(\d+)")
+
+
+def study(line: Line) -> None:
+    """Notes every change, once."""
+    if line.changes:
+        return
+    for place in list(line.places):
+        if inside_call(place) or _is_exponent(place):
+            continue
+        node = place.node
+        if isinstance(node, ast.Name):
+            _name(line, place, node.id)
+        elif isinstance(node, ast.Constant):
+            _number(line, place)
+        elif isinstance(node, ast.Call):
+            _call(line, place, node)
+        elif isinstance(node, ast.BinOp):
+            _operation(line, place, node)
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            inner = line.source[place.span[0] + 1 : place.span[1]].lstrip()
+            line.instead(place, inner, -place.value, "sign", 1.0)
+        _as_factor(line, place)
+        _as_term(line, place)
+    _whole_terms(line)
+    _throughout(line)
+
+
+def _name(line: Line, place: Place, name: str) -> None:
+    meant = canonical(name) if name not in line.text.symbols else tree.sym(name)
+    if line.turns(name) and name in line.text.symbols:
+        meant = canonical(line.text.symbols[name])
+    if meant.op in ("sin", "cos"):
+        _wave(line, place, meant)
+        return
+    joint = _MOTION.fullmatch(str(meant.value))
+    if joint:
+        head, index = joint.group(1), int(joint.group(2))
+        for i in range(1, line.names.n + 1):
+            if i != index:
+                _node(line, place, tree.sym(f"{head}{i}"), "index", 1.2)
+                both = tree.add(
+                    tree.sym(f"{head}{min(i, index)}"), tree.sym(f"{head}{max(i, index)}")
+                )
+                _node(line, place, both, "missing term", 1.25)
+        for word, value in line.atoms.items() if head == "q" else ():
+            line.instead(place, f"({name} + {word})", place.value + value, "missing term", 1.5)
+        for order in line.names.letters:
+            if order != head:
+                other = tree.sym(f"{order}{index}")
+                _node(line, place, other, "velocity for acceleration", 1.3)
+                _node(line, place, tree.power(other, Fraction(2)), "velocity for acceleration", 1.5)
+        return
+    for word, value in line.atoms.items():
+        if word != name:
+            near = re.sub(r"\d+", "", word) == re.sub(r"\d+", "", name)
+            cost = 1.2 if near else 1.4 if word[0].lower() == name[0].lower() else 1.8
+            line.instead(place, word, value, "index" if near else "parameter", cost)
+            more, less = f"({name} + {word})", f"({name} - {word})"
+            line.instead(place, more, place.value + value, "missing term", 1.5)
+            line.instead(place, less, place.value - value, "missing term", 1.7)
+
+
+def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
+    if tree.names(node) <= set(line.at):
+        new = line.spelled(node)
+        value = np.broadcast_to(tree.evaluate(node, line.at), (line.count,))
+        tight = node.op == "add" and place.above is not None
+        line.instead(place, f"({new})" if tight else new, value, kind, cost)
+
+
+def _number(line: Line, place: Place) -> None:
+    idle = place.above is not None and _is_product(place.above.node)
+    for shown, size in _NUMBERS.items():
+        if size != float(line.segment(place)) and not (size == 1.0 and idle):
+            line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
+    if "." not in line.segment(place):
+        return
+    for word, value in line.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
+        line.instead(place, word, value, "parameter", 1.2)
+    if line.numeric:
+        moved = line.climbed(place, place.value + 1.0) - line.root.value
+        size = float(np.sum(moved * moved))
+        right = place.value + np.sum(moved * (line.target - line.root.value)) / (size or 1.0)
+        shown = np.format_float_positional(float(right[0]), 12, fractional=False, trim="-")
+        if not shown.startswith("-") and not (idle and shown == "1"):
+            held = line.meanings.holds(float(line.segment(place)))
+            doubt = 0.5 * held + 0.3 * (not line.meanings.holds(float(right[0])))
+            line.instead(place, shown, right, "coefficient", 1.15 + doubt)
+
+
+def _call(line: Line, place: Place, node: ast.Call) -> None:
+    name = node.func.id if isinstance(node.func, ast.Name) else ""
+    if name in ("sin", "cos", "tan"):
+        inside = parse(ast.unparse(node.args[0]))
+        mapped = {w: canonical(line.text.symbols.get(w, w)) for w in tree.names(inside)}
+        _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+
+
+def _wave(line: Line, place: Place, wave: Node) -> None:
+    other = {"sin": "cos", "cos": "sin", "tan": "sin"}[wave.op]
+    argument = wave.args[0]
+    _node(line, place, tree.call(other, argument), "sin/cos", 1.0)
+    minus = tree.mul(tree.num(-1), tree.call(other, argument))
+    _node(line, place, minus, "sin/cos", 1.7)
+    for angle in line.names.angles:
+        if angle != argument:
+            _node(line, place, tree.call(wave.op, angle), "argument", 1.2)
+            _node(line, place, tree.call(other, angle), "argument", 2.0)
+
+
+def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
+    left, right = line.siblings[id(place)]
+    start, end = place.span
+    gap = line.source[left.span[1] : right.span[0]]
+    if isinstance(node.op, (ast.Add, ast.Sub)):
+        plus = isinstance(node.op, ast.Add)
+        at = left.span[1] + gap.index("+" if plus else "-")
+        old, new = ("+", "-") if plus else ("-", "+")
+        term = line.source[at + 1 : end].strip()
+        turned = left.value - right.value if plus else left.value + right.value
+        pieces = {"old": f"{old} {term}", "new": f"{new} {term}"}
+        told = N_("{old} should be {new}")
+        change = Change(at, at + 1, new, "sign", 1.0, told, pieces=pieces)
+        line.put(place, turned, change)
+        told = N_("the term {term} does not belong there")
+        pieces = {"term": f"{'' if plus else '-'}{term}"}
+        change = Change(at, end, "", "extra term", 1.1, told, pieces=pieces)
+        line.put(place, left.value, change)
+        first = line.source[start:at].strip()
+        alone = right.value if plus else -right.value
+        kept = at + 1 if plus else at
+        pieces = {"term": first}
+        change = Change(start, kept, "", "extra term", 1.15, told, pieces=pieces)
+        line.put(place, alone, change)
+        return
+    sign = {ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
+    at = left.span[1] + gap.index(sign)
+    first, second = line.source[start:at].strip(), line.source[at + len(sign) : end].strip()
+    if isinstance(node.op, ast.Pow):
+        base = left.value
+        told, pieces = line.told(
+            place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+        )
+        pieces |= {"old": line.segment(place), "new": first}
+        cost = 1.1 if second.strip("()") == "2" else 1.5
+        change = Change(at, end, "", "power", cost, told, pieces=pieces)
+        line.put(place, base, change)
+        for other in (2, 3, 4, -1):
+            with np.errstate(all="ignore"):
+                value = np.power(base, float(other))
+            raised = pieces | {"new": f"{first}**{other}"}
+            change = Change(at + 2, end, str(other), "power", 1.3, told, pieces=raised)
+            line.put(place, value, change)
+        return
+    if isinstance(node.op, ast.Div):
+        told, pieces = line.told(
+            place, N_("/{factor} does not belong"), N_("/{factor} does not belong in {term}")
+        )
+        pieces |= {"factor": second}
+        change = Change(at, end, "", "factor", 1.25, told, pieces=pieces)
+        line.put(place, left.value, change)
+        return
+    told, pieces = line.told(
+        place,
+        N_("the factor {factor} does not belong"),
+        N_("the factor {factor} does not belong in {term}"),
+    )
+    one, two = pieces | {"factor": second}, pieces | {"factor": first}
+    kinds = [
+        "factor" if isinstance(part.node, ast.Constant) else "extra factor"
+        for part in (right, left)
+    ]
+    line.put(place, left.value, Change(at, end, "", kinds[0], 1.3, told, pieces=one))
+    kind = kinds[1]
+    line.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told, pieces=two))
+
+
+def _as_factor(line: Line, place: Place) -> None:
+    """Squares, and factors that are missing in front of a term."""
+    node = place.node
+    piece = line.segment(place)
+    wrapped = f"({piece})" if isinstance(node, (ast.BinOp, ast.UnaryOp)) else piece
+    atom = isinstance(node, (ast.Name, ast.Call)) or is_sum(node)
+    if atom and not _is_base(place):
+        cost = 1.1 if not is_sum(node) else 1.4
+        line.instead(place, f"{wrapped}**2", place.value**2, "power", cost)
+    if not is_term(place):
+        return
+    extra = 0.3 if is_sum(node) else 0.0
+    body = wrapped if is_sum(node) else piece
+    numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
+    for shown, size in _FACTORS.items():
+        new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
+        cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
+        line.instead(place, new, size * place.value, "factor", cost)
+    signed = place.above is not None and isinstance(place.above.node, ast.BinOp)
+    if not signed or place.role == 0:
+        line.instead(place, _turned(line, place), -place.value, "sign", 1.0 + extra)
+    for name, value in line.atoms.items():
+        for power, more in ((1, 0.0), (2, 0.4)):
+            word = name if power == 1 else f"{name}**{power}"
+            change = Change(
+                place.span[1],
+                place.span[1],
+                f"*{word}",
+                "missing factor",
+                1.4 + more + extra,
+                N_("the factor {factor} is missing in {term}"),
+                pieces={"factor": word, "term": piece},
+            )
+            if is_sum(node):
+                change = replace(change, start=place.span[0], new=f"{body}*{word}")
+            line.put(place, place.value * value**power, change)
+    moving = [tree.sym(f"{x}{i + 1}") for x in line.names.letters for i in range(line.names.n)]
+    waves = [tree.call(f, angle) for angle in line.names.angles for f in ("cos", "sin")]
+    for factor in (*moving, *waves):
+        new = f"{body}*{line.spelled(factor)}"
+        times = place.value * tree.evaluate(factor, line.at)
+        change = Change(
+            place.span[0],
+            place.span[1],
+            new,
+            "missing factor",
+            1.45 + extra,
+            N_("the factor {factor} is missing in {term}"),
+            pieces={"factor": line.spelled(factor), "term": piece},
+        )
+        line.put(place, times, change)
+
+
+def _turned(line: Line, place: Place) -> str:
+    """A piece with the opposite sign, without a sign in front of a sign."""
+    if not is_sum(place.node):
+        piece = line.segment(place)
+        return piece[1:].lstrip() if piece.startswith("-") else f"-{piece}"
+    left, right = line.siblings[id(place)]
+    gap = line.source[left.span[1] : right.span[0]]
+    sign = next(c for c in gap if c in "+-")
+    start, end = place.span
+    behind = line.source[left.span[1] : end].replace(sign, {"+": "-", "-": "+"}[sign], 1)
+    if line.source[start : left.span[0]].strip():  # brackets: -(a + b) - c
+        inner = line.source[start : left.span[1]] + ")" * gap[: gap.index(sign)].count(")")
+        return f"-{inner}{behind[behind.index({'+': '-', '-': '+'}[sign]) :]}"
+    return _turned(line, left) + behind
+
+
+def _as_term(line: Line, place: Place) -> None:
+    """Terms that are missing in a sum between parentheses."""
+    node = place.node
+    chain = is_sum(node) and not (place.above is not None and is_sum(place.above.node))
+    if not chain or place.above is None:
+        return
+    inside = line.segment(place)
+    for piece, value in line.pieces.items():
+        for sign in ("+", "-"):
+            twice = re.search(rf"(?:^|[+-])\s*{re.escape(piece)}\s*(?:$|[+-])", inside)
+            cost = (1.12 if sign == "+" else 1.6) + 0.03 * piece.count("*") + 0.4 * bool(twice)
+            pieces = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
+            change = Change(
+                place.span[1],
+                place.span[1],
+                f"{line.gap}{sign}{line.gap}{piece}",
+                "missing term",
+                cost,
+                N_("the term {term} is missing in {sum}"),
+                pieces=pieces,
+            )
+            line.put(place, place.value + (value if sign == "+" else -value), change)
+
+
+def _whole_terms(line: Line) -> None:
+    end = len(line.source)
+    for term in line.terms:
+        value = line.root.value + np.broadcast_to(tree.evaluate(term, line.at), (line.count,))
+        shown = line.spelled(term)
+        sign, body = ("-", shown[1:]) if shown.startswith("-") else ("+", shown)
+        change = Change(
+            end,
+            end,
+            f"{line.gap}{sign}{line.gap}{body}",
+            "missing term",
+            1.3,
+            N_("the term {term} is missing"),
+            pieces={"term": shown},
+        )
+        line.put(line.root, value, change)
+
+
+def _throughout(line: Line) -> None:
+    """One name for another in the whole text; sines and cosines exchanged; gravity turned."""
+    words = words_in(line.source)
+    joints = {f"{x}{i + 1}" for x in ("q", "qd", "qdd") for i in range(line.names.n)}
+    inside = [w for w in dict.fromkeys(words) if w in line.atoms and words.count(w) > 1]
+    for word in inside:
+        for other in line.atoms:
+            if other != word:
+                told = N_("{old} should be {new} throughout")
+                pieces = {"old": word, "new": other}
+                _global(line, ((word, other),), "parameter", 1.9, told, pieces)
+    shown = {line.spelling.get(j, j) for j in joints}
+    for i in range(1, line.names.n + 1):
+        for k in range(i + 1, line.names.n + 1):
+            swap = []
+            for x in ("q", "qd", "qdd"):
+                one = line.spelling.get(f"{x}{i}", f"{x}{i}")
+                two = line.spelling.get(f"{x}{k}", f"{x}{k}")
+                swap += [(one, two), (two, one)]
+            if {a for a, _ in swap} & set(words) & shown:
+                told = N_("{one} and {two} are exchanged throughout")
+                pieces = {"one": swap[0][0], "two": swap[0][1]}
+                _global(line, tuple(swap), "index", 2.2, told, pieces)
+    if {"sin", "cos"} & set(words):
+        _global(
+            line,
+            (("sin", "cos"), ("cos", "sin")),
+            "sin/cos",
+            1.9,
+            N_("sin and cos are exchanged throughout"),
+            {},
+        )
+    weight = line.spelling.get("g", "g")
+    if words.count(weight) > 1:
+        told = N_("gravity has the opposite sign: every g should be -g")
+        _global(line, ((weight, f"(-{weight})"),), "gravity sign", 1.5, told, {})
+
+
+def _global(
+    line: Line,
+    swap: tuple[tuple[str, str], ...],
+    kind: str,
+    cost: float,
+    told: str,
+    pieces: Mapping[str, str],
+) -> None:
+    new = exchanged(line.source, swap)
+    if new == line.source:
+        return
+    try:
+        values = replace(line.text, text=new).values(line.at)
+    except KeyError:
+        return
+    change = Change(0, len(line.source), new, kind, cost, told, swap, pieces)
+    line.put(line.root, values, change)
+
+
+# -------- Small questions about places
+
+
+def exchanged(text: str, swap: tuple[tuple[str, str], ...]) -> str:
+    """The text with words exchanged, all at once."""
+    table = dict(swap)
+    return re.sub(r"[A-Za-z_]\w*", lambda m: table.get(m.group(), m.group()), text)
+
+
+def _is_product(node: ast.expr) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Mult, ast.Div))
+
+
+def _is_exponent(place: Place) -> bool:
+    while place.above is not None:
+        node = place.above.node
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow) and place.role == 1:
+            return True
+        place = place.above
+    return False
+
+
+def _is_base(place: Place) -> bool:
+    above = place.above
+    return (
+        above is not None
+        and isinstance(above.node, ast.BinOp)
+        and isinstance(above.node.op, ast.Pow)
+    )

@@ -1,0 +1,310 @@
+"""One formula as a line: its places, their values, and what a change does to the whole.
+
+The parameters are random numbers, so that a length of 0.5 is no ½. What a change does to the value
+of its place is climbed up to the whole, all changes of a place at once.
+"""
+
+from __future__ import annotations
+
+import ast
+import keyword
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import combinations_with_replacement
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.text.meanings import Meanings
+from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.written import Written, operands
+from kinlab.formulas import tree
+from kinlab.formulas.text import SHORTHAND, joint_spelling, respelled
+from kinlab.formulas.tree import Node
+from kinlab.host.language import N_, _
+
+_NAMED = ("parameter", "missing factor", "extra factor", "power")
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Something else at one place of a text.
+
+    Attributes:
+        start, end: the piece that goes. new: what comes.
+        kind: ``"sign"``, ``"index"``, ...
+        cost: how far-fetched it is.
+        told: what is wrong there: a marked sentence with fields.
+        everywhere: pairs of words exchanged in the whole text instead.
+        pieces: what its fields are, pieces of formulas.
+    """
+
+    start: int
+    end: int
+    new: str
+    kind: str
+    cost: float
+    told: str
+    everywhere: tuple[tuple[str, str], ...] = ()
+    pieces: Mapping[str, str] = field(default_factory=dict)
+
+    def sentence(self, typed: Callable[[str], str]) -> str:
+        """What is wrong there, in words; ``typed`` says how the writer types a piece."""
+        pieces = {name: brief(typed(text)) for name, text in self.pieces.items()}
+        return _(self.told).format(**pieces)
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A piece of the text and where it stands."""
+
+    node: ast.expr
+    above: Place | None
+    role: int
+    value: Array
+
+    @property
+    def span(self) -> tuple[int, int]:
+        return self.node.col_offset, self.node.end_col_offset or 0
+
+
+@dataclass(eq=False)
+class Line:
+    """One formula, with what each change would do to it.
+
+    Attributes:
+        text: the formula.
+        names: what may stand in it.
+        at: values of the robot's names at random points.
+        target: the values it should have.
+        terms: the derived formula's terms, which may be missing.
+        numeric: whether the names have the robot's own numbers: then nothing is believed that
+            rests on the value of a name.
+    """
+
+    text: Written
+    names: Names
+    at: Mapping[str, Array]
+    target: Array
+    terms: list[Node]
+    numeric: bool = False
+    places: list[Place] = field(default_factory=list)
+    changes: list[Change] = field(default_factory=list)
+    rows: list[Array] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.count = len(self.target)
+        self.source = self.text.text
+        self.root = self._place(ast.parse(self.source, mode="eval").body, None, 0)
+        self.scale = float(np.max(np.abs(self.target))) or float(np.max(np.abs(self.root.value)))
+
+    def _place(self, node: ast.expr, above: Place | None, role: int) -> Place:
+        # children need their parent and the parent its value: values first
+        place = Place(node, above, role, self._value(node))
+        self.places.append(place)
+        for k, child in enumerate(operands(node)):
+            self._place(child, place, k)
+        return place
+
+    def _value(self, node: ast.expr) -> Array:
+        piece = ast.unparse(node)
+        return replace(self.text, text=piece).values(self.at)
+
+    def segment(self, place: Place) -> str:
+        start, end = place.span
+        return self.source[start:end]
+
+    @cached_property
+    def spelling(self) -> dict[str, str]:
+        """The robot's names as the writer has them: q1 is theta1, l1 is L."""
+        found = dict(self.text.spelled)
+        for name, meaning in self.text.symbols.items():
+            if re.fullmatch(r"[A-Za-z_]\w*", meaning) and name not in self.text.known:
+                found.setdefault(meaning, name)
+        for meaning, word in joint_spelling(words_in(self.source), self.names.n).items():
+            found.setdefault(meaning, word)
+        return found
+
+    @cached_property
+    def short(self) -> bool:
+        """Whether the writer has c12 for cos(q1 + q2)."""
+        words = words_in(self.source)
+        return any(SHORTHAND.fullmatch(w) for w in words) and not {"sin", "cos"} & set(words)
+
+    def spelled(self, node: Node) -> str:
+        """A piece of a formula as the writer would write it."""
+        return tree.to_text(respelled(node, self.spelling, self.short))
+
+    @cached_property
+    def atoms(self) -> dict[str, Array]:
+        """Names of numbers that may stand in the text, with their values."""
+        found: dict[str, Array] = {}
+        for name in self.text.symbols:
+            if name.isidentifier() and not keyword.iskeyword(name) and not self.turns(name):
+                found[name] = self._named(name)
+        mine = set(self.spelling)
+        for name in self.names.parameters:
+            if name not in mine:
+                found[name] = np.asarray(self.at[name])
+        return found
+
+    def _named(self, name: str) -> Array:
+        return replace(self.text, text=name).values(self.at)
+
+    def turns(self, name: str) -> bool:
+        """Whether a symbol is one of the motion: th1 is q1."""
+        meaning = self.text.symbols.get(name, name)
+        return any(re.fullmatch(r"q\w*\d", w) or SHORTHAND.fullmatch(w) for w in words_in(meaning))
+
+    @cached_property
+    def gap(self) -> str:
+        """What the writer puts around a sign between terms."""
+        return "" if re.search(r"\S[-+]\S", self.source) else " "
+
+    @cached_property
+    def meanings(self) -> Meanings:
+        """What numbers may stand for, at the robot's own."""
+        return Meanings.at(self.at)
+
+    @cached_property
+    def pieces(self) -> dict[str, Array]:
+        """What may be missing between parentheses: parts of the derived terms."""
+        found: dict[str, Array] = {}
+        for term in self.terms:
+            factors = term.args if term.op == "mul" else (term,)
+            plain = [f for f in factors if f.op != "num"]
+            for mask in range(1, 2 ** min(len(plain), 6)):
+                part = [f for k, f in enumerate(plain) if mask >> k & 1]
+                for front in (1, 2):
+                    node = tree.mul(tree.num(front), *part) if front > 1 else tree.mul(*part)
+                    found.setdefault(self.spelled(node), tree.evaluate(node, self.at))
+                half = f"{self.spelled(tree.mul(*part))}/2"
+                found.setdefault(half, 0.5 * tree.evaluate(tree.mul(*part), self.at))
+            if len(found) > 400:
+                break
+        for (one, x), (two, y) in combinations_with_replacement(self.atoms.items(), 2):
+            found.setdefault(f"{one}*{two}" if one != two else f"{one}**2", x * y)
+        for one, x in self.atoms.items():
+            found.setdefault(one, x)
+        return found
+
+    def put(self, place: Place, new: Array, change: Change) -> None:
+        """Notes a change by what it does to the whole."""
+        if self.numeric and change.kind in _NAMED:
+            return
+        effect = self.climbed(place, new) - self.root.value
+        if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
+            self.changes.append(change)
+            self.rows.append(effect)
+
+    def climbed(self, place: Place, new: Array) -> Array:
+        with np.errstate(all="ignore"):
+            while place.above is not None:
+                above = place.above
+                new = _recombined(above, place, new, self.siblings)
+                place = above
+        return np.broadcast_to(new, (self.count,))
+
+    @cached_property
+    def siblings(self) -> dict[int, list[Place]]:
+        found: dict[int, list[Place]] = {}
+        for place in self.places:
+            if place.above is not None:
+                found.setdefault(id(place.above), []).append(place)
+        return {key: sorted(value, key=lambda p: p.role) for key, value in found.items()}
+
+    def instead(self, place: Place, new: str, value: Array, kind: str, cost: float) -> None:
+        """A piece in place of a piece."""
+        start, end = place.span
+        old = self.segment(place)
+        told, pieces = self.told(
+            place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
+        )
+        if pieces.get("term") == old:
+            told = N_("{old} should be {new}")
+        pieces |= {"old": old, "new": new}
+        self.put(place, value, Change(start, end, new, kind, cost, told, pieces=pieces))
+
+    def told(self, place: Place, alone: str, inside: str) -> tuple[str, dict[str, str]]:
+        """One of two sentences: with the term that a place is in, where it is worth showing."""
+        term = self._around(place)
+        return (inside, {"term": term}) if term else (alone, {})
+
+    def _around(self, place: Place) -> str:
+        """The term that a place is in."""
+        inner = place
+        alone = not isinstance(place.node, ast.BinOp)
+        while place.above is not None and (
+            (alone and place is inner) or not is_sum(place.above.node)
+        ):
+            place = place.above
+        term = self.segment(place)
+        return term if len(term) < 70 and (place is not inner or not alone) else ""
+
+
+# -------- Small questions about places
+
+_LONGEST = 90
+"""Letters of a piece of a formula in a sentence above which its middle is left out."""
+
+
+def brief(text: str) -> str:
+    """A piece of a formula that is short enough for a sentence: its beginning and its end."""
+    if len(text) <= _LONGEST:
+        return text
+    ends = [m.start() for m in re.finditer(r" [+-] |\*(?!\*)", text)]
+    first = max((k for k in ends if k <= _LONGEST // 2), default=_LONGEST // 2)
+    last = min((k for k in ends if k >= len(text) - _LONGEST // 3), default=len(text) - 12)
+    return f"{text[:first]} ... {text[last:].strip()}"
+
+
+def words_in(text: str) -> list[str]:
+    return re.findall(r"[A-Za-z_]\w*", text)
+
+
+def is_sum(node: ast.expr) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
+
+
+def is_term(place: Place) -> bool:
+    """Whether a place is a whole term of a sum, the formula, or what stands in parentheses."""
+    above = place.above
+    if above is None or isinstance(above.node, ast.UnaryOp):
+        return True
+    return is_sum(above.node)
+
+
+def inside_call(place: Place) -> bool:
+    while place.above is not None:
+        place = place.above
+        if isinstance(place.node, ast.Call):
+            return True
+    return False
+
+
+def _recombined(
+    above: Place, place: Place, new: Array, siblings: Mapping[int, list[Place]]
+) -> Array:
+    node = above.node
+    if isinstance(node, ast.UnaryOp):
+        return -new if isinstance(node.op, ast.USub) else new
+    parts: list[Any] = [p.value for p in siblings[id(above)]]
+    parts[place.role] = new
+    if isinstance(node, ast.Call):
+        name = node.func.id if isinstance(node.func, ast.Name) else ""
+        return np.asarray(tree.FUNCTIONS[tree.SYNONYMS.get(name, name)](*parts))
+    assert isinstance(node, ast.BinOp)
+    left, right = parts
+    match node.op:
+        case ast.Add():
+            return np.asarray(left + right)
+        case ast.Sub():
+            return np.asarray(left - right)
+        case ast.Mult():
+            return np.asarray(left * right)
+        case ast.Div():
+            return np.asarray(left / right)
+    return np.asarray(np.power(left, right))

@@ -1,0 +1,152 @@
+"""A file's formulas in the robot's names: the writer's own names and numbers, what they mean."""
+
+from __future__ import annotations
+
+from kinlab.doctor.derived import LETTERS
+from kinlab.doctor.text.written import Written, literal
+from kinlab.errors import ExpressionError, near
+from kinlab.formulas import tree, typed
+from kinlab.formulas.retyped import Typing
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, tidied
+from kinlab.formulas.tree import Node
+from kinlab.host.language import _
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.tolerances import TOLERANCES
+
+
+def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
+    """A formula with the robot's own names in place of the user's.
+
+    Raises:
+        ExpressionError: a name without a meaning; the message names the entry.
+    """
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
+    place = f"{file.path}: {entry}"
+    _refuse_large(text, file, place, {}, ())
+    return _resolved(text, file, words, known, place)
+
+
+def _refuse_large(
+    text: Node, file: FormulaFile, place: str, sizes: dict[str, int], open_names: tuple[str, ...]
+) -> int:
+    """Counts the terms and factors with all symbols written out, before they are.
+
+    Raises:
+        ExpressionError: more than a formula of an arm can have, or a symbol explained by itself.
+    """
+    total = 0
+    for _path, node in tree.nodes(text):
+        total += 1
+        if node.op != "sym" or node.value not in file.symbols:
+            continue
+        name = node.value
+        if name in open_names:
+            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
+        if name not in sizes:
+            way = (*open_names, name)
+            sizes[name] = _refuse_large(file.symbols[name], file, place, sizes, way)
+        total += sizes[name]
+        if total > MOST_NODES:
+            break
+    if total > MOST_NODES:
+        raise ExpressionError(
+            f"{place}: with its symbols written out it has more than {MOST_NODES} terms and factors"
+        )
+    return total
+
+
+def _resolved(
+    text: Node, file: FormulaFile, words: dict[str, float], known: set[str], place: str
+) -> Node:
+    mapping = {}
+    for name in sorted(tree.names(text)):
+        if name in file.symbols:
+            given = file.symbols[name]
+            if given.op == "num":
+                mapping[name] = _by_value(name, given, words, place)
+            else:
+                mapping[name] = _resolved(given, file, words, known, place)
+            continue
+        if name in words:
+            continue
+        meant = canonical(name)
+        if not tree.names(meant) <= known:
+            choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
+            raise ExpressionError(
+                f"{place}: {name[:40]!r} is unknown; {choices}; or give it a meaning in [symbols]"
+            )
+        mapping[name] = meant
+    return tree.renamed(text, mapping)
+
+
+def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> Node:
+    """A user's symbol with a number: the robot's parameter of that value, or the number."""
+    value = float(given.value)
+    if name in words:
+        if not may_be(_digits(given), words[name]):
+            raise ExpressionError(
+                f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
+                "give the robot's number, or another name"
+            )
+        return tree.sym(name)
+    alike = [w for w, x in words.items() if abs(x - value) <= TOLERANCES.same_number * abs(x)]
+    close = [w for w in alike if w[0].lower() == name[0].lower()]
+    for found in (alike, close):
+        if len(found) == 1:
+            return tree.sym(found[0])
+    return given
+
+
+def _digits(given: Node) -> str:
+    """A symbol's number as digits; 10.0 was 10 before it was read."""
+    return repr(float(given.value)).removesuffix(".0")
+
+
+def may_be(digits: str, value: float) -> bool:
+    """Whether a number is another one, or that one rounded to its digits."""
+    one = literal(digits.lstrip("-"))
+    gap = abs((-one.value if digits.startswith("-") else one.value) - value)
+    return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.reach)
+
+
+def written_as(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:
+    """A formula with what its writer's names stand for."""
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    known: dict[str, Node] = {}
+    texts: dict[str, str] = {}
+    rounded: dict[str, str] = {}
+    for name, given in file.symbols.items():
+        texts[name] = file.symbol_texts[name]
+        if given.op != "num":
+            continue
+        texts[name] = _digits(given)
+        meant = _by_value(name, given, words, f"{file.path}: {entry}")
+        if meant.op == "sym":
+            known[name] = meant
+            exact = words[str(meant.value)]
+            if abs(float(given.value) - exact) > TOLERANCES.same_number * abs(exact):
+                rounded[name] = _("{name} = {written} in [symbols] stands for {meant:.10g}").format(
+                    name=name, written=texts[name], meant=exact
+                )
+    inside = tree.names(file.formulas[entry])
+    used = [note for name, note in rounded.items() if name in inside]
+    written = file.texts[entry]
+    return Written(
+        entry, written, node, texts, known, tuple(used), file.numbers, typing_of(entry, file)
+    )
+
+
+def typing_of(entry: str, file: FormulaFile) -> Typing | None:
+    """An entry as it was typed; None where that is its plain text."""
+    given = file.as_typed[entry]
+    core, dollars = typed.bare(given), typed.is_latex(given)
+
+    def reads(line: str) -> str:
+        return typed.plain_formula(f"${line}$" if dollars else line, entry, file.writing)
+
+    plain = tidied(reads(core))
+    if tidied(core) == plain and "^" not in core:
+        return None
+    return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
