@@ -10,6 +10,8 @@ module              what it holds
 ``examine``         The examination: compare, try the readings, look for slips in the entries,
                     rank what explains
 ``file``            A file of formulas as text, each examined entry by entry
+``inverse``         Inverse kinematics judged: right where Pinocchio finds the tool at the
+                    target, on any branch
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
 ``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,

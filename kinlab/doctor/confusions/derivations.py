@@ -64,6 +64,12 @@ def taken_otherwise(case: Case) -> list[Found]:
     return near
 
 
+def with_these(case: Case, known: list[Found]) -> list[Found]:
+    """Which steps that explain another answer explain this one too."""
+    ways: Ways = [one.steps for one in known]
+    return [found for road in roads(case) for found in _tried(case, road, ways)]
+
+
 def one_for_each_kind(case: Case) -> list[Found]:
     """What explains the hand formula by one step for each kind of term that is wrong."""
     split = apart(case)
