@@ -149,3 +149,37 @@ def test_what_is_right_when_rounded_is_not_blamed_beside_a_wrong_sister():
 def test_a_number_is_not_called_a_parameter_by_chance():
     (found,) = judged("planar3r", M12="0.2875 + 0.1*c3 + 0.4*c2 + 0.063*c23")
     assert found.agrees and "0.063 stands for 0.0625" in found.sentence  # m3*l1*l3/2, not I1
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "right", "kinds"),
+    [
+        ("J12", "0.4*c12", "-0.4*s12", ("sin/cos",)),
+        ("J11", "-l1*s1 + l1*c12", "-l1*s1 - l2*s12", ("index", "sin/cos")),
+        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_{1} + l_2 c_{12}", ("sin/cos",)),
+        (
+            "g1",
+            "(m2+m2)*g*l1*cos(q1) - m1*g*l2*cos(q1+q2)",
+            "(m1+m2)*g*l1*cos(q1) + m2*g*l2*cos(q1+q2)",
+            ("index", "sign", "index"),
+        ),
+        (
+            "T",
+            "m1*l1^2*qd1^2/2 + m2*(l1^2*qd1^2 - l2^2*(qd1-qd2)^2 + 2*l1*l2*cos(q2)*qd1*(qd1+qd2))/2",
+            "m1*l1^2*qd1^2/2 + m2*(l1^2*qd1^2 + l2^2*(qd1+qd2)^2 + 2*l1*l2*cos(q2)*qd1*(qd1+qd2))/2",
+            ("sign", "sign"),
+        ),
+        (
+            "tau1",
+            "m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*(2*qdd1+qdd2) + (m1+m2)*l1^2*qdd1"
+            " - m2*l1*l2*s2*qd2^2 + 2*m2*l1*l2*s2*qd1*qd1 + m2*l2*g*c12 + (m1+m2)*l1*g*c1",
+            "m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*(2*qdd1+qdd2) + (m1+m2)*l1^2*qdd1"
+            " - m2*l1*l2*s2*qd2^2 - 2*m2*l1*l2*s2*qd2*qd1 + m2*l2*g*c12 + (m1+m2)*l1*g*c1",
+            ("sign", "index"),
+        ),
+    ],
+)
+def test_simple_slips_before_roundabout_ones_in_the_writers_line(entry, text, right, kinds):
+    (found,) = judged(**{entry: text})
+    assert found.causes[0].shown == {entry: right}
+    assert found.causes[0].kinds == kinds
