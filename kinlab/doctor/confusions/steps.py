@@ -33,6 +33,7 @@ from kinlab.doctor.confusions.words import (
     spelt,
     summands,
     times,
+    together,
     told,
     told_other,
     which,
@@ -116,7 +117,13 @@ def _steps(
     found += _slides(of)
     found += [*exchanged(of), *of_angles(of)]
     if not singly:
-        return (*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes))
+        return (
+            *_everywhere(of),
+            *_halves_exchanged(of),
+            *found,
+            *_updated(of, axes),
+            *_short_loops(of, axes, n),
+        )
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return tuple(
@@ -340,6 +347,28 @@ def _everywhere(of: Program) -> Iterator[Step]:
             )
             edits = tuple((x, again(new)) for _n, x in found)
             yield Step("index", in_every.format(does=does), edits, 1.05)
+
+
+def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
+    """Loops that leave their first or last joint out: what they make stays zero there."""
+    for loop in (x for statement in of.body for x in ast.walk(statement)):
+        if not isinstance(loop, ast.For) or n < 2:
+            continue
+        lines = [line for line in of.lines if line.statement in loop.body]
+        told_of = list(dict.fromkeys(_(line.about) for line in lines if line.about))
+        edits = []
+        for line in lines:
+            value, target = _value(line), _targets(line)[0]
+            if id(value) not in axes:
+                continue
+            sums = isinstance(target, ast.Name) and ast.unparse(target) in ast.unparse(value)
+            edits.append((value, again(target) if sums else times(0, value)))
+        if not told_of or not edits:
+            continue
+        for joint in (1, n):
+            does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
+            said = does.format(number=joint, line=together(told_of[-2:]))
+            yield Step("loop", said, tuple(edits), 1.12, joint)
 
 
 def _halves_exchanged(of: Program) -> Iterator[Step]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from kinlab.doctor.confusions.walk import again
 from kinlab.host.language import N_, _
@@ -253,3 +253,12 @@ def summands(node: ast.expr) -> Iterator[ast.expr]:
         yield from summands(node.right)
     else:
         yield node
+
+
+def together(pieces: Iterable[str]) -> str:
+    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
+    told, *rest = [*pieces] or [""]
+    pair = _("{first} and {last}")
+    for piece in rest:
+        told = pair.format(first=told, last=piece)
+    return told
