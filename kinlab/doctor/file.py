@@ -185,7 +185,8 @@ def _read_better(
     """The second reading, in which rounded numbers are what they stand for, where it says more."""
     if first.agrees or not (second.agrees or second.causes):
         return first
-    here = " ".join(file.texts.get(entry, "") for entry in first.function.split(", "))
+    texts = (file.texts.get(entry, "") for entry in first.function.split(", "))
+    here = {digits for text in texts for digits in _DECIMAL.findall(text)}
     notes = tuple(told for digits, told in said.items() if digits in here)
     second = replace(second, error_before=first.error_before)
     if second.agrees:
