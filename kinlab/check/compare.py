@@ -141,9 +141,7 @@ def compare(
     mechanism = found.domain.load(robot)
     need_function(function)
     stacked = state_by_state(found.asked(mechanism, function))
-    return compare_stacked(
-        mechanism, found, stacked, function_name(function), None, samples, seed
-    )
+    return compare_stacked(mechanism, found, stacked, function_name(function), None, samples, seed)
 
 
 def compare_stacked(

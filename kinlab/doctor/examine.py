@@ -17,7 +17,7 @@ from kinlab.arrays import Array, first_largest, seed_of, whole
 from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor import inverse, rounding, terms, verdicts
+from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
@@ -32,6 +32,7 @@ from kinlab.doctor.confusions.numbers import other_numbers
 from kinlab.doctor.confusions.parts import Apart, apart, proved
 from kinlab.doctor.confusions.words import together
 from kinlab.doctor.derived import derivation
+from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Written
@@ -72,7 +73,7 @@ def examine(
         OptionError: the answers are not real numbers.
     """
     if case.quantity.read is not None:
-        return inverse.judged(case, hand, engine, quantity, name)
+        return judged(case, hand, engine, quantity, name)
     values = _read(hand, engine, name, quantity)
     case = replace(case, hand=values, again=case.again or _texts_again(case, engine, written))
     same = values.shape == engine.shape

@@ -189,9 +189,9 @@ def formulas_in(module: Any) -> list[Formula]:
 def state_by_state(function: Function) -> Function:
     """Gives a function of one state the calling convention of ``Formula.function``.
 
-    It gets copies, so that it cannot change the states of the comparison. One whose last argument
-    is called ``elbow`` (``branch``, ``sign``, ``mode``, ``side``) beyond those of the state is
-    asked with +1 and with -1, and answers with a row for each.
+    It gets copies, so that it cannot change the states of the comparison. One that asks for one
+    argument more, of a name in :data:`SIDES` such as ``elbow``, gets +1 and then -1 for it, and
+    answers with a row for each.
 
     Raises:
         FormulaError: (when called) the function raised, or answered with changing shapes.
@@ -204,9 +204,11 @@ def state_by_state(function: Function) -> Function:
         for k, state in enumerate(zip(*stacks, strict=True)):
             try:
                 rows = [np.asarray(function(*(np.array(x) for x in state), *s)) for s in sides]
-                answers.append(rows[0] if len(rows) == 1 else np.concatenate(
-                    [np.atleast_2d(row) for row in rows]
-                ))
+                answers.append(
+                    rows[0]
+                    if len(rows) == 1
+                    else np.concatenate([np.atleast_2d(row) for row in rows])
+                )
             except KinlabError:
                 raise
             except Exception as problem:  # whatever a user's function may raise
@@ -225,16 +227,18 @@ def state_by_state(function: Function) -> Function:
     return stacked
 
 
-_SIDES = ("elbow", "branch", "sign", "mode", "side")
+SIDES = ("elbow", "branch", "sign", "mode", "side")
+"""Names for +1 and -1: which of two solutions."""
 
 
 def _sides(function: Function, count: int) -> tuple[tuple[float, ...], ...]:
     """What a function gets behind a state: +1 and then -1, if its last argument asks for one."""
     try:
-        known = list(inspect.signature(function).parameters.values())
+        known = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
         return ((),)
-    asks = len(known) == count + 1 and known[-1].name in _SIDES
+    asked = [p.name for p in known if p.default is p.empty and p.kind is p.POSITIONAL_OR_KEYWORD]
+    asks = len(asked) == count + 1 and asked[-1] in SIDES
     return ((1.0,), (-1.0,)) if asks else ((),)
 
 

@@ -71,9 +71,7 @@ def _placed(*rows: int) -> Callable[[Array], Array]:
 
 
 def _placed_and_turned(*rows: int) -> Callable[[Array], Array]:
-    return lambda pose: np.stack(
-        [*_along(*rows)(pose), pose[..., 0, 0], pose[..., 1, 0]], axis=-1
-    )
+    return lambda pose: np.stack([*_along(*rows)(pose), pose[..., 0, 0], pose[..., 1, 0]], axis=-1)
 
 
 def _rows(*rows: int) -> Callable[[Robot, Array], Array]:
@@ -115,11 +113,15 @@ def as_solutions(robot: Robot, answers: Any) -> Array:
     if values.ndim == 2:
         values = values[:, None]
     if values.ndim != 3 or values.shape[2] != robot.n:
-        raise AnswerShapeError(
-            f"inverse kinematics answered with shape {np.shape(answers)[1:]}; wanted are the joint "
-            f"positions ({robot.n},), or several solutions as rows (m, {robot.n})"
-        )
+        raise AnswerShapeError(_shape_told(robot, np.shape(answers)[1:]))
     return values
+
+
+def _shape_told(robot: Robot, shape: tuple[int, ...]) -> str:
+    return (
+        f"answered with shape {shape}; inverse kinematics has shape ({robot.n},), or "
+        f"(m, {robot.n}) with a row for each solution"
+    )
 
 
 def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -142,6 +144,8 @@ def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
                 raise
             return rows
         if found.size:
+            if not found.ndim:
+                raise AnswerShapeError(_shape_told(robot, ()))
             solutions = as_solutions(robot, np.atleast_2d(found)[None])[0][:_MOST]
             rows[: len(solutions)] = solutions
         return rows

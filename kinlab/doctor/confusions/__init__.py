@@ -4,7 +4,7 @@
 module           what it holds
 ===============  =================================================================================
 ``angles``       What one can do otherwise where an angle is found: atan2, acos, roots, quotients,
-                 names exchanged
+                 exchanges
 ``books``        The textbooks' derivations as text, each written once, for any serial arm, and for
                  the five-bar
 ``derivations``  The textbooks' derivations walked with one step, then two or three, taken otherwise
@@ -20,8 +20,6 @@ module           what it holds
                  otherwise
 ``robots``       Readings of the robot itself: convention, offsets, base and tool, gravity,
                  inertias
-``solved``       The closed forms of inverse kinematics as the textbooks derive them, walked branch
-                 by branch
 ``steps``        Everything that one can do otherwise in one place of a derivation
 ``walk``         Walks a textbook's derivation, written as text, with one step or several taken
                  otherwise

@@ -1,4 +1,4 @@
-"""What one can do otherwise where an angle is found: atan2, acos, roots, quotients, names exchanged.
+"""What one can do otherwise where an angle is found: atan2, acos, roots, quotients, exchanges.
 
 The arguments of atan2 exchanged, or atan of their quotient, which loses the quadrant; the
 supplementary angle; the root forgotten; ``a/2*l1*l2`` for ``a/(2*l1*l2)``; l1 and l2 exchanged.
@@ -26,7 +26,12 @@ def at_angle(node: ast.Call, step: Make) -> Iterator[Step]:
     if name == "arctan2":
         turned = ast.Call(node.func, [x[1], x[0]], [])
         does = _("has {new} for {old} (the arguments exchanged)")
-        yield step("atan2", does.format(new=spelt(turned), old=spelt(node)), 1.0, (node, turned))
+        yield step(
+            "arguments exchanged",
+            does.format(new=spelt(turned), old=spelt(node)),
+            1.0,
+            (node, turned),
+        )
         plain = ast.Call(ast.Name("arctan"), [ast.BinOp(x[0], ast.Div(), x[1])], [])
         does = _("has {new} for {old} (the quadrant is lost)")
         yield step("quadrant", does.format(new=spelt(plain), old=spelt(node)), 1.0, (node, plain))
@@ -43,14 +48,17 @@ def at_angle(node: ast.Call, step: Make) -> Iterator[Step]:
                 cost = 1.0 if inverse == "arcsin" else 1.03
                 yield step("quadrant", does, cost, (node, alone))
     elif name == "arccos":
-        other = ast.Call(node.func, [minus(x[0])], [])
+        turned = ast.Call(node.func, [minus(x[0])], [])
         does = _("has the supplementary angle {new} for {old}")
         yield step(
-            "supplementary angle", does.format(new=spelt(other), old=spelt(node)), 1.01, (node, other)
+            "supplementary angle",
+            does.format(new=spelt(turned), old=spelt(node)),
+            1.01,
+            (node, turned),
         )
-        other = ast.Call(ast.Name("arcsin"), x, [])
+        wave = ast.Call(ast.Name("arcsin"), x, [])
         does = _("has {new} for {old} (sin/cos)")
-        yield step("sin/cos", does.format(new=spelt(other), old=spelt(node)), 1.05, (node, other))
+        yield step("sin/cos", does.format(new=spelt(wave), old=spelt(node)), 1.05, (node, wave))
     elif name == "sqrt":
         does = _("leaves the root out: {new} for {old}")
         yield step("root", does.format(new=spelt(x[0]), old=spelt(node)), 1.05, (node, x[0]))
@@ -62,14 +70,20 @@ def at_difference(node: ast.BinOp, step: Make) -> Iterator[Step]:
         does = _("has the supplementary angle {new} for {old}")
         does = does.format(new=spelt(node.right), old=spelt(node))
         yield step("supplementary angle", does, 0.99, (node, node.right))
-    if isinstance(node.op, ast.Div) and isinstance(node.right, ast.BinOp) and not is_sum(node.right):
+    if (
+        isinstance(node.op, ast.Div)
+        and isinstance(node.right, ast.BinOp)
+        and not is_sum(node.right)
+    ):
         new: ast.expr = node.left
         factors = list(_factors(node.right))
         for k, factor in enumerate(factors):
             new = ast.BinOp(new, ast.Mult() if k else ast.Div(), factor)
         if len(factors) > 1:
             does = _("has {new} for {old} (parentheses)")
-            yield step("parentheses", does.format(new=spelt(new), old=spelt(node)), 1.05, (node, new))
+            yield step(
+                "parentheses", does.format(new=spelt(new), old=spelt(node)), 1.05, (node, new)
+            )
 
 
 def _factors(node: ast.expr) -> Iterator[ast.expr]:

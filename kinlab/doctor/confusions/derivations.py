@@ -80,7 +80,7 @@ def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     return near
 
 
-def with_these(case: Case, known: list[Found]) -> list[Found]:
+def with_these(known: list[Found], case: Case) -> list[Found]:
     """Which steps that explain another answer explain this one too."""
     ways: Ways = [one.steps for one in known]
     return [found for road in roads(case) for found in _tried(case, road, ways)]

@@ -157,7 +157,7 @@ def meant(node: ast.expr) -> str:
 
 
 def _meaning(node: ast.expr) -> str | None:
-    """Of l1, l2 and z only where they have an index: alone they are a serial arm's, and a height."""
+    """Of l1, l2, z only where they have an index: alone they are a serial arm's, and a height."""
     alone = isinstance(node, ast.Name) and node.id in ("l1", "l2", "z")
     numbered = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant)
     return None if alone or numbered else MEANT.get(name_of(node))
@@ -177,7 +177,7 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
     if isinstance(node, ast.Subscript):
         name = spelt(node.value)
         if isinstance(node.slice, ast.Constant):
-            return f"{name}{node.slice.value}"
+            return f"{name}{ast.unparse(node.slice)}"
         index = ast.unparse(node.slice).replace(" ", "")
         return (
             name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"

@@ -230,7 +230,8 @@ def closed_forms(case: Case, limited: bool) -> Iterator[Branches]:
     for text, numbers in _closed_forms(case.robot, case.quantity.name):
         if limited and "clamp(" not in text:
             continue
-        names = [side for side in _SIDES if re.search(rf"\b{side}\b", text)]
+        lines = re.sub("#.*", "", text)
+        names = [side for side in _SIDES if re.search(rf"\b{side}\b", lines)]
         written = text if limited else text.replace("clamp(", "(")
         found = []
         for signs in product((1.0, -1.0), repeat=len(names)):

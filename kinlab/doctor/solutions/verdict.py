@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -24,10 +25,9 @@ from kinlab.doctor.confusions.derivations import (
     taken_otherwise,
     with_these,
 )
-from kinlab.doctor.confusions.solved import Branches, closed_forms, compared, slides
+from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _, ngettext
-from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
 _FAR = 0.15
@@ -271,7 +271,7 @@ def _by_derivation(
     for k in off:
         ways: dict[str, Found] = {}
         known = [one for ways_ in explained for one in ways_.values()]
-        again = _of_row(found, k, forms, lambda case: with_these(case, known)) if known else ()
+        again = _of_row(found, k, forms, partial(with_these, known)) if known else ()
         for one in [*again] or _of_row(found, k, forms, search):
             said = _(" and ").join(step.sentence for step in one.steps)
             if said not in ways or one.cost < ways[said].cost:
