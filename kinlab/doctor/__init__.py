@@ -10,6 +10,8 @@ module              what it holds
 ``examine``         The examination: compare, try the readings, look for slips in the entries,
                     rank what explains
 ``file``            A file of formulas as text, each examined entry by entry
+``numbers``         The robot's numbers taken otherwise: one of them another, or all of a kind
+                    rounded
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
 ``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,
@@ -23,6 +25,8 @@ module              what it holds
 ``verdicts``        Right in another way: with numbers for names, or another valid formula
 ``confusions/``     What people take differently: a known confusion, and what the engine would say
                     if one does
+``solutions/``      Inverse kinematics by hand: which branches are right, and which step of the
+                    closed form is not
 ``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
                     table is wrong?
 ``text/``           A formula as its writer typed it: its line, its numbers, its slips of the pen

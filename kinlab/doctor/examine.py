@@ -28,10 +28,11 @@ from kinlab.doctor.confusions.derivations import (
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.numbers import other_numbers
 from kinlab.doctor.confusions.parts import Apart, apart, proved
 from kinlab.doctor.confusions.words import together
 from kinlab.doctor.derived import derivation
+from kinlab.doctor.numbers import other_numbers
+from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Written
@@ -71,6 +72,8 @@ def examine(
     Raises:
         OptionError: the answers are not real numbers.
     """
+    if case.quantity.read is not None:
+        return judged(case, hand, engine, quantity, name)
     values = _read(hand, engine, name, quantity)
     case = replace(case, hand=values, again=case.again or _texts_again(case, engine, written))
     same = values.shape == engine.shape
@@ -83,7 +86,7 @@ def examine(
         rounded = tuple(dict.fromkeys(note for text in written.values() for note in text.rounded))
         form = "rounded" if rounded and not hidden else ""
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
-    excuse = _excuse(case, engine, written) if same else None
+    case, excuse = _excuse(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
@@ -304,36 +307,47 @@ def _hidden(
     return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
 
 
-def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
-    """Why answers that are not the engine's are right, if they are."""
+def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Case, Excuse | None]:
+    """Why answers that are not the engine's are right, if they are.
+
+    Beside others that are wrong, texts that are right with rounded numbers answer as the engine
+    does: nothing is to be explained in them.
+    """
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
-        return odd
+        return case, odd
     for said_of_all in rounding.roundings(case, engine, not written):
-        return Excuse("rounded", said_of_all)
+        return case, Excuse("rounded", said_of_all)
     if not written:
-        return verdicts.of_coefficients(case, engine)
-    off = [entry for entry in entries(case, engine) if not entry.agrees]
+        return case, verdicts.of_coefficients(case, engine)
+    remarks: list[str] = []
+    settled, right = np.array(case.hand), True
+    for entry in entries(case, engine):
+        if entry.agrees:
+            continue
+        said = _rounded(case, entry, written.get(entry.label))
+        right = right and said is not None
+        if said is not None:
+            remarks += said
+            place: Any = (slice(None), *entry.local)
+            settled[place] = entry.engine
+    if right and remarks:
+        return case, Excuse("rounded", tuple(dict.fromkeys(remarks)))
+    return replace(case, hand=settled), None
+
+
+def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] | None:
+    """Which rounded numbers make a text right, in words; None where it is not, so."""
+    if text is None:
+        return None
+    at = verdicts.numbers_at(case)
+    changed = stand_ins(text, at, entry.engine, entry.scale)
+    if changed is not None:
+        return [*text.rounded, *rounding_remarks(changed, at)]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
-    remarks: list[str] = []
-    for entry in off:
-        text = written.get(entry.label)
-        if text is not None:
-            at = verdicts.numbers_at(case)
-            changed = stand_ins(text, at, entry.engine, entry.scale)
-            if changed is None and derived is not None:
-                said = verdicts.of_data(text, entry, derived, case)
-                if said is None:
-                    return None
-                remarks.append(said)
-                continue
-            if changed is None:
-                return None
-            remarks += [*text.rounded, *rounding_remarks(changed, at)]
-            continue
-        return None
-    return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
+    said = verdicts.of_data(text, entry, derived, case) if derived is not None else None
+    return [said] if said is not None else None
 
 
 def prepare(
@@ -547,6 +561,8 @@ def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Ite
         if np.max(relative_errors(undone, engine)) >= np.max(relative_errors(case.hand, engine)):
             continue  # what undoes a slip brings the answer nearer
         for cause in _slips(changed, off, {})[0]:
+            if len(cause.kinds) > _LIST:
+                continue  # what leaves so much is not undone
             yield Cause(
                 _("the formula {does}, and then {slips}").format(
                     does=reading.sentence, slips=cause.sentence

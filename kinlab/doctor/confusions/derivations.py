@@ -80,6 +80,12 @@ def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     return near
 
 
+def with_these(known: list[Found], case: Case) -> list[Found]:
+    """Which steps that explain another answer explain this one too."""
+    ways: Ways = [one.steps for one in known]
+    return [found for road in roads(case) for found in _tried(case, road, ways)]
+
+
 def one_for_each_kind(case: Case, ways: Ready, split: Apart | None) -> list[Found]:
     """What explains the hand formula by one step for each kind of term that is wrong."""
     if split is None or np.sum(~split.right) < 2:

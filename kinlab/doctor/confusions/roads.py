@@ -60,7 +60,11 @@ class Road:
 
 
 def roads(case: Case) -> Iterator[Road]:
-    """The derivations of a quantity."""
+    """The derivations of a quantity; of a branch of a closed form its own."""
+    own = getattr(case.quantity.engine, "road", None)
+    if own is not None:
+        yield own
+        return
     name = case.quantity.name
     if case.quantity.domain is FIVEBAR:
         yield from _five_bar(case)

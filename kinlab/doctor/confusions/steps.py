@@ -13,6 +13,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
+from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles
 from kinlab.doctor.confusions.operations import (
     Make,
     at_call,
@@ -66,6 +67,15 @@ _ALIKE = (
     "o_ o",
     "R_ R",
     "G q",
+    "c2 s2",
+    "c3 s3",
+    "c4 s4",
+    "c23 s23",
+    "beta psi",
+    "l2 l3",
+    "d3 d4",
+    "a2 a3",
+    "px py",
 )
 """Names that are easily taken for one another."""
 
@@ -106,6 +116,7 @@ def _steps(
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
+    found += [*exchanged(of), *of_angles(of)]
     if not singly:
         return (
             *_everywhere(of),
@@ -160,9 +171,11 @@ def _of_line(
             continue
         if isinstance(node, ast.BinOp):
             yield from at_operator(node, axes, step)
+            yield from at_difference(node, step)
             yield from _own_for_next(node, shapes, step)
         elif isinstance(node, ast.Call):
             yield from at_call(node, step)
+            yield from at_angle(node, step)
         elif isinstance(node, ast.Name) and node.id == "D" and id(node) not in given:
             for other in ("ikj", "jki"):
                 new = ast.Call(ast.Name(other), [again(node)], [])
@@ -220,12 +233,13 @@ def _terms(
                 yield step(
                     kind, _("leaves {term} out").format(term=term), 1.0, (part, times(0, part))
                 )
-            yield step(
-                "sign",
-                _("has {term} with the opposite sign").format(term=term),
-                1.02,
-                (part, minus(part)),
-            )
+            if not _angle_alone(part):
+                yield step(
+                    "sign",
+                    _("has {term} with the opposite sign").format(term=term),
+                    1.02,
+                    (part, minus(part)),
+                )
             yield step(
                 "factor", _("counts {term} twice").format(term=term), 1.2, (part, times(2, part))
             )
@@ -236,6 +250,11 @@ def _terms(
             if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript) and not summed:
                 does = _that_of(about, part)
                 yield step("only one term", does, 1.0, (node, again(part)))
+
+
+def _angle_alone(node: ast.expr) -> bool:
+    """An acos: nobody loses the sign of an angle that has none."""
+    return isinstance(node, ast.Call) and name_of(node.func) == "arccos"
 
 
 def _that_of(what: str, part: ast.expr) -> str:

@@ -116,9 +116,11 @@ class Walk:
         with np.errstate(all="ignore"):
             for statement in self.of.body:
                 self._run(statement)
-        return self._stacked(self.names[name])
+        return self.stacked(name)
 
-    def _stacked(self, value: Any) -> Array:
+    def stacked(self, name: str) -> Array:
+        """A name after the walk, (B, N, ...); of an indexed one all entries."""
+        value = self.names[name]
         if isinstance(value, dict):
             parts = [self._full(value[k]) for k in range(1, max(value) + 1) if k in value]
             return np.stack(parts, axis=2)
@@ -346,8 +348,10 @@ class Walk:
             out = np.moveaxis(x[0], -1, -3)
         elif name == "norm":
             out = np.sqrt(np.sum(x[0] * x[0], axis=-1))
+        elif name == "clamp":
+            out = np.clip(x[0], -1.0, 1.0)
         else:
-            out = getattr(np, name)(x[0])
+            out = getattr(np, name)(*x)
         return np.asarray(out)
 
 
