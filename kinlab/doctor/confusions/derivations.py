@@ -66,7 +66,7 @@ def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     for singly in (False, True):
         found: list[Found] = []
         for road, shapes in ways:
-            if road.pairs or not singly:
+            if road.singly or not singly:
                 tried = steps(road.of, shapes, road.n, singly)
                 found += _tried(case, road, [(step,) for step in tried])
         near += found

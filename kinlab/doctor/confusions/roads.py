@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -48,7 +49,7 @@ class Road:
         of: the derivation.
         walked: from ways and the case's arguments to the quantity, (B, N, ...), and the walk.
         n: joints, or legs.
-        pairs: whether two steps are tried.
+        pairs: whether two steps are tried. singly: whether steps at one joint are.
         asked: the same with the links placed otherwise; None where nothing is asked of them.
     """
 
@@ -57,6 +58,7 @@ class Road:
     n: int
     pairs: bool = True
     asked: Asked | None = None
+    singly: bool = True
 
 
 def roads(case: Case) -> Iterator[Road]:
@@ -86,10 +88,13 @@ def roads(case: Case) -> Iterator[Road]:
         if name.startswith("statics"):
             yield _of_arm(case, text + books.STATICS, "tau")
             for in_base in (False, True):
-                yield _with_load(case, books.passed_on(usual, in_base), in_base, "tau")
+                held = books.held(name == "statics_tool", in_base)
+                yield _with_load(case, held + books.passed_on(usual, in_base), in_base, "tau")
         else:
             rows = [0, 1, 5] if name == "planar_jacobian" else None
             yield _of_arm(case, text, "Jb", rows)
+            if frame == "tool":
+                yield _with_load(case, books.toolward(usual), False, "E", False)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
     if name == "isotropy_defect":
@@ -105,10 +110,12 @@ def roads(case: Case) -> Iterator[Road]:
     if name in ("static_wrenches", "joint_wrenches"):
         still = name == "static_wrenches"
         text = books.passed_on(usual, False) if still else books.newton_euler(usual, False)
-        yield _with_load(case, books.loaded(text) + books.THROUGH, False, "asked")
+        yield _with_load(
+            case, books.held(False, False) + books.loaded(text) + books.THROUGH, False, "asked"
+        )
     if name == "inverse_dynamics_loaded":
         for in_base in (False, True):
-            text = books.loaded(books.newton_euler(usual, in_base))
+            text = books.held(False, in_base) + books.loaded(books.newton_euler(usual, in_base))
             yield _with_load(case, text, in_base, "tau")
     if name in _WITHIN:
         asked, rest = _WITHIN[name]
@@ -172,7 +179,8 @@ def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True) -> Road:
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         return asked(ways, x, lambda q: as_placed(robot, q))
 
-    return Road(of, walked, robot.n, pairs, asked)
+    slopes = any("slope(" in ast.unparse(line.statement) for line in of.lines)
+    return Road(of, walked, robot.n, pairs, asked, pairs or not slopes)
 
 
 def _of_links(case: Case, text: str, asked: str) -> Road:
@@ -245,17 +253,17 @@ def _recursion(case: Case, text: str, in_base: bool, said: str = "tau", pairs: b
 
 def _solved(matrix: Array, right: Array) -> Array:
     """The solutions of (B, N, n, n) systems; NaN where there is none."""
-    some = np.isfinite(matrix).all(axis=(2, 3))[..., None, None]
+    some = np.asarray(np.isfinite(matrix).all(axis=(2, 3)))[..., None, None]
     safe = np.where(some, matrix, np.eye(matrix.shape[-1]))
-    some = some & (np.linalg.det(safe) != 0)[..., None, None]
+    some = some & np.asarray(np.linalg.det(safe) != 0)[..., None, None]
     safe = np.where(some, safe, np.eye(matrix.shape[-1]))
     return np.where(some[..., 0], np.linalg.solve(safe, right[..., None])[..., 0], np.nan)
 
 
-def _with_load(case: Case, text: str, in_base: bool, said: str) -> Road:
+def _with_load(case: Case, text: str, in_base: bool, said: str, pairs: bool = True) -> Road:
     """Forces passed on from the tool, from link to link."""
     robot = case.robot
-    of = program(books.held(case.quantity.name == "statics_tool", in_base) + text)
+    of = program(text)
 
     def ask(ways: Ways, x: Stacks, where: Where) -> tuple[Array, Walk]:
         moved = {"v": 0.0 * x["q"], "a": 0.0 * x["q"], **x}
@@ -263,12 +271,12 @@ def _with_load(case: Case, text: str, in_base: bool, said: str) -> Road:
         def give(q: Array) -> dict[str, Any]:
             placed = where(q)
             found = of_recursion(robot, q, moved, placed, in_base)
-            return {**found, **of_load(robot, x["wrench"], placed)}
+            return {**found, **of_load(robot, x, placed)}
 
         walk = Walk(of, give, x["q"], ways, robot.n)
         return walk.values(said), walk
 
-    return _road(of, ask, robot)
+    return _road(of, ask, robot, pairs)
 
 
 def through_links(case: Case) -> Iterator[Road]:
