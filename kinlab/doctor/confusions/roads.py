@@ -50,12 +50,14 @@ class Road:
         walked: from ways and the case's arguments to the quantity, (B, N, ...), and the walk.
         n: joints, or legs.
         pairs: whether two steps are tried. singly: whether steps at one joint are.
+        work: assignments that one way costs at one state.
         asked: the same with the links placed otherwise; None where nothing is asked of them.
     """
 
     of: Program
     walked: Walked
     n: int
+    work: int
     pairs: bool = True
     asked: Asked | None = None
     singly: bool = True
@@ -173,14 +175,15 @@ _RECURSIVE = (
 _HEAVY = ("inverse_dynamics", "gravity_torques", "forward_dynamics")
 
 
-def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True) -> Road:
-    """A derivation that asks where the links are."""
+def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True, walks: int = 1) -> Road:
+    """A derivation that asks where the links are, walked so many times for one answer."""
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         return asked(ways, x, lambda q: as_placed(robot, q))
 
     slopes = any("slope(" in ast.unparse(line.statement) for line in of.lines)
-    return Road(of, walked, robot.n, pairs, asked, pairs or not slopes)
+    work = walks * of.work(robot.n)
+    return Road(of, walked, robot.n, work, pairs, asked, pairs or not slopes)
 
 
 def _of_links(case: Case, text: str, asked: str) -> Road:
@@ -190,7 +193,7 @@ def _of_links(case: Case, text: str, asked: str) -> Road:
         walk = Walk(of, lambda q: of_table(robot, q), x["q"], ways, robot.n)
         return walk.values(asked), walk
 
-    return Road(of, walked, robot.n)
+    return Road(of, walked, robot.n, of.work(robot.n))
 
 
 def _of_step(case: Case, text: str) -> Road:
@@ -200,7 +203,7 @@ def _of_step(case: Case, text: str) -> Road:
         walk = Walk(of, lambda q: of_step(robot, q, x), x["q"], ways, robot.n)
         return walk.values("E"), walk
 
-    return Road(of, walked, robot.n)
+    return Road(of, walked, robot.n, of.work(robot.n))
 
 
 def _of_arm(case: Case, text: str, asked: str, rows: Any = None, pairs: bool = True) -> Road:
@@ -248,7 +251,7 @@ def _recursion(case: Case, text: str, in_base: bool, said: str = "tau", pairs: b
                 values = _solved(values, x["tau"] - every[:, :, n])
         return values, walk
 
-    return _road(of, ask, robot, pairs)
+    return _road(of, ask, robot, pairs, robot.n + 1 if units else 1)
 
 
 def _solved(matrix: Array, right: Array) -> Array:
@@ -287,7 +290,7 @@ def through_links(case: Case) -> Iterator[Road]:
     of = program(books.product_of_links(standard(robot)))
     for road in roads(case):
         if road.asked is not None:
-            yield Road(of, _through(of, robot, road.asked), robot.n, False)
+            yield Road(of, _through(of, robot, road.asked), robot.n, road.work, False)
 
 
 def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
@@ -330,7 +333,7 @@ def _five_bar(case: Case) -> Iterator[Road]:
             walk = Walk(of, lambda _: of_loop(mechanism, loop, x), some, ways, 2)
             return walk.values(asked), walk
 
-        return Road(of, walked, 2)
+        return Road(of, walked, 2, of.work(2))
 
     if asked:
         yield road(text, asked)
