@@ -237,7 +237,7 @@ def _solved(matrix: Array, right: Array) -> Array:
     """The solutions of (B, N, n, n) systems; NaN where there is none."""
     some = np.isfinite(matrix).all(axis=(2, 3))[..., None, None]
     safe = np.where(some, matrix, np.eye(matrix.shape[-1]))
-    regular = np.asarray(np.linalg.matrix_rank(safe)) == matrix.shape[-1]
+    regular = np.asarray(np.linalg.matrix_rank(safe) == matrix.shape[-1])
     some = some & regular[..., None, None]
     safe = np.where(some, safe, np.eye(matrix.shape[-1]))
     return np.where(some[..., 0], np.linalg.solve(safe, right[..., None])[..., 0], np.nan)
