@@ -17,21 +17,6 @@ rows count as zeros, for the ellipsoid is then flat):
 
 Why not det: on exactly singular matrices rounding makes det(J J^T) negative about half of the
 time, and its root wrong by the square root of rounding.
-
-The characteristic length of a mixed task: the one that makes J best conditioned at a q.
-
-Angeles, *Fundamentals of Robotic Mechanical Systems*, section 5.8, and Ranjbaran, Angeles &
-Gonzalez-Palacios, "The mechanical design of a seven-axes manipulator with kinematic isotropy"
-(JIRS 14, 1995): the characteristic length is the L that minimises the condition number of J with
-its entries in metres divided by L.
-
-Velocity, force and dynamic ellipsoids: principal axes and lengths from singular values.
-
-* velocity: tool velocities of joint speeds with |qdot| <= 1; semi-axes sigma_i (Yoshikawa, IJRR
-  4(2), 1985).
-* force: tool forces held by joint torques with |tau| <= 1; the same axes, semi-axes 1 / sigma_i.
-* dynamic: tool accelerations from rest, without gravity, of joint torques with |tau| <= 1;
-  singular values of J M^-1 (Yoshikawa, "Dynamic manipulability of robot manipulators", 1985).
 """
 
 from __future__ import annotations
@@ -43,14 +28,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.structure.task_space import TaskSpace, one_state, read_length, read_task
-from kinlab.arrays import Array, frozen, real_array, word
+from kinlab.analysis.structure.task_space import one_state, read_length, read_task
+from kinlab.arrays import Array, real_array, word
 from kinlab.engine.dynamics import mass_matrix
 from kinlab.engine.states import joint_vector
-from kinlab.errors import NameUnknownError, OptionError
+from kinlab.errors import OptionError
 from kinlab.host.introductions import Answer, Introduction, vector
 from kinlab.model.library import ArmLike, as_robot
-from kinlab.model.robot import require_inertia
 from kinlab.tolerances import TOLERANCES
 
 
@@ -202,6 +186,12 @@ def weighted(matrix: Array, mass: Array) -> Array:
     return np.swapaxes(np.linalg.solve(lower, np.swapaxes(matrix, -1, -2)), -1, -2)
 
 
+def of_task(task: str, suggested: bool, length: float | None) -> str:
+    """The task of a measure in words, with the length that mixes metres and radians."""
+    chosen = " (chosen for this arm)" if suggested else ""
+    return f"task {task}{chosen}" + ("" if length is None else f", length {length:.6g} m")
+
+
 @dataclass(frozen=True, repr=False)
 class Dexterity(Answer):
     """Every measure at one q, with the task and the length they hold for.
@@ -232,7 +222,7 @@ class Dexterity(Answer):
         whole = self.rank == len(self.sigma)
         state = f"condition number {self.condition:.6g}" if whole else f"singular, rank {self.rank}"
         return Introduction(
-            f"dexterity, {_of_task(self.task, self.suggested, self.length)}: {state}",
+            f"dexterity, {of_task(self.task, self.suggested, self.length)}: {state}",
             (
                 f"singular values {vector(self.sigma)}",
                 f"manipulability (Yoshikawa) {self.yoshikawa:.5g}, inverse condition "
@@ -281,181 +271,3 @@ def counting(sigma: Any, share: float = TOLERANCES.singular) -> Any:
     """
     largest = np.where(sigma[..., :1] > TOLERANCES.singular, sigma[..., :1], np.inf)
     return sigma > share * largest
-
-
-OPTIMAL = "optimal"
-"""In place of a number of metres: the length that minimises the condition number."""
-
-_DECADES = 3.0
-"""The search spans the arm's own length unit times 10^-3 to 10^3."""
-
-
-@dataclass(frozen=True)
-class CharacteristicLength:
-    """Answer of :func:`characteristic_length`.
-
-    Attributes:
-        length: metres, or ``None`` where the condition number depends on no length.
-        condition: condition number of J at that length; infinity where J has a singular value 0.
-        task: name of the task.
-        how: ``given``, ``optimal`` or ``none needed``.
-    """
-
-    length: float | None
-    condition: float
-    task: str
-    how: str
-
-
-def characteristic_length(
-    robot: ArmLike, q: ArrayLike, task: Any = "auto", length: float | str = OPTIMAL
-) -> CharacteristicLength:
-    """The length that minimises the condition number at q, or the effect of a given one.
-
-    It is looked for from 1/1000 to 1000 times the arm's own length unit. There is one minimum:
-    log kappa is convex in log L (norms of D1 J D2 and its inverse, by Hadamard's three lines).
-
-    Args:
-        robot: the robot.
-        q: joint positions, (n,).
-        task: as in :func:`kinlab.manipulability`, or ``"auto"``.
-        length: metres, or ``"optimal"``.
-
-    Raises:
-        StateError, NameUnknownError, OptionError: bad q, unknown task, length <= 0, or a
-            singular q, at which every length is as bad as any other.
-    """
-    robot = as_robot(robot)
-    space = read_task(robot, task)
-    state = one_state(robot, q)
-    given = read_length_choice(length)
-    if not space.mixed:
-        return CharacteristicLength(None, _condition(space, state, 1.0), space.name, "none needed")
-    if given is not None:
-        return CharacteristicLength(given, _condition(space, state, given), space.name, "given")
-    values = singular_values(space.jacobian(state, space.scale))
-    if values[-1] <= 1e-10 * values[0]:
-        raise OptionError(
-            f"robot {robot.name!r}: q is singular for task {space.name}; every length gives an "
-            "infinite condition number"
-        )
-    best = best_length(space, state)
-    return CharacteristicLength(best, _condition(space, state, best), space.name, "optimal")
-
-
-def best_length(space: TaskSpace, q: Array) -> float:
-    """The minimiser of the condition number over L: log kappa is scanned, then bracketed."""
-    from scipy.optimize import minimize_scalar  # `import kinlab` does not wait for scipy
-
-    exponents = np.linspace(-_DECADES, _DECADES, 121)
-
-    def cost(exponent: float) -> float:
-        return float(np.log(_condition(space, q, space.scale * 10.0**exponent)))
-
-    at = int(np.argmin([cost(float(e)) for e in exponents]))
-    around = exponents[max(at - 1, 0)], exponents[min(at + 1, len(exponents) - 1)]
-    found = minimize_scalar(cost, bounds=around, method="bounded", options={"xatol": 1e-12})
-    return float(space.scale * 10.0**found.x)
-
-
-def read_length_choice(length: Any) -> float | None:
-    """A number of metres, or ``None`` for ``"optimal"``.
-
-    Raises:
-        NameUnknownError: another word. OptionError: not a number above zero.
-    """
-    if isinstance(length, str):
-        if length != OPTIMAL:
-            raise NameUnknownError(f'length {length!r} is unknown; give metres or "{OPTIMAL}"')
-        return None
-    return read_length(length)
-
-
-def _condition(space: TaskSpace, q: Array, length: float) -> float:
-    sigma = singular_values(space.jacobian(q, length))
-    return float(sigma[0] / sigma[-1]) if sigma[-1] > 0.0 else float("inf")
-
-
-ELLIPSOIDS = ("velocity", "force", "dynamic")
-
-
-@dataclass(frozen=True, repr=False)
-class Ellipsoid(Answer):
-    """An ellipsoid in task coordinates.
-
-    Attributes:
-        kind: ``velocity``, ``force`` or ``dynamic``.
-        task: the task. suggested: kinlab chose it.
-        length: characteristic length, or ``None`` where the task needs none.
-        axes: unit principal axes as columns, (m, m).
-        lengths: semi-axes, descending, (m,). Zero: flat in that direction. Infinity (force
-            only): a force in that direction needs no torque, as at a singularity.
-    """
-
-    kind: str
-    task: str
-    suggested: bool
-    length: float | None
-    axes: Array
-    lengths: Array
-
-    def introduction(self) -> Introduction:
-        """Its semi-axes, the longest first, each with its direction."""
-        flat = bool(self.lengths[-1] == 0.0)
-        state = "flat: the arm is singular here" if flat else f"semi-axes {vector(self.lengths)}"
-        rows = tuple(
-            (f"{size:.5g}", vector(axis, 4))
-            for size, axis in zip(self.lengths, self.axes.T, strict=True)
-        )
-        return Introduction(
-            f"{self.kind} ellipsoid, {_of_task(self.task, self.suggested, self.length)}: {state}",
-            (),
-            ("semi-axis", "direction"),
-            rows,
-        )
-
-
-def _of_task(task: str, suggested: bool, length: float | None) -> str:
-    """The task of a measure in words, with the length that mixes metres and radians."""
-    chosen = " (chosen for this arm)" if suggested else ""
-    return f"task {task}{chosen}" + ("" if length is None else f", length {length:.6g} m")
-
-
-def ellipsoid(
-    robot: ArmLike, q: ArrayLike, kind: str = "velocity", task: Any = "auto", length: float = 1.0
-) -> Ellipsoid:
-    """An ellipsoid at one q; the three kinds are defined at the top of this module.
-
-    Args:
-        robot: the robot.
-        q: joint positions, (n,).
-        kind: ``"velocity"``, ``"force"`` or ``"dynamic"``.
-        task, length: as in :func:`kinlab.manipulability`, or ``"auto"``.
-
-    Raises:
-        StateError, NameUnknownError, OptionError: bad q, unknown kind or task, length <= 0.
-        InertiaError: ``"dynamic"`` of a robot with a singular mass matrix.
-    """
-    robot = as_robot(robot)
-    kind = word(kind, ELLIPSOIDS, "ellipsoid")
-    space, size = read_task(robot, task), read_length(length)
-    state = one_state(robot, q)
-    matrix = space.jacobian(state, size)
-    if kind == "dynamic":
-        require_inertia(robot)
-        matrix = np.asarray(np.linalg.solve(mass_matrix(robot, state), matrix.T).T, np.float64)
-    left: Array = np.linalg.svd(matrix)[0]
-    sigma: Array = singular_values(matrix)
-    if kind == "force":
-        inverse: Array = np.divide(
-            1.0, sigma, out=np.full_like(sigma, np.inf), where=regular(sigma)
-        )
-        left, sigma = left[:, ::-1], inverse[::-1]
-    return Ellipsoid(
-        kind,
-        space.name,
-        space.suggested,
-        size if space.mixed else None,
-        frozen(left),
-        frozen(sigma),
-    )

@@ -44,8 +44,8 @@ def singular(
     output: PICTURE = None,
 ) -> None:
     """Singular configurations by family, det J in factors, and a picture of the singular curves."""
+    from kinlab.analysis.singularities.families import find_singularities
     from kinlab.analysis.singularities.nearest import nearest_singularity
-    from kinlab.analysis.singularities.singularity import find_singularities
     from kinlab.model.library import load
 
     robot, console = load(name, tool), screen()

@@ -9,8 +9,8 @@ from kinlab.host.language import _
 
 if TYPE_CHECKING:
     from kinlab.analysis.isotropy.configurations import IsotropySearch
+    from kinlab.analysis.singularities.families import SingularitySearch
     from kinlab.analysis.singularities.nearest import NearestSingularity
-    from kinlab.analysis.singularities.singularity import SingularitySearch
     from kinlab.model.robot import Robot
     from kinlab.sweeps.workspace import WorkspaceMap
 

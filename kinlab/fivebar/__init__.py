@@ -7,8 +7,8 @@ module            what it holds
                   refuse
 ``bounds/``       The worst case over a rectangle, with a proved bound
 ``closed_chain``  The five-bar as Pinocchio sees it: a tree of four joints and one loop constraint
-``cycle``         Drives of a five-bar for a cycle of one's own: motors for a time, and the time for
-                  a motor
+``cycle``         What a path asks of a five-bar's drives: motors for a cycle's time, and the time
+                  for a motor
 ``design/``       Dimensional synthesis: the lengths of a five-bar for a rectangle
 ``dynamics``      Dynamics of a five-bar in closed form: rods of mass, torque, mass matrix, energy
                   and power

@@ -202,11 +202,11 @@ class FiveBar(Answer):
     largest_rectangle = workspace.largest_rectangle
 
     # drives, Pinocchio's closed chain, files
-    follow = servo.follow
+    follow = cycle.follow
     size_servo = servo.size_servo
     size_cycle = cycle.size_cycle
     fastest_cycle = cycle.fastest_cycle
-    fit_to_motor = servo.fit_to_motor
+    fit_to_motor = cycle.fit_to_motor
     closed_chain = chain.build
     export = export.export
     save = files.write

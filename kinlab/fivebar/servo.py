@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike
 from kinlab.arrays import Array, number
 from kinlab.drives.cycles import LIFT, TRAVEL, Path
 from kinlab.drives.demand import Demand
-from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both, stretch_to_motor
+from kinlab.drives.fitting import Duty, MotorFit, fit_all, refuse_both
 from kinlab.drives.gears import Drive, Gearbox, gears_of
 from kinlab.drives.motors import Motor, find_motor, motors_of
 from kinlab.drives.waypoints import Cycle, adept
-from kinlab.errors import InertiaError, OptionError, SingularError, UnreachableError, warn
+from kinlab.errors import OptionError
 from kinlab.fivebar.arguments import HANGING, Mode
 from kinlab.fivebar.bounds.worst import (
     MotionForms,
@@ -35,16 +35,13 @@ from kinlab.fivebar.bounds.worst import (
     torque_forms,
     worst,
 )
+from kinlab.fivebar.cycle import follow, require_masses
 from kinlab.fivebar.dynamics import (
-    bars_as_points,
-    bars_without_mass,
     crank_inertia,
     joint_mass,
     rod_model,
-    tool_force,
-    torques,
 )
-from kinlab.fivebar.geometry import Pose, ik, rate_bias, rate_matrix, solve_pose
+from kinlab.fivebar.geometry import Pose, solve_pose
 from kinlab.fivebar.metrics import sigma
 from kinlab.fivebar.workspace import Rectangle, read_rectangle
 from kinlab.host.evidence import Evidence
@@ -53,136 +50,6 @@ from kinlab.tolerances import TOLERANCES
 
 if TYPE_CHECKING:
     from kinlab.fivebar.linkage import FiveBar
-
-# -------- A path in joint coordinates
-
-
-def follow(
-    linkage: FiveBar,
-    path: Path,
-    mode: Mode = HANGING,
-    model: str = "exact",
-    margin: float = 0.02,
-) -> Demand:
-    """Crank motion, torques and power along a path in one working mode.
-
-    Args:
-        linkage: the five-bar.
-        path: the tool's motion.
-        mode: signs of u_i x w_i.
-        model: a rod model.
-        margin: least sine allowed between two bars that must not get in line.
-
-    Raises:
-        UnreachableError: the path leaves the workspace; says when and where.
-        SingularError: it meets or crosses a singularity; says when and where.
-    """
-    pose = _regular_poses(linkage, path, mode, margin)
-    jac, bias = rate_matrix(linkage, pose), rate_bias(linkage, pose, path.v)
-    rate = np.einsum("nij,nj->ni", jac, path.v)
-    theta_ddot = np.einsum("nij,nj->ni", jac, path.a) + bias
-    tau = torques(linkage, pose, path.v, path.a, rod_model(linkage, model))
-    if path.carried is not None:
-        force = path.carried[:, None] * (path.a - linkage.gravity)
-        tau = tau + tool_force(linkage, pose, force)
-    theta = np.unwrap(ik(linkage, path.points, mode), axis=0)
-    return Demand(path.t, theta, rate, theta_ddot, tau, linkage.reflected_inertia)
-
-
-def _regular_poses(linkage: FiveBar, path: Path, mode: Mode, margin: float) -> Pose:
-    """The poses along a path, refused where it cannot be followed; as :func:`follow`."""
-    if not 0.0 <= margin < 1.0:
-        raise OptionError(f"{linkage.name}: margin is {margin!r}; it must lie between 0 and 1")
-    pose = solve_pose(linkage, path.points, mode, "mask")
-
-    def place(k: int) -> str:
-        x, y = path.points[k]
-        return f"{linkage.name}: the path at t = {path.t[k]:.4g} s, ({x:.6g}, {y:.6g}) m"
-
-    if not pose.ok.all():
-        raise UnreachableError(f"{place(int(np.argmin(pose.ok)))}, leaves the workspace")
-    legs = np.abs(pose.sine).min(axis=1)
-    if legs.min() <= margin:
-        k = int(np.argmax(legs <= margin))
-        leg = int(np.abs(pose.sine[k]).argmin()) + 1
-        raise SingularError(
-            f"{place(k)}, meets a singularity of type I: sine {legs[k]:.3g} between the bars of "
-            f"leg {leg}, at most {margin:g} away"
-        )
-    rods = pose.rods * np.sign(pose.rods[0])
-    if rods.min() <= margin:
-        k = int(np.argmax(rods <= margin))
-        raise SingularError(
-            f"{place(k)}, meets a singularity of type II: w1 x w2 = {pose.rods[k]:.3g}, at most "
-            f"{margin:g} away or past it"
-        )
-    return pose
-
-
-def fit_to_motor(
-    linkage: FiveBar,
-    path: Path,
-    motor: Motor,
-    gear_ratio: float,
-    efficiency: float = 0.9,
-    mode: Mode = HANGING,
-) -> Path:
-    """Stretches a path until a motor just follows it: N_max or peak torque is reached.
-
-    Args:
-        linkage: the five-bar; its own rotor inertia is left out in favour of the motor's.
-        path: the tool's motion.
-        motor: needs max_speed, peak_torque and rotor_inertia.
-        gear_ratio: j.
-        efficiency: of the gears, 0 to 1; see :meth:`kinlab.drives.demand.Demand.at_motor`.
-        mode: signs of u_i x w_i.
-
-    Raises:
-        MotorError: the motor cannot hold the weight, or lacks a figure.
-        UnreachableError, SingularError: as :func:`follow`.
-    """
-    moving, held = (follow(linkage, each, mode) for each in (path, path.held))
-    return path.stretched(
-        stretch_to_motor(moving, held, motor, gear_ratio, efficiency, linkage.name)
-    )
-
-
-# -------- Sizing
-
-_MASSES = ("payload", "crank_mass", "crank_inertia", "rod_mass", "rod_inertia")
-
-
-def require_masses(linkage: FiveBar, massless: bool) -> tuple[str, ...]:
-    """Refuses a linkage whose bars have no mass where that was not said to be meant.
-
-    Args:
-        linkage: the five-bar.
-        massless: bars without mass are meant.
-
-    Returns:
-        What the figures leave out: a sentence where bars have no mass.
-
-    Raises:
-        InertiaError: nothing at all to move, or bars without mass; says what to give.
-
-    Warns:
-        KinlabWarning: bars without mass, where they are meant.
-    """
-    if not any(np.any(getattr(linkage, name)) for name in _MASSES):
-        raise InertiaError(
-            f"{linkage.name}: nothing to move: no payload, mass or inertia is given, so no torque "
-            "can be sized"
-        )
-    missing = bars_without_mass(linkage)
-    if missing and not massless:
-        raise InertiaError(
-            f"{linkage.name}: {missing}; with_masses() and --crank-mass, --rod-mass take uniform "
-            "bars; if bars without mass are meant, say so: massless=True, --massless"
-        )
-    for said in (missing, bars_as_points(linkage)):
-        if said:
-            warn(f"{linkage.name}: {said}")
-    return (missing,) if missing else ()
 
 
 @dataclass(frozen=True, repr=False)

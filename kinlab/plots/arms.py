@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.metrics import ellipsoid
+from kinlab.analysis.ellipsoids import ellipsoid
 from kinlab.analysis.structure.axes import Axes, frame_origins
 from kinlab.analysis.structure.task_space import TaskSpace
 from kinlab.engine.states import joint_vector
@@ -31,7 +31,7 @@ def ellipses(
     Args:
         robot: an arm that stays in a plane z = const of the base.
         q: joint positions, (n,).
-        kinds: of :func:`kinlab.analysis.metrics.ellipsoid`. Each ellipse is drawn with its
+        kinds: of :func:`kinlab.analysis.ellipsoids.ellipsoid`. Each ellipse is drawn with its
             longest axis ``size`` of the arm's reach: units differ, shapes compare.
         ax: where to draw; a new figure if left out.
         size: share of the reach.

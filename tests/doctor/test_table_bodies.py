@@ -17,6 +17,9 @@ LINK = PANDA.links[3]
 COM, INERTIA = np.asarray(LINK.com), np.asarray(LINK.inertia)
 OFF = INERTIA - 2 * (INERTIA - np.diag(np.diag(INERTIA)))
 STEP = PANDA.link_transforms(np.zeros(7))[3]
+ONE_LESS, ONE_SMALL = INERTIA.copy(), INERTIA.copy()
+ONE_LESS[0, 1] = ONE_LESS[1, 0] = 0.0
+ONE_SMALL[0, 1] = ONE_SMALL[1, 0] = 0.1 * INERTIA[0, 1]
 
 
 def steiner(mass, c):
@@ -49,6 +52,12 @@ def dynamics(table, q):
         ({"inertia": OFF}, ("inertia", "products")),
         ({"inertia": 10 * INERTIA}, ("inertia", "decimal")),
         ({"inertia": np.zeros((3, 3))}, ("inertia", "missing")),
+        ({"inertia": ONE_LESS}, ("inertia", "missing")),
+        ({"inertia": ONE_SMALL}, ("inertia", "decimal")),
+        ({"inertia": np.diag(np.diag(INERTIA))}, ("inertia", "missing")),
+        ({"inertia": INERTIA[np.ix_([1, 0, 2], [1, 0, 2])]}, ("inertia", "axes")),
+        ({"inertia": 1e6 * INERTIA}, ("inertia", "units")),
+        ({"com": COM * (1, 10, 1)}, ("com", "decimal")),
         ({"inertia": STEP[:3, :3] @ INERTIA @ STEP[:3, :3].T}, ("inertia", "frame")),
     ],
 )

@@ -14,9 +14,10 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.characteristic_length import OPTIMAL, read_length_choice
 from kinlab.analysis.isotropy.best_condition import ENOUGH, LeastCondition, least_condition
 from kinlab.analysis.isotropy.system import IsotropySystem
-from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
+from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import (
     read_reachable_task,

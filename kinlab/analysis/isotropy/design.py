@@ -11,10 +11,11 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.analysis.characteristic_length import OPTIMAL, read_length_choice
 from kinlab.analysis.isotropy.configurations import IsotropicConfiguration, isotropic_families
 from kinlab.analysis.isotropy.design_model import OpenChain, open_chain
 from kinlab.analysis.isotropy.system import IsotropySystem, LengthChoice, isotropy_equations
-from kinlab.analysis.metrics import OPTIMAL, condition_number, read_length_choice, singular_values
+from kinlab.analysis.metrics import condition_number, singular_values
 from kinlab.analysis.solver import jacobian_derivative, solve
 from kinlab.analysis.structure.task_space import TaskSpace, read_reachable_task, search_box, wrap
 from kinlab.arrays import Array, between, seed_of, whole

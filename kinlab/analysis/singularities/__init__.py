@@ -9,6 +9,7 @@ module            what it holds
                   :mod:`kinlab.symbolic`
 ``edge``          Whether a singular configuration lies on the edge of the workspace, or the tool
                   passes on
+``families``      Singular configurations of an arm: found from many seeds, grouped into families
 ``loci``          Curves of the singular set in a slice of joint space, by pseudo-arclength
                   continuation
 ``minors``        The minors of J as trigonometric polynomials: where all of them vanish the arm
@@ -16,7 +17,7 @@ module            what it holds
 ``nearest``       How far a configuration is from the nearest singular one, where that is, and
                   what is proved
 ``singular_set``  The singular set as a smooth system of equations, and where to start solving it
-``singularity``   Singular configurations: found from many seeds, grouped into families, each with
-                  its meaning
+``singularity``   One singular configuration: what is lost there, which joints hold the arm, and
+                  its class
 ================  ================================================================================
 """

@@ -9,8 +9,9 @@ module          what it holds
                 student's
 ``judge``       One answer judged: verdict, points, and as much of the reason as the sheet's
                 feedback allows
-``marks``       The marks of one submission and of a class, as a program, a terminal and a
-                notebook see them
+``marks``       The marks of one answer, of a submission and of a class, as a program and a
+                terminal see them
+``own_answer``  A formula beside the sheet's own model answer, where no engine knows the quantity
 ``pages``       The pages: one for each student, one of the class. No script, nothing fetched
 ``program``     A submission in Python: run in a process of its own, only where the teacher asks
                 for it

@@ -62,7 +62,8 @@ _MODULES = (
     "_posixsubprocess",
     "resource",
 )
-_MOST = 4_000_000
+_MOST = 100_000
+"""Numbers in one answer."""
 
 
 def limited(seconds: float, megabytes: int) -> list[str]:
@@ -89,7 +90,7 @@ def limited(seconds: float, megabytes: int) -> list[str]:
         if child == 0:
             os._exit(0)
         os.waitpid(child, 0)
-        enforced.remove("processes")
+        return [name for name in enforced if name != "processes"]
     return enforced
 
 
@@ -170,7 +171,7 @@ def answers(program: str, wanted: list[Any], arguments: Reply) -> Reply:
                 np.asarray(function(*state), dtype=float) for state in zip(*stacks, strict=True)
             ]
             stacked = np.stack(values)
-            if stacked.size > _MOST // 40:
+            if stacked.size > _MOST:
                 raise ValueError("the answer is too large")
             found[question] = {"shape": list(stacked.shape), "values": stacked.ravel().tolist()}
         except (Exception, SystemExit) as problem:  # noqa: BLE001  whatever a program may raise

@@ -3,92 +3,42 @@
 from __future__ import annotations
 
 import json
-import math
 import re
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-import numpy as np
-
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
+from kinlab.doctor.confusions.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas
-from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet, SheetError
+from kinlab.doctor.marking.marks import (
+    Outcome,
+    lost,
+    missing,
+    points_left,
+    right_outcome,
+    wrong_outcome,
+)
+from kinlab.doctor.marking.own_answer import with_answer
+from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
-from kinlab.doctor.marking.words import told
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.doctor.text.own_names import in_robot_names
-from kinlab.doctor.text.stand_ins import stand_ins
-from kinlab.doctor.text.written import Written
-from kinlab.doctor.verdicts import together
-from kinlab.errors import ExpressionError, KinlabError, near
+from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
-from kinlab.formulas.text import FormulaFile, canonical, formula_file, parse
+from kinlab.formulas.text import FormulaFile, formula_file, parse
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 
-RIGHT = N_("right")
-WRONG = N_("wrong")
-UNREAD = N_("could not be read")
-MISSING = N_("no answer")
-_GRADES = {
-    "": RIGHT,
-    "rounded": N_("right with rounded numbers"),
-    "unusual": N_("right but written unusually"),
-}
 _WRITTEN = 400
-_DIGITS = "0123456789"
-_STATES = 60
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """One question of one student.
-
-    Attributes:
-        question: its id.
-        verdict: ``"right"`` (or which kind of right), ``"wrong"``, ``"could not be read"``,
-            ``"no answer"``.
-        points, of: what it got, and what a right answer gets.
-        kinds: of the slips, from ``place`` on told to the teacher only, from ``cause`` on to all.
-        written: as it was typed.
-        place: where to look, in the student's own symbols.
-        cause: what kind of slip it is, without the right formula.
-        answer: the doctor's sentence and the right formulas; at ``answer`` only.
-        formulas: as they were read, for a page: names and LaTeX, the place marked.
-        remark: why it could not be read, or what holds for these numbers only.
-    """
-
-    question: str
-    verdict: str
-    points: float
-    of: float
-    kinds: tuple[str, ...] = ()
-    written: tuple[str, ...] = ()
-    place: str = ""
-    cause: str = ""
-    answer: tuple[str, ...] = ()
-    formulas: tuple[tuple[str, str], ...] = ()
-    remark: str = ""
-
-    @property
-    def right(self) -> bool:
-        """Whether the formula is right, however it is written."""
-        return self.verdict.startswith(RIGHT)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values for JSON."""
-        return asdict(self)
 
 
 def judge(sheet: Sheet, submission: Submission, feedback: str | None = None) -> list[Outcome]:
@@ -130,16 +80,6 @@ def states_of(sheet: Sheet, question: Question, student: str) -> dict[str, Array
     return dict(case.arguments)
 
 
-def lost(question: Question, remark: str, written: tuple[str, ...] = ()) -> Outcome:
-    """An answer that could not be read."""
-    return Outcome(question.id, UNREAD, 0.0, question.points, ("unread",), written, remark=remark)
-
-
-def missing(question: Question) -> Outcome:
-    """No answer."""
-    return Outcome(question.id, MISSING, 0.0, question.points)
-
-
 def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
     given = submission.answers.get(question.id)
     written = tuple(
@@ -157,7 +97,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
         if question.quantity:
             outcome = _with_engine(sheet, question, submission.student, file)
         else:
-            outcome = _with_answer(sheet, question, submission.student, file)
+            outcome = with_answer(sheet, question, submission.student, file)
     except KinlabError as problem:
         return lost(question, str(problem), written)
     except (RecursionError, MemoryError, OverflowError, ArithmeticError, ValueError) as problem:
@@ -223,28 +163,14 @@ def _of_diagnoses(
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
         return _right(question, asked, file)
-    wrong = next(one for one in asked if not one.agrees)
-    outcome = _wrong(question, wrong, file, robot)
-    if wrong.form != "near":
-        return outcome
-    return replace(outcome, remark=_("nearly right, and nobody can tell why: mark it by hand"))
+    return _wrong(question, next(one for one in asked if not one.agrees), file, robot)
 
 
 def _right(question: Question, asked: list[Diagnosis], file: FormulaFile | None) -> Outcome:
     remarks = [remark for one in asked for remark in one.remarks]
     remark = _("; ").join(dict.fromkeys(remarks))
-    return _graded(question, {one.form for one in asked}, _as_read(file) if file else (), remark)
-
-
-def _graded(
-    question: Question, forms: set[str], formulas: tuple[tuple[str, str], ...], remark: str = ""
-) -> Outcome:
-    """A right answer: as the sheet has it, or right in another way, which may cost something."""
-    kind = next((form for form in ("unusual", "rounded") if form in forms), "")
-    share = question.slips.get(kind, 0.0) if kind else 0.0
-    points, kinds = round(question.points * (1.0 - share), 6), (kind,) if kind else ()
-    got = (question.id, _GRADES[kind], points, question.points, kinds)
-    return Outcome(*got, formulas=formulas, remark=remark)
+    formulas = _as_read(file) if file else ()
+    return right_outcome(question, {one.form for one in asked}, formulas, remark)
 
 
 def _as_read(file: FormulaFile) -> tuple[tuple[str, str], ...]:
@@ -260,20 +186,7 @@ def _in_part(
         return _wrong(question, wrong[0], file, robot)
     names = ", ".join(one.function for one in asked)
     place = _("{entries}: right; the other entries are not given").format(entries=names)
-    return _less(question, 0.0, ("missing entries",), place)
-
-
-def _less(
-    question: Question,
-    points: float,
-    kinds: tuple[str, ...],
-    place: str,
-    answer: tuple[str, ...] = (),
-    formulas: tuple[tuple[str, str], ...] = (),
-) -> Outcome:
-    """A wrong answer: what is left of its points, and all that can be told of it."""
-    got = (question.id, WRONG, points, question.points, kinds, ())
-    return Outcome(*got, place, told(kinds), answer, formulas)
+    return wrong_outcome(question, 0.0, ("missing entries",), place)
 
 
 def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot: Robot) -> Outcome:
@@ -283,14 +196,11 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
     answer: list[str] = []
     if best is not None:
         answer = [found.sentence, *(f"{_named(k)} = {v}" for k, v in best.corrected.items())]
-    points, place = _points(question, kinds), _("; ").join(places)
-    return _less(question, points, kinds, place, tuple(answer), formulas)
-
-
-def _points(question: Question, kinds: Iterable[str]) -> float:
-    """What is left of a question's points after slips of these kinds."""
-    cost = math.fsum(question.slips.get(kind, question.slips.get("other", 1.0)) for kind in kinds)
-    return round(question.points * max(0.0, 1.0 - cost), 6)
+    points, place = points_left(question, kinds), _("; ").join(places)
+    outcome = wrong_outcome(question, points, kinds, place, tuple(answer), formulas)
+    if found.form != "near":
+        return outcome
+    return replace(outcome, remark=_("nearly right, and nobody can tell why: mark it by hand"))
 
 
 def _places(
@@ -354,123 +264,6 @@ def _named(label: str) -> str:
     if found is not None:
         return _(_PLACES[found[1]]).format(number=found[2], other=found[3])
     return ENTRY_LETTERS.get(label, shown_entry(label))
-
-
-# -------- Beside an own model answer
-
-
-def _with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFile) -> Outcome:
-    model = _model(sheet, question)
-    robot = robot_for(sheet, student)
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    for name in model.formulas:
-        if name not in file.formulas:
-            said = _("{question}: {entry} is not given")
-            raise ExpressionError(said.format(question=question.id, entry=name))
-    formulas = tuple(equation(name, file.formulas[name]) for name in model.formulas)
-    forms: set[str] = set()
-    for name, right in model.formulas.items():
-        error, kinds = _gap(file, model, name, right, words)
-        if error <= question.tolerance:
-            continue
-        forms.update(kinds)
-        if kinds != ("rounded",):
-            place = name if len(model.formulas) > 1 else _("the formula as a whole")
-            points, right_one = _points(question, kinds), (f"{name} = {right}",)
-            return _less(question, points, kinds, place, right_one, formulas)
-    return _graded(question, forms, formulas)
-
-
-def _model(sheet: Sheet, question: Question) -> FormulaFile:
-    return _read_model(tuple(question.answer.items()), f"{sheet.place}: {question.id}: answer")
-
-
-@lru_cache(maxsize=512)
-def _read_model(answer: tuple[tuple[str, str], ...], place: str) -> FormulaFile:
-    try:
-        return formula_file({"robot": "the sheet's", "formulas": dict(answer)}, place)
-    except KinlabError as problem:
-        said = str(problem)
-        raise SheetError(said if place in said else f"{place}: {said}") from None
-
-
-def check_answers(sheet: Sheet) -> None:
-    """Reads the sheet's own model answers.
-
-    Raises:
-        SheetError: one cannot be read, or has the third mass of an arm with two.
-    """
-    words = vocabulary(sheet.robot.table).values if sheet.robot.table is not None else {}
-    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in range(1, sheet.robot.n + 1))}
-    letters = {name.rstrip(_DIGITS) for name in own if name[-1] in _DIGITS}
-    for question in sheet.questions:
-        if not question.answer:
-            continue
-        model = _model(sheet, question)
-        met = {
-            n
-            for name, node in model.formulas.items()
-            for n in tree.names(_opened(node, model, name))
-        }
-        for name in sorted(met - own):
-            if name[-1] in _DIGITS and name.rstrip(_DIGITS) in letters:
-                raise SheetError(
-                    f"{sheet.place}: {question.id}: answer: {sheet.robot.name} has no {name!r}; "
-                    f"{near(name, own)}"
-                )
-
-
-def _gap(
-    file: FormulaFile, model: FormulaFile, name: str, right: Node, words: Mapping[str, float]
-) -> tuple[float, tuple[str, ...]]:
-    """How far a formula is from the model's, and whether rounding, a sign or a factor explains it.
-
-    Joints stand on both sides of zero: |q1| is not q1. States at which the model itself has no
-    value (a root of a negative number) say nothing.
-    """
-    mine, theirs = _opened(file.formulas[name], file, name), _opened(right, model, name)
-    strange = tree.names(mine) - tree.names(theirs) - set(words) - _joints()
-    if strange:
-        said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
-        raise ExpressionError(said.format(entry=name, name=sorted(strange)[0][:40]))
-    rng = np.random.default_rng(7)
-    at = {}
-    for one in sorted(tree.names(mine) | tree.names(theirs)):
-        at[one] = np.full(_STATES, words[one]) if one in words else rng.uniform(0.3, 1.7, _STATES)
-        if one in _joints():
-            at[one] = at[one] * rng.choice([-1.0, 1.0], _STATES)
-    with np.errstate(all="ignore"):
-        hand = np.array(np.broadcast_to(tree.evaluate(mine, at), _STATES), dtype=float)
-        truth = np.array(np.broadcast_to(tree.evaluate(theirs, at), _STATES), dtype=float)
-        there = np.isfinite(truth)
-        if not there.any():
-            raise SheetError(f"{name}: the sheet's own answer has no value at any state")
-        hand, truth = hand[there], truth[there]
-        error = float(np.max(relative_errors(hand, truth)))
-        at = {one: stack[there] for one, stack in at.items()}
-        written = Written(name, file.texts[name], mine, file.symbol_texts)
-        if error and stand_ins(written, at, truth, error_sizes(truth)) is not None:
-            return error, ("rounded",)
-        ratio = hand / truth
-    steady = np.all(np.isfinite(ratio)) and np.ptp(ratio) <= 1e-9 * abs(ratio[0])
-    if steady and abs(ratio[0] + 1.0) <= 1e-9:
-        return error, ("sign",)
-    return error, ("factor",) if steady and ratio[0] else ("unknown",)
-
-
-def _joints() -> set[str]:
-    return {f"{letter}{k}" for letter in ("q", "qd", "qdd") for k in range(1, 10)}
-
-
-def _opened(node: Node, file: FormulaFile, entry: str, depth: int = 0) -> Node:
-    if depth > 20:
-        said = _("{entry}: its symbols explain each other")
-        raise ExpressionError(said.format(entry=entry))
-    mapping = {}
-    for name in tree.names(node):
-        given = file.symbols.get(name)
-        mapping[name] = canonical(name) if given is None else _opened(given, file, entry, depth + 1)
-    return tree.renamed(node, mapping)
 
 
 # -------- How much is told

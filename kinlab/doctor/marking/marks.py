@@ -1,4 +1,4 @@
-"""The marks of one submission and of a class, as a program, a terminal and a notebook see them."""
+"""The marks of one answer, of a submission and of a class, as a program and a terminal see them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,116 @@ import html
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
-from kinlab.doctor.marking.judge import UNREAD, Outcome
-from kinlab.doctor.marking.sheet import Sheet
+from kinlab.doctor.marking.sheet import Question, Sheet
+from kinlab.doctor.marking.words import told
 from kinlab.errors import NameUnknownError, near
 from kinlab.host.introductions import Told
-from kinlab.host.language import _, ngettext
+from kinlab.host.language import N_, _, ngettext
+
+RIGHT = N_("right")
+WRONG = N_("wrong")
+UNREAD = N_("could not be read")
+MISSING = N_("no answer")
+_GRADES = {
+    "": RIGHT,
+    "rounded": N_("right with rounded numbers"),
+    "unusual": N_("right but written unusually"),
+}
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One question of one student.
+
+    Attributes:
+        question: its id.
+        verdict: ``"right"`` (or which kind of right), ``"wrong"``, ``"could not be read"``,
+            ``"no answer"``.
+        points, of: what it got, and what a right answer gets.
+        kinds: of the slips, from ``place`` on told to the teacher only, from ``cause`` on to all.
+        written: as it was typed.
+        place: where to look, in the student's own symbols.
+        cause: what kind of slip it is, without the right formula.
+        answer: the doctor's sentence and the right formulas; at ``answer`` only.
+        formulas: as they were read, for a page: names and LaTeX, the place marked.
+        remark: why it could not be read, or what holds for these numbers only.
+    """
+
+    question: str
+    verdict: str
+    points: float
+    of: float
+    kinds: tuple[str, ...] = ()
+    written: tuple[str, ...] = ()
+    place: str = ""
+    cause: str = ""
+    answer: tuple[str, ...] = ()
+    formulas: tuple[tuple[str, str], ...] = ()
+    remark: str = ""
+
+    @property
+    def right(self) -> bool:
+        """Whether the formula is right, however it is written."""
+        return self.verdict.startswith(RIGHT)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values for JSON."""
+        return asdict(self)
+
+
+def right_outcome(
+    question: Question, forms: set[str], formulas: tuple[tuple[str, str], ...], remark: str = ""
+) -> Outcome:
+    """A right answer: as the sheet has it, or right in another way, which may cost something."""
+    kind = next((form for form in ("unusual", "rounded") if form in forms), "")
+    share = question.slips.get(kind, 0.0) if kind else 0.0
+    points, kinds = round(question.points * (1.0 - share), 6), (kind,) if kind else ()
+    verdict = _GRADES[kind]
+    return Outcome(
+        question.id, verdict, points, question.points, kinds, formulas=formulas, remark=remark
+    )
+
+
+def wrong_outcome(
+    question: Question,
+    points: float,
+    kinds: tuple[str, ...],
+    place: str,
+    answer: tuple[str, ...] = (),
+    formulas: tuple[tuple[str, str], ...] = (),
+) -> Outcome:
+    """A wrong answer: what is left of its points, and all that can be told of it."""
+    return Outcome(
+        question.id,
+        WRONG,
+        points,
+        question.points,
+        kinds,
+        place=place,
+        cause=told(kinds),
+        answer=answer,
+        formulas=formulas,
+    )
+
+
+def points_left(question: Question, kinds: Iterable[str]) -> float:
+    """What is left of a question's points after slips of these kinds."""
+    cost = math.fsum(question.slips.get(kind, question.slips.get("other", 1.0)) for kind in kinds)
+    return round(question.points * max(0.0, 1.0 - cost), 6)
+
+
+def lost(question: Question, remark: str, written: tuple[str, ...] = ()) -> Outcome:
+    """An answer that could not be read."""
+    return Outcome(question.id, UNREAD, 0.0, question.points, ("unread",), written, remark=remark)
+
+
+def missing(question: Question) -> Outcome:
+    """No answer."""
+    return Outcome(question.id, MISSING, 0.0, question.points)
 
 
 @dataclass(frozen=True, repr=False)

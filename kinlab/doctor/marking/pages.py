@@ -11,8 +11,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from kinlab.check.report import html as report
-from kinlab.doctor.marking.judge import MISSING, WRONG
-from kinlab.doctor.marking.marks import Mark, Marks
+from kinlab.doctor.marking.marks import MISSING, WRONG, Mark, Marks
 from kinlab.doctor.marking.words import told
 from kinlab.host.language import _
 from kinlab.host.version import __version__

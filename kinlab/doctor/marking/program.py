@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor.marking.judge import Outcome, lost, missing, of_values, states_of
+from kinlab.doctor.marking.judge import of_values, states_of
+from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.terms import split_name

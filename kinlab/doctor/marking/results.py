@@ -17,8 +17,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from kinlab.doctor.marking.judge import Outcome
-from kinlab.doctor.marking.marks import Mark, Marks
+from kinlab.doctor.marking.marks import Mark, Marks, Outcome
 from kinlab.doctor.marking.pages import class_page, student_page
 from kinlab.errors import FileError
 from kinlab.host.files import write_text

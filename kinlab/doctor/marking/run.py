@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import shown, whole, word
-from kinlab.doctor.marking.judge import Outcome, check_answers, judge, lost
-from kinlab.doctor.marking.marks import Mark, Marks, slug_of
+from kinlab.doctor.marking.judge import judge
+from kinlab.doctor.marking.marks import Mark, Marks, Outcome, lost, slug_of
+from kinlab.doctor.marking.own_answer import check_answers
 from kinlab.doctor.marking.program import judge_program
 from kinlab.doctor.marking.results import write_marks
 from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of

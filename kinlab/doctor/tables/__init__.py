@@ -4,6 +4,7 @@
 module          what it holds
 ==============  ==================================================================================
 ``bodies``      Dynamic slips: masses, centres, inertias, armatures and gravity, link by link
+``body_slips``  What is wrong with a body's number, told from what is written and what is meant
 ``cells``       Cells that are solved for: which one or two numbers, changed, give the reference's
                 poses?
 ``chain``       A DH table as plain arrays: its frames at many states, and the elementary motions
