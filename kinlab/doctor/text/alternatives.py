@@ -64,9 +64,11 @@ def study(line: Line) -> None:
 def _name(line: Line, place: Place, name: str) -> None:
     meant = canonical(name) if name not in line.text.symbols else tree.sym(name)
     if line.turns(name) and name in line.text.symbols:
-        meant = canonical(line.text.symbols[name])
+        meant = _meaning(line, name)
     if meant.op in ("sin", "cos"):
         _wave(line, place, meant)
+        return
+    if meant.op != "sym":
         return
     joint = _MOTION.fullmatch(str(meant.value))
     if joint:
@@ -130,8 +132,14 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     if name in ("sin", "cos", "tan"):
         inside = parse(ast.unparse(node.args[0]))
-        mapped = {w: canonical(line.text.symbols.get(w, w)) for w in tree.names(inside)}
+        mapped = {w: _meaning(line, w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+
+
+def _meaning(line: Line, word: str) -> Node:
+    """What a name stands for: q1 for th1, q1 + q2 for q12."""
+    inside = parse(line.text.symbols[word]) if word in line.text.symbols else canonical(word)
+    return tree.renamed(inside, {name: canonical(name) for name in tree.names(inside)})
 
 
 def _wave(line: Line, place: Place, wave: Node) -> None:
