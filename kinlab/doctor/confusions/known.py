@@ -210,6 +210,11 @@ def _engines(case: Case) -> Iterator[Confusion]:
         )
 
 
+    if name == "kinetic_gradient":
+        said = _("adds the entries up, each times its qd_i: one number for the whole vector")
+        yield _other("one number", said, otherwise.summed_with_rates, 1.1)
+
+
 def _answers(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
     shape = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.action import DURATION, variation_with_free_ends
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.fivebar import numbers as numbers_of_loop
 from kinlab.check.quantities.serial import SERIAL, planar_jacobian, planar_pose
@@ -19,6 +20,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions import books
 from kinlab.doctor.confusions.walk import Program, Step, Walk, program
 from kinlab.engine.kinematics import jacobian
+from kinlab.engine.lagrange import momentum
 from kinlab.model.dh import link_transform
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -81,6 +83,8 @@ def roads(case: Case) -> Iterator[Road]:
             yield _road(case, text, "Jb", _of_arm, rows)
     if name in books.ITERATIVE:
         yield _road(case, f"# the step\nE = {books.ITERATIVE[name]}", "E", _of_step)
+    if name == "action_variation_free_ends":
+        yield _road(case, books.BOUNDARY, "E", _of_path)
     if name == "isotropy_defect":
         yield _road(case, books.ISOTROPY, "E", _of_step)
     if name == "jacobian_dot":
@@ -412,6 +416,16 @@ def _of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     pose = planar_pose(robot, q)
     here = np.stack([pose[:, 0], pose[:, 1], np.sum(q, axis=1)], axis=1)
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
+
+
+def _of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """dL/dqd and dq at both ends of a path; what is left of the variation is the integral's."""
+    v, a, dq = x["v"], x["a"], x["dq"]
+    early = momentum(robot, q, v)
+    late = momentum(robot, q + v * DURATION + 0.5 * a * DURATION**2, v + a * DURATION)
+    whole = variation_with_free_ends(robot, q, v, a, dq)
+    inner = whole - np.sum(late * 3.0 * dq, axis=1) + np.sum(early * dq, axis=1)
+    return {"inner": inner, "late": late, "early": early, "later": 3.0 * dq, "earlier": dq}
 
 
 # -------- the five-bar
