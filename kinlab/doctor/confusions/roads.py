@@ -21,6 +21,7 @@ from kinlab.doctor.confusions.givens import (
     of_arm,
     of_load,
     of_loop,
+    of_path,
     of_recursion,
     of_step,
     of_table,
@@ -92,6 +93,8 @@ def roads(case: Case) -> Iterator[Road]:
             yield _of_arm(case, text, "Jb", rows)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
+    if name == "action_variation_free_ends":
+        yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
         yield _of_step(case, books.ISOTROPY)
     if name == "jacobian_dot":
@@ -185,11 +188,11 @@ def _of_links(case: Case, text: str, asked: str) -> Road:
     return Road(of, walked, robot.n)
 
 
-def _of_step(case: Case, text: str) -> Road:
+def _of_step(case: Case, text: str, given: Any = of_step) -> Road:
     of, robot = program(text), case.robot
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
-        walk = Walk(of, lambda q: of_step(robot, q, x), x["q"], ways, robot.n)
+        walk = Walk(of, lambda q: given(robot, q, x), x["q"], ways, robot.n)
         return walk.values("E"), walk
 
     return Road(of, walked, robot.n)
