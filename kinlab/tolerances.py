@@ -102,6 +102,10 @@ class Tolerances:
 
     # -------- Formulas
 
+    same_branch: float = 1e-6
+    """Difference of cosines and sines below which two solutions of one target are one: an acos or
+    a root that is 0 keeps half the digits, 1e-8; branches are 0.05 apart where targets lie."""
+
     formula_agrees: float = 1e-9
     """Largest relative error at which a hand formula and the engine are the same formula. Two
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by

@@ -140,9 +140,8 @@ def compare(
     found = find_quantity(quantity)
     mechanism = found.domain.load(robot)
     need_function(function)
-    return compare_stacked(
-        mechanism, found, state_by_state(function), function_name(function), None, samples, seed
-    )
+    stacked = state_by_state(found.asked(mechanism, function))
+    return compare_stacked(mechanism, found, stacked, function_name(function), None, samples, seed)
 
 
 def compare_stacked(
@@ -158,7 +157,10 @@ def compare_stacked(
     samples, seed = whole(samples, "samples"), seed_of(seed)
     states = quantity.states(mechanism, int(samples), seed)
     engine = quantity.answers(mechanism, int(samples), seed)
-    hand = _read(function(numbers, *(np.array(s) for s in states)), engine, name, quantity)
+    answers = function(numbers, *(np.array(s) for s in states))
+    if quantity.read is not None:
+        answers = quantity.read(mechanism, answers, engine)
+    hand = _read(answers, engine, name, quantity)
     return Comparison(
         quantity=quantity.name,
         robot=quantity.domain.label(mechanism),

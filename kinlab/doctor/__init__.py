@@ -23,6 +23,8 @@ module              what it holds
 ``verdicts``        Right in another way: with numbers for names, or another valid formula
 ``confusions/``     What people take differently: a known confusion, and what the engine would say
                     if one does
+``solutions/``      Inverse kinematics by hand: which branches are right, and which step of the
+                    closed form is not
 ``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
                     table is wrong?
 ``text/``           A formula as its writer typed it: its line, its numbers, its slips of the pen

@@ -21,14 +21,18 @@ from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
+    Ready,
     one_for_each_kind,
+    ready,
     several_taken_otherwise,
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.numbers import other_numbers
-from kinlab.doctor.confusions.parts import proved
+from kinlab.doctor.confusions.parts import Apart, apart, proved
+from kinlab.doctor.confusions.words import together
 from kinlab.doctor.derived import derivation
+from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Written
@@ -68,6 +72,8 @@ def examine(
     Raises:
         OptionError: the answers are not real numbers.
     """
+    if case.quantity.read is not None:
+        return judged(case, hand, engine, quantity, name)
     values = _read(hand, engine, name, quantity)
     case = replace(case, hand=values, again=case.again or _texts_again(case, engine, written))
     same = values.shape == engine.shape
@@ -80,19 +86,20 @@ def examine(
         rounded = tuple(dict.fromkeys(note for text in written.values() for note in text.rounded))
         form = "rounded" if rounded and not hidden else ""
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
-    excuse = _excuse(case, engine, written) if same else None
+    case, excuse = _excuse(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
+    split: Apart | None = None
     if excuse is None:
-        causes, partial, excuse = _explained(case, engine, written, worst)
+        causes, partial, excuse, split = _explained(case, engine, written, worst)
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
     if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
         partial = (meant,)
     ranked = _ranked(causes)
-    right_parts = proved(case, engine) if same and not ranked else ()
+    right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
@@ -115,8 +122,13 @@ def examine(
 
 def _explained(
     case: Case, engine: Array, written: dict[str, Written], worst: float
-) -> tuple[list[Cause], tuple[str, ...], Excuse | None]:
-    """What explains the difference, what is known of some entries, or why it is none."""
+) -> tuple[list[Cause], tuple[str, ...], Excuse | None, Apart | None]:
+    """What explains the difference, what is known of some entries, or why it is none.
+
+    Returns:
+        Causes; sentences on single entries; an excuse; and, where nothing explains the formula by
+        one step, its kinds of term.
+    """
     same = case.hand.shape == engine.shape
     silent = _without_value(case, engine) if same else None
     tried = readings(case)
@@ -131,11 +143,13 @@ def _explained(
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
     rough: list[Cause] = []
+    ways: Ready = []
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
-        derived = [] if written and causes else [*_by_derivation(loose, signs)]
-        every = [*_singly(loose, tried), *derived]
+        ways = [] if (written and causes) or signs else ready(case)
+        derived = taken_otherwise(loose, ways) if ways else []
+        every = [*_singly(loose, tried), *map(_as_steps, derived)]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         causes = _outranked(causes, exact)
@@ -148,9 +162,11 @@ def _explained(
         causes = [*_singly(case, changed), *causes] or rough
         near = None if causes else verdicts.to_digits(case, engine)
         if near is not None:
-            return [], (), near
+            return [], (), near, None
+    split: Apart | None = None
     if not causes and not signs:
-        found_ = one_for_each_kind(case) or several_taken_otherwise(case)
+        split = apart(case)
+        found_ = one_for_each_kind(case, ways, split) or several_taken_otherwise(case, ways, split)
         causes = [_as_steps(found) for found in found_]
     if not causes:
         causes = [*_in_pairs(case, tried)]
@@ -158,7 +174,7 @@ def _explained(
         # beside a list of slips only the likeliest reading: each costs a search of its own
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
-    return causes, partial, None
+    return causes, partial, None, split
 
 
 def _texts_again(
@@ -228,14 +244,6 @@ def _ranked(causes: list[Cause]) -> list[Cause]:
     return [cause for cause in kept if cause.cost <= kept[0].cost + _FAR][:_NAMED]
 
 
-def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
-    """Causes that are one step of a textbook's derivation, taken otherwise."""
-    if signs:
-        return
-    for found in taken_otherwise(case):
-        yield _as_steps(found)
-
-
 def _the_formula(does: Iterable[str]) -> str:
     return _("the formula {does}").format(does=_(" and ").join(does))
 
@@ -285,41 +293,52 @@ def _hidden(
             told = [s for s in _of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    said = verdicts.together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
+    said = together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
     remarks = [_("but it holds only for {numbers}").format(numbers=said)] if only else []
     return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
 
 
-def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
-    """Why answers that are not the engine's are right, if they are."""
+def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Case, Excuse | None]:
+    """Why answers that are not the engine's are right, if they are.
+
+    Beside others that are wrong, texts that are right with rounded numbers answer as the engine
+    does: nothing is to be explained in them.
+    """
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
-        return odd
+        return case, odd
     for said_of_all in rounding.roundings(case, engine, not written):
-        return Excuse("rounded", said_of_all)
+        return case, Excuse("rounded", said_of_all)
     if not written:
-        return verdicts.of_coefficients(case, engine)
-    off = [entry for entry in entries(case, engine) if not entry.agrees]
+        return case, verdicts.of_coefficients(case, engine)
+    remarks: list[str] = []
+    settled, right = np.array(case.hand), True
+    for entry in entries(case, engine):
+        if entry.agrees:
+            continue
+        said = _rounded(case, entry, written.get(entry.label))
+        right = right and said is not None
+        if said is not None:
+            remarks += said
+            place: Any = (slice(None), *entry.local)
+            settled[place] = entry.engine
+    if right and remarks:
+        return case, Excuse("rounded", tuple(dict.fromkeys(remarks)))
+    return replace(case, hand=settled), None
+
+
+def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] | None:
+    """Which rounded numbers make a text right, in words; None where it is not, so."""
+    if text is None:
+        return None
+    at = verdicts.numbers_at(case)
+    changed = stand_ins(text, at, entry.engine, entry.scale)
+    if changed is not None:
+        return [*text.rounded, *rounding_remarks(changed, at)]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
-    remarks: list[str] = []
-    for entry in off:
-        text = written.get(entry.label)
-        if text is not None:
-            at = verdicts.numbers_at(case)
-            changed = stand_ins(text, at, entry.engine, entry.scale)
-            if changed is None and derived is not None:
-                said = verdicts.of_data(text, entry, derived, case)
-                if said is None:
-                    return None
-                remarks.append(said)
-                continue
-            if changed is None:
-                return None
-            remarks += [*text.rounded, *rounding_remarks(changed, at)]
-            continue
-        return None
-    return Excuse("rounded", tuple(dict.fromkeys(remarks))) if remarks else None
+    said = verdicts.of_data(text, entry, derived, case) if derived is not None else None
+    return [said] if said is not None else None
 
 
 def prepare(
@@ -533,6 +552,8 @@ def _reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Ite
         if np.max(relative_errors(undone, engine)) >= np.max(relative_errors(case.hand, engine)):
             continue  # what undoes a slip brings the answer nearer
         for cause in _slips(changed, off, {})[0]:
+            if len(cause.kinds) > _LIST:
+                continue  # what leaves so much is not undone
             yield Cause(
                 _("the formula {does}, and then {slips}").format(
                     does=reading.sentence, slips=cause.sentence

@@ -16,6 +16,7 @@ from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.meanings import stands_for
 from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
 from kinlab.doctor.text.written import Written
@@ -184,7 +185,8 @@ def _read_better(
     """The second reading, in which rounded numbers are what they stand for, where it says more."""
     if first.agrees or not (second.agrees or second.causes):
         return first
-    here = " ".join(file.texts.get(entry, "") for entry in first.function.split(", "))
+    texts = (file.texts.get(entry, "") for entry in first.function.split(", "))
+    here = {digits for text in texts for digits in _DECIMAL.findall(text)}
     notes = tuple(told for digits, told in said.items() if digits in here)
     second = replace(second, error_before=first.error_before)
     if second.agrees:
@@ -240,6 +242,9 @@ def _answers(
 ) -> Answers:
     """The case, the engine's answers, every place there is, and the formulas with their values."""
     case, engine = prepare(robot, plain, (), samples, seed)
+    if case.quantity.read is not None:
+        joints = joint_values(case, formulas, titles, file.path)
+        return case, engine, list(joints), formulas, joints
     shape = engine.shape[1:]
     labels = [f"{plain}[{','.join(map(str, k))}]" for k in np.ndindex(shape)] if shape else [plain]
     for label in formulas:
@@ -265,7 +270,9 @@ def _answers(
 def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterable[Diagnosis]:
     case, engine, labels, formulas, values = answers
     if len(formulas) == len(labels):
-        hand = np.stack([values[label] for label in labels], axis=-1).reshape(engine.shape)
+        hand = np.stack([values[label] for label in labels], axis=-1)
+        if case.quantity.read is None:
+            hand = hand.reshape(engine.shape)
         shown = ", ".join(titles[label] for label in labels if label in titles)
         yield examine(case, hand, engine, plain, shown, formulas)
         return

@@ -185,7 +185,7 @@ def in_text(
     names = names_for(derived, arguments)
     here = environment(derived, states)
     right = derived.tree(poly)
-    extra = list(dict.fromkeys(t for form in _forms(derived, poly) for t in _split(form)))
+    forms = [_split(form) for form in _forms(derived, poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
     own = {name: values[:_POINTS] for name, values in here.items()}
     # names that are not there may be there as their numbers: whole ones too
@@ -197,7 +197,7 @@ def in_text(
     lines = []
     for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        lines.append(Line(written, names, at, np.array(target), extra, numeric=at is own))
+        lines.append(Line(written, names, at, np.array(target), forms, numeric=at is own))
     tried = [(line, 1) for line in lines if numbers] + [(line, 2) for line in lines]
     found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
     found = found or _part_by_part(lines[0], right)
@@ -231,7 +231,7 @@ def _part_by_part(line: Line, right: Node) -> list[Mended]:
     ways: list[list[Mended]] = []
     for at in parts(right, dict(line.at)):
         target = np.array(np.broadcast_to(tree.evaluate(right, at), line.target.shape))
-        part = Line(line.text, line.names, at, target, line.terms)
+        part = Line(line.text, line.names, at, target, line.forms)
         if np.max(np.abs(part.root.value - target)) <= TOLERANCES.effect_matches * line.scale:
             continue
         ways.append(mended(part, 2)[:_WAYS])

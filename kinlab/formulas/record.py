@@ -189,7 +189,9 @@ def formulas_in(module: Any) -> list[Formula]:
 def state_by_state(function: Function) -> Function:
     """Gives a function of one state the calling convention of ``Formula.function``.
 
-    It gets copies, so that it cannot change the states of the comparison.
+    It gets copies, so that it cannot change the states of the comparison. One that asks for one
+    argument more, of a name in :data:`SIDES` such as ``elbow``, gets +1 and then -1 for it, and
+    answers with a row for each.
 
     Raises:
         FormulaError: (when called) the function raised, or answered with changing shapes.
@@ -198,9 +200,15 @@ def state_by_state(function: Function) -> Function:
     def stacked(numbers: Any, *stacks: Any) -> Any:
         del numbers
         answers = []
+        sides = _sides(function, len(stacks))
         for k, state in enumerate(zip(*stacks, strict=True)):
             try:
-                answers.append(np.asarray(function(*(np.array(x) for x in state))))
+                rows = [np.asarray(function(*(np.array(x) for x in state), *s)) for s in sides]
+                answers.append(
+                    rows[0]
+                    if len(rows) == 1
+                    else np.concatenate([np.atleast_2d(row) for row in rows])
+                )
             except KinlabError:
                 raise
             except Exception as problem:  # whatever a user's function may raise
@@ -217,6 +225,21 @@ def state_by_state(function: Function) -> Function:
 
     stacked.__name__ = function_name(function)  # what messages call it
     return stacked
+
+
+SIDES = ("elbow", "branch", "sign", "mode", "side")
+"""Names for +1 and -1: which of two solutions."""
+
+
+def _sides(function: Function, count: int) -> tuple[tuple[float, ...], ...]:
+    """What a function gets behind a state: +1 and then -1, if its last argument asks for one."""
+    try:
+        known = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return ((),)
+    asked = [p.name for p in known if p.default is p.empty and p.kind is p.POSITIONAL_OR_KEYWORD]
+    asks = len(asked) == count + 1 and asked[-1] in SIDES
+    return ((1.0,), (-1.0,)) if asks else ((),)
 
 
 def names(value: str | Iterable[str]) -> tuple[str, ...]:

@@ -152,6 +152,8 @@ class Typing:
                     break
                 start, end = span
                 shown = self._raised("".join(self._shown(new[k:m], i == 0 or old[i - 1] == "(")))
+                if {*old[i:j], *new[k:m]} == {"+", "-"} and i < j and k < m:
+                    shown = shown.strip()  # a sign for a sign, in the same place
                 line = _joined(line[:start], shown, line[end:])
             else:
                 yield line

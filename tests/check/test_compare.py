@@ -135,7 +135,9 @@ def test_measure_is_relative_to_the_state_or_to_the_typical_one():
 def test_every_quantity_answers_with_one_entry_per_state():
     special = {"planar_determinant": "planar3r", "planar_position_determinant": "planar2r",
                "orthogonal_columns_cosine": "planar2r", "equal_columns_cosine": "planar2r",
-               "isotropic_jacobian": "planar2r", "excess_action_sign": "single_link"}  # fmt: skip
+               "isotropic_jacobian": "planar2r", "excess_action_sign": "single_link",
+               "inverse_kinematics_xy": "planar2r", "inverse_kinematics_xyz": "spatial3r",
+               "inverse_kinematics_xyzphi": "scara"}  # fmt: skip
     for name, quantity in quantities().items():
         if quantity.domain.name not in ("serial", "identity"):
             continue

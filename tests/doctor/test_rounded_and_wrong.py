@@ -128,3 +128,58 @@ def test_a_number_that_is_off_is_no_opposite_sign(energy):
 def test_a_power_is_written_back_as_it_was_typed():
     (found,) = judged(M12="m2*l2^2 + 2*m2*l1*l2*cos(theta2)")
     assert "correct: M12 = m2*l2^2 + m2*l1*l2*cos(theta2)" in str(found)
+
+
+def test_what_is_right_when_rounded_is_not_blamed_beside_a_wrong_sister():
+    (found,) = judged(M11="1.1 + 0.6*c2", M12="0.24 + 0.3*c2", M22="0.239")
+    assert found.causes[0].shown == {"M22": "0.24"}
+    torques = {
+        "tau1": "1.1*qdd1 + 0.6*c2*qdd1 + (0.24+0.3*c2)*qdd2 - 0.3*s2*(2*qd1*qd2+qd2**2) + 17.2*c1"
+        " + 5.89*c12",
+        "tau2": "(0.24+0.3*c2)*qdd1 + 0.24*qdd2 + 0.3*s2*qd1**2 + 5.8*c12",
+    }
+    (found,) = judged(**torques)
+    assert found.causes[0].shown == {"tau2": torques["tau2"].replace("5.8", "5.886")}
+    _right, wrong = judged(g2="9.8*m2*l2*c12", V="9.81*m1*l1*s1 + 9.81*m2*(l1*s1 - l2*s12)")
+    assert "9.8 " not in wrong.sentence
+    (wrong,) = judged(tau1=torques["tau1"], tau2=torques["tau2"].replace("s2*qd1", "c2*qd1"))
+    assert not any("opposite sign" in cause.sentence for cause in wrong.causes)
+
+
+def test_a_number_is_not_called_a_parameter_by_chance():
+    (found,) = judged("planar3r", M12="0.2875 + 0.1*c3 + 0.4*c2 + 0.063*c23")
+    assert found.agrees and "0.063 stands for 0.0625" in found.sentence  # m3*l1*l3/2, not I1
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "right", "kinds"),
+    [
+        ("J12", "0.4*c12", "-0.4*s12", ("sin/cos",)),
+        ("J11", "-l1*s1 + l1*c12", "-l1*s1 - l2*s12", ("index", "sin/cos")),
+        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_{1} + l_2 c_{12}", ("sin/cos",)),
+        (
+            "g1",
+            "(m2+m2)*g*l1*cos(q1) - m1*g*l2*cos(q1+q2)",
+            "(m1+m2)*g*l1*cos(q1) + m2*g*l2*cos(q1+q2)",
+            ("index", "sign", "index"),
+        ),
+        (
+            "T",
+            "m1*l1^2*qd1^2/2 + m2*(l1^2*qd1^2 - l2^2*(qd1-qd2)^2 + 2*l1*l2*cos(q2)*qd1*(qd1+qd2))/2",
+            "m1*l1^2*qd1^2/2 + m2*(l1^2*qd1^2 + l2^2*(qd1+qd2)^2 + 2*l1*l2*cos(q2)*qd1*(qd1+qd2))/2",
+            ("sign", "sign"),
+        ),
+        (
+            "tau1",
+            "m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*(2*qdd1+qdd2) + (m1+m2)*l1^2*qdd1"
+            " - m2*l1*l2*s2*qd2^2 + 2*m2*l1*l2*s2*qd1*qd1 + m2*l2*g*c12 + (m1+m2)*l1*g*c1",
+            "m2*l2^2*(qdd1+qdd2) + m2*l1*l2*c2*(2*qdd1+qdd2) + (m1+m2)*l1^2*qdd1"
+            " - m2*l1*l2*s2*qd2^2 - 2*m2*l1*l2*s2*qd2*qd1 + m2*l2*g*c12 + (m1+m2)*l1*g*c1",
+            ("sign", "index"),
+        ),
+    ],
+)
+def test_simple_slips_before_roundabout_ones_in_the_writers_line(entry, text, right, kinds):
+    (found,) = judged(**{entry: text})
+    assert found.causes[0].shown == {entry: right}
+    assert found.causes[0].kinds == kinds

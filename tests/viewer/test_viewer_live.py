@@ -116,6 +116,14 @@ def test_sliders_and_script_share_one_scene(tab, scene, server):  # noqa: F811
     )
 
 
+def test_a_slide_before_the_server_is_there_is_not_lost(tab, scene, server):  # noqa: F811
+    tab.add_init_script(
+        "addEventListener('DOMContentLoaded', () => page.setJoints([0.7, 0.8, 0.9]))"
+    )
+    tab.goto(server.url)
+    wait_for(lambda: np.array_equal(scene.q, [0.7, 0.8, 0.9]))
+
+
 def test_page_says_when_its_server_has_ended(chromium, scene):  # noqa: F811
     server = scene.serve(port=0)
     page = chromium.new_page()
@@ -150,7 +158,7 @@ def test_command_serves_and_ends_cleanly(number):
         urllib.request.urlopen(url, timeout=2)
 
 
-def wait_for(condition, seconds=5.0):
+def wait_for(condition, seconds=30.0):
     """Waits until something another thread does has happened."""
     end = time.monotonic() + seconds
     while not condition():

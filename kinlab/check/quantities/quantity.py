@@ -65,6 +65,10 @@ class Quantity:
             measured against this at least.
         joints: how many joints the mechanism must have, where not any number will do.
         sample: draws the states where the domain's own way does not serve (singular poses, ...).
+        read: how a hand formula's answers become what is compared, where they are not that
+            themselves: (mechanism, answers, engine's answers) to the shape of these.
+        asks: how a user's function is asked where not as it is: (mechanism, function) to one
+            whose answers ``read`` takes.
     """
 
     name: str
@@ -75,6 +79,8 @@ class Quantity:
     sample: Sampler | None = None
     scale: float = 0.0
     joints: int | None = None
+    read: Callable[[Any, Any, Array], Any] | None = None
+    asks: Callable[[Any, Callable[..., Any]], Callable[..., Any]] | None = None
 
     def states(self, mechanism: Any, samples: int, seed: int) -> tuple[Array, ...]:
         """Draws random states; the same seed gives the same ones, bit for bit.
@@ -92,6 +98,10 @@ class Quantity:
             drawn = self.domain.draws
         stacks = dict(zip(drawn, _drawn(draw, mechanism, drawn, samples, seed), strict=True))
         return tuple(stacks[name] for name in self.arguments)
+
+    def asked(self, mechanism: Any, function: Callable[..., Any]) -> Callable[..., Any]:
+        """A user's function as it is asked, one state at a time."""
+        return function if self.asks is None else self.asks(mechanism, function)
 
     def answers(self, mechanism: Any, samples: int, seed: int) -> Array:
         """The engine's answers at :meth:`states`, (samples, ...)."""

@@ -8,11 +8,20 @@ from functools import cache
 from typing import Any
 
 from kinlab.arrays import shown
-from kinlab.check.quantities import action, fivebar, identity, links, serial, special, table
+from kinlab.check.quantities import (
+    action,
+    fivebar,
+    identity,
+    inverse,
+    links,
+    serial,
+    special,
+    table,
+)
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.errors import NameUnknownError, near
 
-_MODULES = (serial, links, special, action, table, identity, fivebar)
+_MODULES = (serial, links, special, inverse, action, table, identity, fivebar)
 """Modules whose ``QUANTITIES`` belong to the list."""
 
 _INDEXED = re.compile(r"(\w+)\[([\d:,\s-]+)\]")

@@ -13,6 +13,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
+from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles
 from kinlab.doctor.confusions.operations import (
     Make,
     at_call,
@@ -32,6 +33,7 @@ from kinlab.doctor.confusions.words import (
     spelt,
     summands,
     times,
+    together,
     told,
     told_other,
     which,
@@ -64,6 +66,15 @@ _ALIKE = (
     "o_ o",
     "R_ R",
     "G q",
+    "c2 s2",
+    "c3 s3",
+    "c4 s4",
+    "c23 s23",
+    "beta psi",
+    "l2 l3",
+    "d3 d4",
+    "a2 a3",
+    "px py",
 )
 """Names that are easily taken for one another."""
 
@@ -104,8 +115,15 @@ def _steps(
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
+    found += [*exchanged(of), *of_angles(of)]
     if not singly:
-        return (*_everywhere(of), *_halves_exchanged(of), *found, *_updated(of, axes))
+        return (
+            *_everywhere(of),
+            *_halves_exchanged(of),
+            *found,
+            *_updated(of, axes),
+            *_short_loops(of, axes, n),
+        )
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return tuple(
@@ -144,9 +162,11 @@ def _of_line(
             continue
         if isinstance(node, ast.BinOp):
             yield from at_operator(node, axes, step)
+            yield from at_difference(node, step)
             yield from _own_for_next(node, shapes, step)
         elif isinstance(node, ast.Call):
             yield from at_call(node, step)
+            yield from at_angle(node, step)
         elif isinstance(node, ast.Attribute):
             does = _("has {new} for {old} (not transposed)").format(
                 new=spelt(node.value), old=spelt(node)
@@ -199,12 +219,13 @@ def _terms(
                 yield step(
                     kind, _("leaves {term} out").format(term=term), 1.0, (part, times(0, part))
                 )
-            yield step(
-                "sign",
-                _("has {term} with the opposite sign").format(term=term),
-                1.02,
-                (part, minus(part)),
-            )
+            if not _angle_alone(part):
+                yield step(
+                    "sign",
+                    _("has {term} with the opposite sign").format(term=term),
+                    1.02,
+                    (part, minus(part)),
+                )
             yield step(
                 "factor", _("counts {term} twice").format(term=term), 1.2, (part, times(2, part))
             )
@@ -215,6 +236,11 @@ def _terms(
             if len(parts) > 2 and isinstance(part, ast.Name | ast.Subscript) and not summed:
                 does = _that_of(about, part)
                 yield step("only one term", does, 1.0, (node, again(part)))
+
+
+def _angle_alone(node: ast.expr) -> bool:
+    """An acos: nobody loses the sign of an angle that has none."""
+    return isinstance(node, ast.Call) and name_of(node.func) == "arccos"
 
 
 def _that_of(what: str, part: ast.expr) -> str:
@@ -321,6 +347,28 @@ def _everywhere(of: Program) -> Iterator[Step]:
             )
             edits = tuple((x, again(new)) for _n, x in found)
             yield Step("index", in_every.format(does=does), edits, 1.05)
+
+
+def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
+    """Loops that leave their first or last joint out: what they make stays zero there."""
+    for loop in (x for statement in of.body for x in ast.walk(statement)):
+        if not isinstance(loop, ast.For) or n < 2:
+            continue
+        lines = [line for line in of.lines if line.statement in loop.body]
+        told_of = list(dict.fromkeys(_(line.about) for line in lines if line.about))
+        edits = []
+        for line in lines:
+            value, target = _value(line), _targets(line)[0]
+            if id(value) not in axes:
+                continue
+            sums = isinstance(target, ast.Name) and ast.unparse(target) in ast.unparse(value)
+            edits.append((value, again(target) if sums else times(0, value)))
+        if not told_of or not edits:
+            continue
+        for joint in (1, n):
+            does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
+            said = does.format(number=joint, line=together(told_of[-2:]))
+            yield Step("loop", said, tuple(edits), 1.12, joint)
 
 
 def _halves_exchanged(of: Program) -> Iterator[Step]:

@@ -116,9 +116,11 @@ class Walk:
         with np.errstate(all="ignore"):
             for statement in self.of.body:
                 self._run(statement)
-        return self._stacked(self.names[name])
+        return self.stacked(name)
 
-    def _stacked(self, value: Any) -> Array:
+    def stacked(self, name: str) -> Array:
+        """A name after the walk, (B, N, ...); of an indexed one all entries."""
+        value = self.names[name]
         if isinstance(value, dict):
             parts = [self._full(value[k]) for k in range(1, max(value) + 1) if k in value]
             return np.stack(parts, axis=2)
@@ -309,6 +311,17 @@ class Walk:
             out = np.stack(np.broadcast_arrays(*x), axis=-1)
         elif name == "twist":
             out = np.concatenate(np.broadcast_arrays(*x), axis=-1)
+        elif name == "skew":
+            out = skew(x[0])
+        elif name == "blocks":
+            rows = [np.concatenate(np.broadcast_arrays(*x[k : k + 2]), axis=-1) for k in (0, 2)]
+            out = np.concatenate(np.broadcast_arrays(*rows), axis=-2)
+        elif name == "motion":
+            out = _product(_crossing(x[0]), x[1])
+        elif name == "force":
+            out = -_product(np.swapaxes(_crossing(x[0]), -1, -2), x[1])
+        elif name == "both":
+            out = x[0] * np.eye(x[0].shape[-1])
         elif name == "diagonal":
             out = x[0][..., None] * np.eye(x[0].shape[-1])
         elif name == "inv":
@@ -326,8 +339,10 @@ class Walk:
             out = np.moveaxis(x[0], -1, -3)
         elif name == "norm":
             out = np.sqrt(np.sum(x[0] * x[0], axis=-1))
+        elif name == "clamp":
+            out = np.clip(x[0], -1.0, 1.0)
         else:
-            out = getattr(np, name)(x[0])
+            out = getattr(np, name)(*x)
         return np.asarray(out)
 
 
@@ -381,6 +396,21 @@ def _product(one: Array, two: Array) -> Array:
         raise Absent
     both: Array = np.matmul(one, two)
     return both
+
+
+def skew(vector: Array) -> Array:
+    """The matrix of the cross product with a vector."""
+    turned: Array = np.cross(vector[..., None, :], np.eye(3))
+    return np.swapaxes(turned, -1, -2)
+
+
+def _crossing(twist: Array) -> Array:
+    """The matrix of a twist's product with a twist, the linear part first."""
+    if twist.shape[-1] != 6:
+        raise Absent
+    moving, turning = skew(twist[..., :3]), skew(twist[..., 3:])
+    top = np.concatenate([turning, moving], axis=-1)
+    return np.concatenate([top, np.concatenate([0 * turning, turning], axis=-1)], axis=-2)
 
 
 def _regular(matrix: Array) -> Array:

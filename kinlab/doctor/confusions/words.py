@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from kinlab.doctor.confusions.walk import again
 from kinlab.host.language import N_, _
@@ -71,6 +71,8 @@ _SPELT = {
     "cb": "P_C",
     "both": "R",
 }
+
+_CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
 
 KNOWN = {
     "w x (I w)": N_("the gyroscopic term"),
@@ -149,14 +151,22 @@ def name_of(node: ast.expr) -> str:
 
 
 def meant(node: ast.expr) -> str:
-    found = MEANT.get(name_of(node))
+    """What a name stands for."""
+    found = _meaning(node)
     return spelt(node) if found is None else _(found)
+
+
+def _meaning(node: ast.expr) -> str | None:
+    """Of l1, l2, z only where they have an index: alone they are a serial arm's, and a height."""
+    alone = isinstance(node, ast.Name) and node.id in ("l1", "l2", "z")
+    numbered = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Constant)
+    return None if alone or numbered else MEANT.get(name_of(node))
 
 
 def told(node: ast.expr) -> str:
     """A term, with what it is called."""
     text = spelt(node)
-    called = KNOWN.get(text, MEANT.get(name_of(node), ""))
+    called = KNOWN.get(text) or _meaning(node)
     return f"{text} ({_(called)})" if called and called != text else text
 
 
@@ -166,6 +176,8 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
         return f"{float(str(node.value)):g}"
     if isinstance(node, ast.Subscript):
         name = spelt(node.value)
+        if isinstance(node.slice, ast.Constant):
+            return f"{name}{ast.unparse(node.slice)}"
         index = ast.unparse(node.slice).replace(" ", "")
         return (
             name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"
@@ -184,8 +196,13 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
             return f"D_{node.func.id}"
         if node.func.id == "solve":
             return f"{spelt(node.args[0])}^-1 {_closed(node.args[1], indexed)}"
-        return f"{node.func.id}({', '.join(spelt(x, indexed) for x in node.args)})"
+        if node.func.id == "clamp":
+            return spelt(node.args[0], indexed)
+        called = _CALLED.get(node.func.id, node.func.id)
+        return f"{called}({', '.join(spelt(x, indexed) for x in node.args)})"
     if isinstance(node, ast.BinOp):
+        if isinstance(node.op, ast.Pow) and ast.unparse(node.right) == "1":
+            return spelt(node.left, indexed)
         if is_sum(node):
             sign = "+" if isinstance(node.op, ast.Add) else "-"
             return f"{spelt(node.left, indexed)} {sign} {spelt(node.right, indexed)}"
@@ -236,3 +253,12 @@ def summands(node: ast.expr) -> Iterator[ast.expr]:
         yield from summands(node.right)
     else:
         yield node
+
+
+def together(pieces: Iterable[str]) -> str:
+    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
+    told, *rest = [*pieces] or [""]
+    pair = _("{first} and {last}")
+    for piece in rest:
+        told = pair.format(first=told, last=piece)
+    return told

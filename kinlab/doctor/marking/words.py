@@ -112,6 +112,11 @@ OTHERS = (
     N_("sum"),
     N_("number"),
     N_("gravity added"),
+    N_("arguments exchanged"),
+    N_("quadrant"),
+    N_("supplementary angle"),
+    N_("root"),
+    N_("branches mixed"),
 )
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 

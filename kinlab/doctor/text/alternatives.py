@@ -14,7 +14,17 @@ from fractions import Fraction
 
 import numpy as np
 
-from kinlab.doctor.text.line import Change, Line, Place, inside_call, is_sum, is_term, words_in
+from kinlab.arrays import Array
+from kinlab.doctor.text.line import (
+    Change,
+    Line,
+    Place,
+    inside_call,
+    is_product,
+    is_sum,
+    is_term,
+    words_in,
+)
 from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
@@ -95,7 +105,7 @@ def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
 
 
 def _number(line: Line, place: Place) -> None:
-    idle = place.above is not None and _is_product(place.above.node)
+    idle = place.above is not None and is_product(place.above.node)
     for shown, size in _NUMBERS.items():
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
             line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
@@ -212,46 +222,44 @@ def _as_factor(line: Line, place: Place) -> None:
         line.instead(place, f"{wrapped}**2", place.value**2, "power", cost)
     if not is_term(place):
         return
-    extra = 0.3 if is_sum(node) else 0.0
+    start, end = place.span
+    first = start + len(piece) - len(piece.lstrip("- "))
+    whole = is_sum(node)
+    extra = 0.3 if whole else 0.0
     body = wrapped if is_sum(node) else piece
     numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
     for shown, size in _FACTORS.items():
         new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
         cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
-        line.instead(place, new, size * place.value, "factor", cost)
+        span = (end, end, shown) if shown[0] == "/" else (first, first, f"{shown}*")
+        line.instead(place, new, size * place.value, "factor", cost, None if whole else span)
     signed = place.above is not None and isinstance(place.above.node, ast.BinOp)
     if not signed or place.role == 0:
-        line.instead(place, _turned(line, place), -place.value, "sign", 1.0 + extra)
+        minus = piece.startswith("-")
+        span = (start, first, "") if minus else (start, start, "-")
+        turned = _turned(line, place)
+        line.instead(
+            place, turned, -place.value, "sign", 1.0 + extra, None if is_sum(node) else span
+        )
     for name, value in line.atoms.items():
         for power, more in ((1, 0.0), (2, 0.4)):
             word = name if power == 1 else f"{name}**{power}"
-            change = Change(
-                place.span[1],
-                place.span[1],
-                f"*{word}",
-                "missing factor",
-                1.4 + more + extra,
-                N_("the factor {factor} is missing in {term}"),
-                pieces={"factor": word, "term": piece},
-            )
-            if is_sum(node):
-                change = replace(change, start=place.span[0], new=f"{body}*{word}")
-            line.put(place, place.value * value**power, change)
+            _times(line, place, word, value**power, 1.4 + more + extra)
     moving = [tree.sym(f"{x}{i + 1}") for x in line.names.letters for i in range(line.names.n)]
     waves = [tree.call(f, angle) for angle in line.names.angles for f in ("cos", "sin")]
     for factor in (*moving, *waves):
-        new = f"{body}*{line.spelled(factor)}"
-        times = place.value * tree.evaluate(factor, line.at)
-        change = Change(
-            place.span[0],
-            place.span[1],
-            new,
-            "missing factor",
-            1.45 + extra,
-            N_("the factor {factor} is missing in {term}"),
-            pieces={"factor": line.spelled(factor), "term": piece},
-        )
-        line.put(place, times, change)
+        _times(line, place, line.spelled(factor), tree.evaluate(factor, line.at), 1.45 + extra)
+
+
+def _times(line: Line, place: Place, word: str, value: Array, cost: float) -> None:
+    """A factor that is missing behind a term, or behind a sum between parentheses."""
+    piece, (start, end) = line.segment(place), place.span
+    told = N_("the factor {factor} is missing in {term}")
+    pieces = {"factor": word, "term": piece}
+    change = Change(end, end, f"*{word}", "missing factor", cost, told, pieces=pieces)
+    if is_sum(place.node):
+        change = replace(change, start=start, new=f"({piece})*{word}")
+    line.put(place, place.value * value, change)
 
 
 def _turned(line: Line, place: Place) -> str:
@@ -376,10 +384,6 @@ def exchanged(text: str, swap: tuple[tuple[str, str], ...]) -> str:
     """The text with words exchanged, all at once."""
     table = dict(swap)
     return re.sub(r"[A-Za-z_]\w*", lambda m: table.get(m.group(), m.group()), text)
-
-
-def _is_product(node: ast.expr) -> bool:
-    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Mult, ast.Div))
 
 
 def _is_exponent(place: Place) -> bool:

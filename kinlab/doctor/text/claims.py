@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from kinlab.check.quantities.registry import quantities
+from kinlab.doctor.text.joints import joint_claimed
 from kinlab.errors import ExpressionError, near
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import is_planar
@@ -63,5 +64,8 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     vector = _VECTOR.fullmatch(entry)
     if vector and vector.group(1) in _VECTOR_OF:
         return f"{_VECTOR_OF[vector.group(1)]}[{int(vector.group(2)) - 1}]"
+    joint = joint_claimed(entry, table)
+    if joint:
+        return joint
     choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
     raise ExpressionError(f"{entry!r} names no quantity; {choices}")

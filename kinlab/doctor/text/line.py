@@ -13,7 +13,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations_with_replacement
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -80,7 +80,7 @@ class Line:
         names: what may stand in it.
         at: values of the robot's names at random points.
         target: the values it should have.
-        terms: the derived formula's terms, which may be missing.
+        forms: the derived formula in the ways in which people write it, term by term.
         numeric: whether the names have the robot's own numbers: then nothing is believed that
             rests on the value of a name.
     """
@@ -89,7 +89,7 @@ class Line:
     names: Names
     at: Mapping[str, Array]
     target: Array
-    terms: list[Node]
+    forms: list[list[Node]]
     numeric: bool = False
     places: list[Place] = field(default_factory=list)
     changes: list[Change] = field(default_factory=list)
@@ -100,6 +100,11 @@ class Line:
         self.source = self.text.text
         self.root = self._place(ast.parse(self.source, mode="eval").body, None, 0)
         self.scale = float(np.max(np.abs(self.target))) or float(np.max(np.abs(self.root.value)))
+
+    @cached_property
+    def terms(self) -> list[Node]:
+        """The derived formula's terms, which may be missing."""
+        return list(dict.fromkeys(term for form in self.forms for term in form))
 
     def _place(self, node: ast.expr, above: Place | None, role: int) -> Place:
         # children need their parent and the parent its value: values first
@@ -136,7 +141,8 @@ class Line:
 
     def spelled(self, node: Node) -> str:
         """A piece of a formula as the writer would write it."""
-        return tree.to_text(respelled(node, self.spelling, self.short))
+        plain = tree.to_text(respelled(node, self.spelling, self.short))
+        return re.sub(r" ([-+]) ", rf"{self.gap}\1{self.gap}", plain)
 
     @cached_property
     def atoms(self) -> dict[str, Array]:
@@ -216,9 +222,17 @@ class Line:
                 found.setdefault(id(place.above), []).append(place)
         return {key: sorted(value, key=lambda p: p.role) for key, value in found.items()}
 
-    def instead(self, place: Place, new: str, value: Array, kind: str, cost: float) -> None:
-        """A piece in place of a piece."""
-        start, end = place.span
+    def instead(
+        self,
+        place: Place,
+        new: str,
+        value: Array,
+        kind: str,
+        cost: float,
+        span: tuple[int, int, str] | None = None,
+    ) -> None:
+        """A piece in place of a piece; ``span`` is what of it is really typed anew, and what."""
+        start, end, put = span or (*place.span, new)
         old = self.segment(place)
         told, pieces = self.told(
             place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
@@ -226,7 +240,7 @@ class Line:
         if pieces.get("term") == old:
             told = N_("{old} should be {new}")
         pieces |= {"old": old, "new": new}
-        self.put(place, value, Change(start, end, new, kind, cost, told, pieces=pieces))
+        self.put(place, value, Change(start, end, put, kind, cost, told, pieces=pieces))
 
     def told(self, place: Place, alone: str, inside: str) -> tuple[str, dict[str, str]]:
         """One of two sentences: with the term that a place is in, where it is worth showing."""
@@ -265,8 +279,14 @@ def words_in(text: str) -> list[str]:
     return re.findall(r"[A-Za-z_]\w*", text)
 
 
-def is_sum(node: ast.expr) -> bool:
+def is_sum(node: ast.AST | None) -> TypeGuard[ast.BinOp]:
+    """Whether something is a sum or difference of two."""
     return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub))
+
+
+def is_product(node: ast.AST | None) -> TypeGuard[ast.BinOp]:
+    """Whether something is a product or quotient of two."""
+    return isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Mult, ast.Div))
 
 
 def is_term(place: Place) -> bool:

@@ -75,6 +75,13 @@ class Meanings:
                 found.append(rod)
         return [*map(sum, _subsets(found)), *(a + b for a, b in combinations(found, 2))]
 
+    def _without(self, name: str) -> Meanings:
+        return Meanings({other: x for other, x in self.own.items() if other != name})
+
+    def product(self, value: float) -> bool:
+        """Whether a value is a product or sum of the robot's numbers: 0.0625 may be no I1."""
+        return bool(np.any(np.abs(self.products - value) <= TOLERANCES.same_relation * value))
+
     def holds(self, value: float) -> bool:
         """Whether a value is one of them, or zero."""
         size = abs(value)
@@ -96,7 +103,7 @@ class Meanings:
     def named(self, value: float) -> str:
         """A number as one would write it exactly: g = 9.81, 1/3, pi/2, sqrt(2)/2."""
         name = self.parameter(value)
-        if name is not None:
+        if name is not None and (name == "g" or not self._without(name).product(value)):
             return f"{name} = {self.own[name]:.10g}"
         for word, unit in _UNITS.items():
             found = Fraction(value / unit).limit_denominator(_SIMPLE)

@@ -6,14 +6,24 @@ import ast
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, permutations
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.alternatives import study
-from kinlab.doctor.text.line import Change, Line, inside_call, is_sum, is_term, words_in
+from kinlab.doctor.text.line import (
+    Change,
+    Line,
+    Place,
+    inside_call,
+    is_product,
+    is_sum,
+    is_term,
+    words_in,
+)
 from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
+from kinlab.formulas import tree
 from kinlab.tolerances import TOLERANCES
 
 _TRIED = 60
@@ -22,6 +32,10 @@ _LONG = 8
 _EXCHANGED = 0.6
 """What it costs to exchange a whole term beside mending it."""
 _TERMS = {"extra term", "missing term"}
+_TERMS_OFF = 3
+"""Terms with slips up to which each is put right by itself."""
+_FAR = 4
+"""Names in a formula from which on three slips in several terms are believed."""
 
 
 @dataclass(frozen=True)
@@ -56,28 +70,98 @@ def mended(line: Line, most: int = 3) -> list[Mended]:
         if good:
             return sorted(good, key=lambda m: m.cost)
         found = more(line, effects, wanted, allowed)
-    return sorted(_checked(line, found), key=lambda m: m.cost)
+    several = _term_by_term(line, effects, allowed) if most > 2 else []
+    return sorted([*_checked(line, found), *several], key=lambda m: m.cost)
 
 
 def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tuple[int, ...]]:
     found = [tuple(pair) for pair in pairs_adding_up(effects, wanted, allowed)]
-    value = line.root.value
     for place in line.places:
         if not is_term(place) or inside_call(place) or is_sum(place.node):
             continue
-        start, end = place.span
-        inside = [
-            k
-            for k, c in enumerate(line.changes)
-            if start <= c.start and c.end <= end and not c.everywhere and c.kind != "missing term"
-        ]
-        if len(inside) < 2:
-            continue
-        slope = line.climbed(place, np.zeros(line.count))
-        own = value - slope  # the share of this term in the whole
-        pairs = pairs_in_product(effects[inside], wanted, own)
-        found += [(inside[a], inside[b]) for a, b in pairs]
+        inside = _inside(line, place)
+        if len(inside) > 1:
+            pairs = pairs_in_product(effects[inside], wanted, _share(line, place))
+            found += [(inside[a], inside[b]) for a, b in pairs]
     return _cheapest(line, found)
+
+
+def _inside(line: Line, place: Place) -> list[int]:
+    """The changes within a term, and of the sign in front of it."""
+    start, end = place.span
+    if place.role == 1 and place.above is not None and is_sum(place.above.node):
+        start = line.siblings[id(place.above)][0].span[1]
+    return [
+        k
+        for k, c in enumerate(line.changes)
+        if start <= c.start and c.end <= end and not c.everywhere and c.kind not in _TERMS
+    ]
+
+
+def _share(line: Line, place: Place) -> Array:
+    """What a term adds to the whole."""
+    share: Array = line.root.value - line.climbed(place, np.zeros(line.count))
+    return share
+
+
+def _term_by_term(line: Line, effects: Array, allowed: float) -> list[Mended]:
+    """Slips in several terms of a sum: each term is put right beside the derived one it may be."""
+    places = _summands(line, line.root)
+    shares = [_share(line, place) for place in places]
+    good: list[Mended] = []
+    for form in line.forms:
+        if not 2 <= len(places) == len(form):
+            continue
+        goals = [np.broadcast_to(tree.evaluate(t, line.at), (line.count,)) for t in form]
+        left = list(range(len(goals)))
+        off = []
+        for place, share in zip(places, shares, strict=True):
+            same = [k for k in left if np.max(np.abs(goals[k] - share)) <= allowed]
+            left = [k for k in left if k not in same[:1]]
+            off += [] if same else [(place, share)]
+        if not 2 <= len(off) <= _TERMS_OFF:
+            continue
+        ways = {
+            (i, k): _of_term(line, effects, place, share, goals[k], allowed)
+            for i, (place, share) in enumerate(off)
+            for k in left
+        }
+        for order in permutations(left):
+            chosen = [ways[i, k] for i, k in enumerate(order)]
+            if all(chosen):
+                good += _checked(line, [tuple(n for way in chosen for n in way)], _FAR)
+    return good
+
+
+def _summands(line: Line, place: Place) -> list[Place]:
+    if not is_sum(place.node):
+        return [place]
+    return [one for part in line.siblings[id(place)] for one in _summands(line, part)]
+
+
+def _of_term(
+    line: Line, effects: Array, place: Place, share: Array, goal: Array, allowed: float
+) -> tuple[int, ...]:
+    """The likeliest change, or the likeliest two, that make one term another."""
+    inside = _inside(line, place)
+    if not inside:
+        return ()
+    rows, wanted = effects[inside], goal - share
+    alone = np.flatnonzero(np.max(np.abs(rows - wanted), axis=1) <= allowed)
+    if len(alone):
+        return _cheapest(line, [(inside[k],) for k in alone])[0]
+    pairs = [*pairs_in_product(rows, wanted, share), *pairs_adding_up(rows, wanted, allowed)]
+    found = [(inside[a], inside[b]) for a, b in pairs]
+    apart: list[tuple[int, ...]] = [
+        way for way in found if not _overlap([line.changes[k] for k in way])
+    ]
+    return next(iter(_cheapest(line, apart)), ())
+
+
+def _overlap(changes: Sequence[Change]) -> bool:
+    """Whether two changes touch the same letters."""
+    ranked = sorted(changes, key=lambda c: (c.start, c.end))
+    return any(a.end > b.start or a.everywhere or b.everywhere for a, b in pairwise(ranked))
 
 
 def _cheapest(line: Line, found: list[tuple[int, ...]]) -> list[tuple[int, ...]]:
@@ -115,18 +199,21 @@ def together(line: Line, changes: tuple[Change, ...]) -> list[Mended]:
     return done
 
 
-def _checked(line: Line, found: list[tuple[int, ...]]) -> Iterator[Mended]:
-    """Those that really give the values wanted once they are written down."""
+def _checked(line: Line, found: list[tuple[int, ...]], words: int = _LONG) -> Iterator[Mended]:
+    """Those that really give the values wanted once they are written down.
+
+    Three slips are believed of a formula with so many words.
+    """
     seen: set[str] = set()
     for way in found:
         changes = tuple(sorted((line.changes[k] for k in way), key=lambda c: (c.start, c.end)))
-        if any(a.end > b.start or a.everywhere or b.everywhere for a, b in pairwise(changes)):
+        if _overlap(changes):
             continue
         text = rewritten(line.source, changes)
         if text is None or text in seen:
             continue
         seen.add(text)
-        if (len(changes) > 2 and len(words_in(line.source)) < _LONG) or not _same_formula(changes):
+        if (len(changes) > 2 and len(words_in(line.source)) < words) or not _same_formula(changes):
             continue
         values = replace(line.text, text=text).values(line.at)
         with np.errstate(all="ignore"):
@@ -145,6 +232,8 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     text = source
     for change in sorted(changes, key=lambda c: -c.start):
         text = text[: change.start] + change.new + text[change.end :]
+    if any(change.new.startswith("-") for change in changes):
+        text = _signs_in_front(text)
     text = re.sub(r"^\s*\+\s*", "", text.strip())
     text = re.sub(r"\(\s*\+\s*", "(", text)
     text = re.sub(r"(^|\()\s*-\s+", r"\1-", re.sub(r"  +", " ", text))
@@ -152,4 +241,32 @@ def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
         ast.parse(text, mode="eval")
     except SyntaxError:
         return None
+    return text
+
+
+def _signs_in_front(text: str) -> str:
+    """The text with a sign inside a product in front of its term: l2*-s12 as -l2*s12."""
+    try:
+        root = ast.parse(text, mode="eval").body
+    except SyntaxError:
+        return text
+    above = {id(part): node for node in ast.walk(root) for part in ast.iter_child_nodes(node)}
+    for node in ast.walk(root):
+        if not isinstance(node, ast.UnaryOp) or not isinstance(node.op, ast.USub):
+            continue
+        term: ast.AST = node
+        while is_product(above.get(id(term))):
+            term = above[id(term)]
+        at, start = node.col_offset, term.col_offset  # type: ignore[attr-defined]
+        if at == start:
+            continue
+        bare = f"{text[:at]}{text[at + 1 :].lstrip()}"
+        over = above.get(id(term))
+        if is_sum(over) and over.right is term:
+            sign = max(text.rfind("+", 0, start), text.rfind("-", 0, start))
+            turned = {"+": "-", "-": "+"}[text[sign]]
+            return _signs_in_front(f"{text[:sign]}{turned}{bare[sign + 1 :]}")
+        if text[start] == "-":
+            return _signs_in_front(bare[:start] + bare[start + 1 :].lstrip())
+        return _signs_in_front(f"{bare[:start]}-{bare[start:]}")
     return text

@@ -653,7 +653,9 @@ const kinlab = (() => {
       const address = new URL("socket", location);
       address.protocol = location.protocol === "https:" ? "wss:" : "ws:";
       const socket = new WebSocket(address);
+      let early = null;  // where the sliders were moved to before the server could be told
       socket.binaryType = "arraybuffer";
+      socket.onopen = () => early && socket.send(JSON.stringify({ q: early }));
       socket.onmessage = ({ data }) => {
         if (data instanceof ArrayBuffer) {
           viewer.handle_command_bytearray(new Uint8Array(data));
@@ -666,7 +668,10 @@ const kinlab = (() => {
       socket.onclose = () => {
         report.ended.hidden = false;
       };
-      api.onjoints = (q) => socket.readyState === 1 && socket.send(JSON.stringify({ q }));
+      api.onjoints = (q) => {
+        if (socket.readyState === WebSocket.CONNECTING) early = q;
+        else if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify({ q }));
+      };
     }
 
     report.ended = element("div", { class: "warning", id: "ended" },

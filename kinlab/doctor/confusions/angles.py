@@ -1,0 +1,143 @@
+"""What one can do otherwise where an angle is found: atan2, acos, roots, quotients, exchanges.
+
+The arguments of atan2 exchanged, or atan of their quotient, which loses the quadrant; the
+supplementary angle; the root forgotten; ``a/2*l1*l2`` for ``a/(2*l1*l2)``; l1 and l2 exchanged.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+from kinlab.doctor.confusions.operations import Make
+from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
+from kinlab.doctor.confusions.words import is_sum, minus, name_of, spelt, times
+from kinlab.host.language import _
+
+_EXCHANGED = (("l1", "l2"), ("l2", "l3"), ("x", "y"), ("px", "py"), ("s2", "c2"), ("s3", "c3"))
+"""Names that are taken for each other, both at once."""
+
+
+def at_angle(node: ast.Call, step: Make) -> Iterator[Step]:
+    """At a call that gives an angle, or a root."""
+    assert isinstance(node.func, ast.Name)
+    name, x = node.func.id, node.args
+    if name == "arctan2":
+        turned = ast.Call(node.func, [x[1], x[0]], [])
+        does = _("has {new} for {old} (the arguments exchanged)")
+        yield step(
+            "arguments exchanged",
+            does.format(new=spelt(turned), old=spelt(node)),
+            1.0,
+            (node, turned),
+        )
+        plain = ast.Call(ast.Name("arctan"), [ast.BinOp(x[0], ast.Div(), x[1])], [])
+        does = _("has {new} for {old} (the quadrant is lost)")
+        yield step("quadrant", does.format(new=spelt(plain), old=spelt(node)), 1.0, (node, plain))
+        for part in x:
+            other = [minus(y) if y is part else y for y in x]
+            does = _("has {new} for {old} (the sign)")
+            new = ast.Call(node.func, other, [])
+            yield step("sign", does.format(new=spelt(new), old=spelt(node)), 1.06, (node, new))
+        if name_of(x[0])[:1] == "s" and name_of(x[1])[:1] == "c":
+            for inverse, part in (("arcsin", x[0]), ("arccos", x[1])):
+                alone = ast.Call(ast.Name(inverse), [part], [])
+                does = _("has {new} for {old} (the quadrant is lost)")
+                does = does.format(new=spelt(alone), old=spelt(node))
+                cost = 1.0 if inverse == "arcsin" else 1.03
+                yield step("quadrant", does, cost, (node, alone))
+    elif name == "arccos":
+        turned = ast.Call(node.func, [minus(x[0])], [])
+        does = _("has the supplementary angle {new} for {old}")
+        yield step(
+            "supplementary angle",
+            does.format(new=spelt(turned), old=spelt(node)),
+            1.01,
+            (node, turned),
+        )
+        wave = ast.Call(ast.Name("arcsin"), x, [])
+        does = _("has {new} for {old} (sin/cos)")
+        yield step("sin/cos", does.format(new=spelt(wave), old=spelt(node)), 1.05, (node, wave))
+    elif name == "sqrt":
+        does = _("leaves the root out: {new} for {old}")
+        yield step("root", does.format(new=spelt(x[0]), old=spelt(node)), 1.05, (node, x[0]))
+
+
+def at_difference(node: ast.BinOp, step: Make) -> Iterator[Step]:
+    """``beta`` for ``pi - beta``; ``a/b*c`` for ``a/(b*c)``."""
+    if isinstance(node.op, ast.Sub) and name_of(node.left) == "pi":
+        does = _("has the supplementary angle {new} for {old}")
+        does = does.format(new=spelt(node.right), old=spelt(node))
+        yield step("supplementary angle", does, 0.99, (node, node.right))
+    if (
+        isinstance(node.op, ast.Div)
+        and isinstance(node.right, ast.BinOp)
+        and not is_sum(node.right)
+    ):
+        new: ast.expr = node.left
+        factors = list(_factors(node.right))
+        for k, factor in enumerate(factors):
+            new = ast.BinOp(new, ast.Mult() if k else ast.Div(), factor)
+        if len(factors) > 1:
+            does = _("has {new} for {old} (parentheses)")
+            yield step(
+                "parentheses", does.format(new=spelt(new), old=spelt(node)), 1.05, (node, new)
+            )
+
+
+def _factors(node: ast.expr) -> Iterator[ast.expr]:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        yield from _factors(node.left)
+        yield from _factors(node.right)
+    else:
+        yield node
+
+
+def exchanged(of: Program) -> Iterator[Step]:
+    """Two names each for the other, in one line and in every line."""
+    for one, two in _EXCHANGED:
+        every: list[tuple[ast.expr, ast.expr]] = []
+        for line in of.lines:
+            found = [
+                node
+                for node in ast.walk(_assigned(line).value)
+                if isinstance(node, ast.Name) and node.id in (one, two) and line.about
+            ]
+            edits = [(x, again(ast.Name(two if x.id == one else one))) for x in found]
+            every += edits
+            if len({x.id for x in found}) == 2:
+                does = _("has {one} and {two} exchanged in {line}")
+                said = does.format(one=one, two=two, line=_(line.about))
+                yield Step("exchanged", said, tuple(edits), 1.02)
+        if len({x.id for x, _new in every if isinstance(x, ast.Name)}) == 2:
+            does = _("has {one} and {two} exchanged in every line")
+            yield Step("exchanged", does.format(one=one, two=two), tuple(every), 1.03)
+
+
+def of_angles(of: Program) -> Iterator[Step]:
+    """The lines of a closed form: an angle with the other sign, a length left out of every line."""
+    made = {name_of(target) for line in of.lines for target in _assigned(line).targets}
+    places: dict[str, list[ast.expr]] = {}
+    for line in of.lines:
+        target, whole = _assigned(line).targets[0], _assigned(line).value
+        if not line.about:
+            continue
+        angle = isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Constant)
+        if angle and is_sum(whole):
+            does = _("has {what} with the opposite sign").format(what=_(line.about))
+            yield Step("sign", does, ((whole, ast.UnaryOp(ast.USub(), again(whole))),), 1.02)
+        for node in ast.walk(whole):
+            if isinstance(node, ast.Name) and re.fullmatch(r"[lad]\d", node.id):
+                places.setdefault(node.id, []).append(node)
+    for name, found in places.items():
+        if len(found) > 1 and name not in made:
+            does = _("leaves {term} out in every line").format(term=name)
+            yield Step("missing term", does, tuple((x, times(0, x)) for x in found), 1.06)
+            does = _("has {term} with the opposite sign in every line").format(term=name)
+            yield Step("sign", does, tuple((x, minus(x)) for x in found), 1.06)
+
+
+def _assigned(line: Assignment) -> ast.Assign:
+    assert isinstance(line.statement, ast.Assign)
+    return line.statement

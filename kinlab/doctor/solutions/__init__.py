@@ -1,0 +1,11 @@
+"""Inverse kinematics by hand: which branches are right, and which step of the closed form is not.
+
+================  ================================================================================
+module            what it holds
+================  ================================================================================
+``closed_forms``  The closed forms of inverse kinematics as the textbooks derive them, walked branch
+                  by branch
+``verdict``       Inverse kinematics judged: right where Pinocchio finds the tool at the target, on
+                  any branch
+================  ================================================================================
+"""

@@ -1,0 +1,327 @@
+"""Inverse kinematics judged: right where Pinocchio finds the tool at the target, on any branch.
+
+What is right says how many targets were tried and which branches are given; what is wrong, which of
+its solutions are right and which step of the textbooks' closed form is taken otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array, first_largest
+from kinlab.check.compare import error_sizes
+from kinlab.check.diagnosis import Cause, Diagnosis
+from kinlab.check.quantities.inverse import TASKS, Task, as_solutions, reached
+from kinlab.doctor.changes import Case
+from kinlab.doctor.confusions.derivations import (
+    Found,
+    ready,
+    several_taken_otherwise,
+    taken_otherwise,
+    with_these,
+)
+from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
+from kinlab.errors import KinlabError
+from kinlab.host.language import N_, _, ngettext
+from kinlab.tolerances import TOLERANCES
+
+_FAR = 0.15
+"""Cost beyond the likeliest cause's from which another is not told."""
+_FEWEST = 10
+"""Targets that must be explained at least."""
+_BEYOND = 50.0
+"""Times the place of a target: out of every arm's reach that has no slide."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solutions:
+    """A hand formula's solutions beside the targets.
+
+    Attributes:
+        case: its case.
+        q: (N, m, n), NaN where there is none.
+        errors: how far Pinocchio finds the tool from the target, relative, (N, m).
+    """
+
+    case: Case
+    q: Array
+    errors: Array
+
+    @property
+    def given(self) -> Any:
+        """Which there are, (N, m)."""
+        return np.isfinite(self.q).all(axis=2)
+
+    @property
+    def right(self) -> Any:
+        """Which are right, (N, m)."""
+        return self.given & (self.errors <= TOLERANCES.formula_agrees)
+
+    @property
+    def wrong(self) -> Any:
+        """Which are wrong, (N, m)."""
+        return self.given & ~self.right
+
+
+def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Diagnosis:
+    """The diagnosis of answers to a quantity of inverse kinematics.
+
+    Raises:
+        AnswerShapeError: answers that are no joint positions.
+    """
+    task, robot = TASKS[case.quantity.name], case.robot
+    found = _solutions(case, as_solutions(robot, hand), engine)
+    label = case.quantity.domain.label(robot)
+    worst = _worst(found)
+    if not found.wrong.any() and found.right.any(axis=1).all():
+        remarks = (*_branches_told(found), *_answers_beyond(found, task))
+        return Diagnosis(quantity, label, name, True, float(np.max(worst)), remarks=remarks)
+    causes = _causes(found, engine)
+    k = first_largest(worst)
+    row = int(np.argmax(np.where(found.wrong[k], found.errors[k], -1.0)))
+    return Diagnosis(
+        quantity,
+        label,
+        name,
+        False,
+        float(worst[k]),
+        tuple(_ranked(causes)),
+        worst_entry=quantity,
+        worst_state={n: stack[k] for n, stack in case.arguments.items()},
+        hand=reached(robot, task, found.q[k, row][None])[0],
+        engine=engine[k],
+        proved=() if causes else tuple(_counted(found)),
+    )
+
+
+def _solutions(case: Case, q: Array, engine: Array) -> Solutions:
+    """Rows without any number at any target are no solutions at all."""
+    kept = np.isfinite(q).all(axis=2).any(axis=0)
+    q = q[:, kept] if kept.any() else q[:, :1]
+    places = reached(case.robot, TASKS[case.quantity.name], q)
+    gap = np.abs(places - engine[:, None]).reshape(*q.shape[:2], -1).max(axis=2)
+    return Solutions(case, q, gap / error_sizes(engine)[:, None])
+
+
+def _worst(found: Solutions) -> Array:
+    """The largest error of each target; infinite where there is no solution."""
+    errors = np.max(np.where(found.given, found.errors, 0.0), axis=1)
+    return np.where(found.given.any(axis=1), errors, np.inf)
+
+
+def _ranked(causes: list[Cause]) -> Iterator[Cause]:
+    seen: set[tuple[str, ...]] = set()
+    for cause in sorted(causes, key=lambda c: c.cost):
+        near = cause.cost <= min(c.cost for c in causes) + _FAR
+        if near and cause.kinds not in seen:
+            seen.add(cause.kinds)
+            yield cause
+
+
+# -------- What is said of right solutions
+
+
+def _branches_told(found: Solutions) -> Iterator[str]:
+    """How many solutions were shown to be right, and of how many there are."""
+    number = found.right.sum(axis=1)
+    least, most = int(number.min()), int(number.max())
+    said = ngettext(
+        "{count} solution of each of {targets} targets, verified by Pinocchio's forward kinematics",
+        "{count} solutions of each of {targets} targets, verified by Pinocchio's forward "
+        "kinematics",
+        most,
+    )
+    count = str(least) if least == most else f"{least}–{most}"
+    yield said.format(count=count, targets=len(number))
+    mine = compared(found.case.robot, found.q)
+    there = []
+    for one, at in next(closed_forms(found.case, False), []):
+        gap = np.max(np.abs(mine[at] - one.answer(())[:, None]), axis=2)
+        met = np.any(found.given[at] & (gap <= TOLERANCES.same_branch), axis=1)
+        there.append(bool(met.all()))
+    if there and not all(there):
+        told = _("of the {every} branches of the closed form it gives {covered}")
+        yield told.format(every=len(there), covered=sum(there))
+
+
+def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
+    """Where nothing can reach, a formula that answers all the same."""
+    if found.case.again is None or slides(found.case.robot).any():
+        return
+    few = found.case.few(3).arguments
+    far = {n: x if n == "phi" else _BEYOND * x for n, x in few.items() if n != "pose"}
+    if not far:
+        return
+    del task
+    try:
+        with np.errstate(all="ignore"):
+            answers = np.asarray(found.case.again(far), dtype=float)
+    except (KinlabError, ValueError, TypeError):
+        return
+    if np.isfinite(answers).any():
+        yield _("beyond reach it answers as well: ask first whether |cos| <= 1")
+
+
+# -------- What explains wrong ones
+
+
+def _counted(found: Solutions) -> Iterator[str]:
+    """What was shown of each solution."""
+    count = len(found.q)
+    for k in range(found.q.shape[1]):
+        right = int(found.right[:, k].sum())
+        said = _("solution {number}: right at {right} of {count} targets")
+        yield said.format(number=k + 1, right=right, count=count)
+
+
+def _causes(found: Solutions, engine: Array) -> list[Cause]:
+    silent = _without_solution(found)
+    if silent is not None:
+        return [silent]
+    whole = list(_by_reading(found, engine)) or list(_by_mixing(found))
+    if whole:
+        return whole
+    searches: tuple[Callable[[Case], list[Found]], ...] = (
+        lambda case: taken_otherwise(case, ready(case)),
+        lambda case: several_taken_otherwise(case, ready(case), None),
+    )
+    for search in searches:
+        for limited in (False, True):
+            causes = _by_derivation(found, search, limited)
+            if causes:
+                return causes
+    return []
+
+
+def _without_solution(found: Solutions) -> Cause | None:
+    """No solution at some targets, right ones at the others."""
+    if found.wrong.any():
+        return None
+    none = int(np.sum(~found.given.any(axis=1)))
+    if none == len(found.q):
+        return None
+    told = _(
+        "the formula gives no solution at {none} of {count} targets within reach; elsewhere it is "
+        "right"
+    ).format(none=none, count=len(found.q))
+    return Cause(told, ("no value",), ("",), 0.0, 1.0)
+
+
+_READINGS: tuple[tuple[str, str, Callable[[Array, Any], Array]], ...] = (
+    ("degrees", N_("answers in degrees"), lambda q, slide: np.where(slide, q, np.deg2rad(q))),
+    (
+        "absolute angles",
+        N_("gives every angle from the base"),
+        lambda q, slide: np.diff(q, axis=-1, prepend=0.0),
+    ),
+    ("turning sense", N_("counts every joint the other way"), lambda q, slide: -q),
+    ("joint order", N_("gives the joints from tool to base"), lambda q, slide: q[..., ::-1]),
+)
+"""What undoes a reading of all joints."""
+
+
+def _by_reading(found: Solutions, engine: Array) -> Iterator[Cause]:
+    slide = slides(found.case.robot)
+    for kind, does, undone in _READINGS:
+        if kind == "absolute angles" and slide.any():
+            continue
+        other = _solutions(found.case, undone(found.q, slide), engine)
+        if not other.wrong.any() and other.right.any(axis=1).all():
+            told = _("the formula {does}").format(does=_(does))
+            yield Cause(told, (kind,), ("",), float(np.max(_worst(other))), 1.0)
+
+
+def _by_mixing(found: Solutions) -> Iterator[Cause]:
+    """Beside right rows others, each joint of which is that of a branch, but not of one branch."""
+    off = found.wrong.any(axis=0)
+    if off.all() or not found.given.all():
+        return
+    n, mine = found.case.robot.n, compared(found.case.robot, found.q[:, off])
+    own: list[Array] = []
+    for one, at in next(closed_forms(found.case, False), []):
+        if not at.all():
+            return
+        gap = np.abs(mine - one.answer(())[:, None])
+        own.append(np.max(np.maximum(gap[..., :n], gap[..., n:]), axis=0) <= TOLERANCES.same_branch)
+    # (branches, rows, joints)
+    if own and np.any(own, axis=0).all():
+        places = ", ".join(str(k + 1) for k in np.flatnonzero(off))
+        told = _(
+            "the formula joins angles of different branches: each angle is right on a branch of "
+            "its own (in solution {places}; the others are right)"
+        ).format(places=places)
+        yield Cause(told, ("branches mixed",), ("",), 0.0, 1.0)
+
+
+def _by_derivation(
+    found: Solutions, search: Callable[[Case], Iterable[Found]], limited: bool
+) -> list[Cause]:
+    """Causes that are steps of a closed form, one and the same for all wrong rows or one for each.
+
+    Nothing where a row stays unexplained.
+    """
+    off = [k for k in range(found.q.shape[1]) if found.wrong[:, k].any()]
+    forms = list(closed_forms(found.case, limited))
+    explained: list[dict[str, Found]] = []
+    for k in off:
+        ways: dict[str, Found] = {}
+        known = [one for ways_ in explained for one in ways_.values()]
+        again = _of_row(found, k, forms, partial(with_these, known)) if known else ()
+        for one in [*again] or _of_row(found, k, forms, search):
+            said = _(" and ").join(step.sentence for step in one.steps)
+            if said not in ways or one.cost < ways[said].cost:
+                ways[said] = one
+        if not ways:
+            return []
+        explained.append(ways)
+    if not explained:
+        return []
+    common = [said for said in explained[0] if all(said in ways for ways in explained)]
+    formula = _("the formula {does}")
+    every = len(off) == found.q.shape[1]
+    if common:
+        chosen = [(formula.format(does=said), [explained[0][said]]) for said in common]
+    else:
+        best = [min(ways.items(), key=lambda x: x[1].cost) for ways in explained]
+        told = [
+            _("solution {number}: {what}").format(number=k + 1, what=formula.format(does=said))
+            for k, (said, _one) in zip(off, best, strict=True)
+        ]
+        chosen, every = [(_("; ").join(told), [one for _said, one in best])], True
+    out = []
+    for said, founds in chosen:
+        sentence = said
+        if not every:
+            places = ", ".join(str(k + 1) for k in off)
+            sentence = _("{what} (in solution {places}; the others are right)").format(
+                what=said, places=places
+            )
+        steps = [step for one in founds for step in one.steps]
+        out.append(
+            Cause(
+                sentence,
+                tuple(step.kind for step in steps),
+                tuple("" for _step in steps),
+                max(one.error for one in founds),
+                sum(one.cost for one in founds),
+            )
+        )
+    return out
+
+
+def _of_row(
+    found: Solutions, k: int, forms: list[Branches], search: Callable[[Case], Iterable[Found]]
+) -> Iterator[Found]:
+    """What gives one row at every target, from whichever branch."""
+    for one, at in (pair for form in forms for pair in form):
+        row = found.q[at, k]
+        known = np.isfinite(row).all(axis=1)
+        if np.sum(known) >= _FEWEST:
+            given = {n: x[known] for n, x in one.arguments.items()}
+            hand = compared(found.case.robot, row[known])
+            yield from search(replace(one, arguments=given, hand=hand, again=None))
