@@ -130,7 +130,7 @@ def _explained(
         one step, its kinds of term.
     """
     same = case.hand.shape == engine.shape
-    silent = _without_value(case, engine) if same else None
+    silent = (_without_value(case, engine) or _rounding_alone(case)) if same else None
     tried = readings(case)
     signs = _bare_signs(case.hand)
     if signs:
@@ -218,6 +218,12 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
         "the formula gives no number at {missing} of {count} states; elsewhere it is right"
     ).format(missing=missing, count=count)
     return Cause(told, ("no value",), ("",), error, 1.0)
+
+
+def _rounding_alone(case: Case) -> Cause | None:
+    """A function that inverts what has no inverse."""
+    said = verdicts.erratic(case)
+    return Cause(said, ("singular matrix",), ("",), 0.0, 1.0) if said else None
 
 
 def _left(worst: float) -> float:

@@ -652,6 +652,14 @@ ISOTROPY = """
 E = defect(J @ J.T)
 """
 
+BOUNDARY = """
+# the boundary term
+b = late @ later - early @ earlier
+# the variation with its boundary term
+E = inner + b
+"""
+"""The action's variation between free ends: by parts, with dL/dqd and dq at both ends."""
+
 ITERATIVE = {
     "newton_step": "q + solve(J, target - x)",
     "loss": "0.5*(target - x) @ (target - x)",
@@ -846,5 +854,7 @@ LINES = (
     N_("the power"),
     N_("the left side A cos(theta) + B sin(theta)"),
     N_("the step"),
+    N_("the boundary term"),
+    N_("the variation with its boundary term"),
 )
 """What the lines of the derivations are, to be translated."""

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.action import DURATION, variation_with_free_ends
 from kinlab.check.quantities.serial import planar_jacobian, planar_pose
 from kinlab.engine.kinematics import jacobian
+from kinlab.engine.lagrange import momentum
 from kinlab.model.dh import link_transform
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -252,6 +254,16 @@ def of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     pose = planar_pose(robot, q)
     here = np.stack([pose[:, 0], pose[:, 1], np.sum(q, axis=1)], axis=1)
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
+
+
+def of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """dL/dqd and dq at both ends of a path; what is left of the variation is the integral's."""
+    v, a, dq = x["v"], x["a"], x["dq"]
+    early = momentum(robot, q, v)
+    late = momentum(robot, q + v * DURATION + 0.5 * a * DURATION**2, v + a * DURATION)
+    whole = variation_with_free_ends(robot, q, v, a, dq)
+    inner = whole - np.sum(late * 3.0 * dq, axis=1) + np.sum(early * dq, axis=1)
+    return {"inner": inner, "late": late, "early": early, "later": 3.0 * dq, "earlier": dq}
 
 
 def of_loop(mechanism: Any, loop: Any, x: Stacks) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from kinlab.doctor.confusions.givens import (
     of_arm,
     of_load,
     of_loop,
+    of_path,
     of_recursion,
     of_step,
     of_table,
@@ -99,6 +100,8 @@ def roads(case: Case) -> Iterator[Road]:
                 yield _with_load(case, books.toolward(usual), False, "E", False)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
+    if name == "action_variation_free_ends":
+        yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
         yield _of_step(case, books.ISOTROPY)
     if name == "jacobian_dot":
@@ -196,11 +199,11 @@ def _of_links(case: Case, text: str, asked: str) -> Road:
     return Road(of, walked, robot.n, of.work(robot.n))
 
 
-def _of_step(case: Case, text: str) -> Road:
+def _of_step(case: Case, text: str, given: Any = of_step) -> Road:
     of, robot = program(text), case.robot
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
-        walk = Walk(of, lambda q: of_step(robot, q, x), x["q"], ways, robot.n)
+        walk = Walk(of, lambda q: given(robot, q, x), x["q"], ways, robot.n)
         return walk.values("E"), walk
 
     return Road(of, walked, robot.n, of.work(robot.n))
@@ -258,7 +261,8 @@ def _solved(matrix: Array, right: Array) -> Array:
     """The solutions of (B, N, n, n) systems; NaN where there is none."""
     some = np.asarray(np.isfinite(matrix).all(axis=(2, 3)))[..., None, None]
     safe = np.where(some, matrix, np.eye(matrix.shape[-1]))
-    some = some & np.asarray(np.linalg.det(safe) != 0)[..., None, None]
+    regular = np.asarray(np.linalg.matrix_rank(safe) == matrix.shape[-1])
+    some = some & regular[..., None, None]
     safe = np.where(some, safe, np.eye(matrix.shape[-1]))
     return np.where(some[..., 0], np.linalg.solve(safe, right[..., None])[..., 0], np.nan)
 

@@ -77,6 +77,8 @@ _ALIKE = (
     "d3 d4",
     "a2 a3",
     "px py",
+    "late early",
+    "later earlier",
 )
 """Names that are easily taken for one another."""
 

@@ -58,6 +58,8 @@ MEANT = {
     "Ib": N_("the inertia tensor"),
     "cb": N_("the centre of mass P_C"),
     "o_": N_("the frame's origin"),
+    "b": N_("the boundary term"),
+    "inner": N_("the integral"),
 }
 """What names stand for."""
 
@@ -97,6 +99,10 @@ _SPELT = {
     "Ib": "I",
     "cb": "P_C",
     "both": "R",
+    "late": "dL/dqd(t2)",
+    "early": "dL/dqd(t1)",
+    "later": "dq(t2)",
+    "earlier": "dq(t1)",
 }
 
 _CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
