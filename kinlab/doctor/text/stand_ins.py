@@ -61,6 +61,46 @@ def stand_ins(
     return None
 
 
+def fitted(
+    text: Written,
+    at: Mapping[str, Array],
+    target: Array,
+    free: list[int],
+    start: Array | None = None,
+) -> Array | None:
+    """All literals' numbers where some are free to be anything, or None where none will do.
+
+    Args:
+        text: the formula.
+        at: values of the names, (N,) each.
+        target: the values wanted, (N,).
+        free: the literals that may be anything.
+        start: the numbers at first; what is written where it is None.
+    """
+    numbers = np.array([one.value for one in text.literals]) if start is None else start
+    scale = float(np.max(np.abs(target))) or 1.0
+    for _step in range(2 * STEPS):
+        values = text.values(at, numbers)
+        rest = (target - values) / scale
+        if not np.isfinite(rest).all():
+            return None
+        if np.max(np.abs(rest)) <= TOLERANCES.formula_agrees:
+            return numbers
+        if not free:
+            return None
+        slopes = []
+        for k in free:
+            step = 1e-5 * max(1.0, abs(numbers[k]))
+            other = numbers.copy()
+            other[k] += step
+            slopes.append((text.values(at, other) - values) / (step * scale))
+        turned = np.array(slopes).T
+        if not np.isfinite(turned).all():
+            return None
+        numbers[free] += np.linalg.lstsq(turned, rest, rcond=1e-9)[0]
+    return None
+
+
 @dataclass(eq=False)
 class _Search:
     """Looks for numbers that explain a text's difference."""
