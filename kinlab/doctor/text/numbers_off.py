@@ -14,10 +14,9 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import Change, Line
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins
+from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins, told_apart
 from kinlab.doctor.text.written import Written
 from kinlab.host.language import N_
-from kinlab.tolerances import TOLERANCES
 
 _MOST = 3
 """Numbers that are off above which a list of them is no diagnosis."""
@@ -59,7 +58,7 @@ def _put_right(line: Line) -> tuple[Written, list[Mended]]:
         if one.half and not one.whole and meanings.parameter(one.value) is None
     ]
     solved = fitted(text, line.at, line.target, free) if 1 < len(free) <= FREE else None
-    if solved is None or not _told_apart(text, line.at, solved, free):
+    if solved is None or not told_apart(text, line.at, solved, free):
         return text, []
     exact = {
         k: float(solved[k]) for k in free if meanings.credible(text.literals[k], float(solved[k]))
@@ -78,19 +77,6 @@ def _put_right(line: Line) -> tuple[Written, list[Mended]]:
         told = N_("{old} should be {new}")
         changes.append(Change(start, end, shown, "coefficient", 1.15, told, pieces=pieces))
     return named, together(_again(line, named), tuple(changes))
-
-
-def _told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: list[int]) -> bool:
-    """Whether the values say what each number is."""
-    here = text.values(at, numbers)
-    columns = []
-    for k in free:
-        moved = numbers.copy()
-        moved[k] *= 1.001
-        column = text.values(at, moved) - here
-        columns.append(column / (float(np.linalg.norm(column)) or 1.0))
-    rank = np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation)
-    return bool(rank == len(free))
 
 
 def _with_exact(text: Written, exact: Mapping[int, float]) -> Written:
