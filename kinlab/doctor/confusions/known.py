@@ -209,7 +209,6 @@ def _engines(case: Case) -> Iterator[Confusion]:
             "Mdot for C", _("uses Mdot v for C v"), otherwise.added(otherwise.mass_rate_extra), 1.2
         )
 
-
     if name == "kinetic_gradient":
         said = _("adds the entries up, each times its qd_i: one number for the whole vector")
         yield _other("one number", said, otherwise.summed_with_rates, 1.1)

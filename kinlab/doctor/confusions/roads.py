@@ -87,6 +87,11 @@ def roads(case: Case) -> Iterator[Road]:
         yield _road(case, books.BOUNDARY, "E", _of_path)
     if name == "isotropy_defect":
         yield _road(case, books.ISOTROPY, "E", _of_step)
+    if name == "isotropy_conditions":
+        yield _road(case, books.CONDITIONS, "E", _of_step)
+    if name in books.ISOTROPIC:
+        text = f"# the cosine of theta2\nE = {books.ISOTROPIC[name]}"
+        yield _road(case, text, "E", _of_lengths)
     if name == "jacobian_dot":
         yield _road(case, books.COLUMNS + books.RATE, "E", _of_arm)
     ways = [*_recursions(case), *_lagrange(case)]
@@ -418,6 +423,13 @@ def _of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
 
 
+def _of_lengths(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """The lengths of a planar 2R arm, by its Jacobian's columns."""
+    del x
+    one, two = jacobian(robot, 0.0 * q)[:, :2].transpose(2, 0, 1)
+    return {"l1": np.linalg.norm(one - two, axis=1), "l2": np.linalg.norm(two, axis=1)}
+
+
 def _of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     """dL/dqd and dq at both ends of a path; what is left of the variation is the integral's."""
     v, a, dq = x["v"], x["a"], x["dq"]
@@ -445,7 +457,7 @@ def _five_bar(case: Case) -> Iterator[Road]:
             walk = Walk(of, lambda _: _of_loop(loop, x), some, ways, 2)
             return walk.values(asked), walk
 
-        return Road(of, walked, 2)
+        return Road(of, walked, 2, pairs=name != "fivebar_torque")
 
     if asked:
         yield road(text, asked)
@@ -467,6 +479,10 @@ def _of_loop(loop: Any, x: Stacks) -> dict[str, Any]:
         "s": each(S),
         "IA": each(loop.arm),
         "mc": each(loop.crank * loop.crank_com),
+        "md": each(loop.rod),
+        "cd": each(loop.rod_com),
+        "Id": each(loop.rod_inertia),
+        "legs": np.ones((1, 2)),
         "E1": E1[None],
         "E2": E2[None],
         "H": H[None],

@@ -47,6 +47,10 @@ MEANT = {
     "o_": N_("the frame's origin"),
     "b": N_("the boundary term"),
     "inner": N_("the integral"),
+    "pull": N_("the rods' force on the tool"),
+    "md": N_("the rod's mass"),
+    "cd": N_("the distance of the rod's centre"),
+    "Id": N_("the rod's inertia"),
 }
 """What names stand for."""
 
