@@ -21,14 +21,17 @@ from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
 from kinlab.doctor.confusions.derivations import (
     Found,
+    Ready,
     one_for_each_kind,
+    ready,
     several_taken_otherwise,
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.numbers import other_numbers
-from kinlab.doctor.confusions.parts import proved
+from kinlab.doctor.confusions.parts import Apart, apart, proved
+from kinlab.doctor.confusions.words import together
 from kinlab.doctor.derived import derivation
+from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -87,15 +90,16 @@ def examine(
     near = excuse is not None and excuse.form == "near"
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
+    split: Apart | None = None
     if excuse is None:
-        causes, partial, excuse = _explained(case, engine, written, worst)
+        causes, partial, excuse, split = _explained(case, engine, written, worst)
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
     if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
         partial = (meant,)
     ranked = _ranked(causes)
-    right_parts = proved(case, engine) if same and not ranked else ()
+    right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
@@ -118,8 +122,13 @@ def examine(
 
 def _explained(
     case: Case, engine: Array, written: dict[str, Written], worst: float
-) -> tuple[list[Cause], tuple[str, ...], Excuse | None]:
-    """What explains the difference, what is known of some entries, or why it is none."""
+) -> tuple[list[Cause], tuple[str, ...], Excuse | None, Apart | None]:
+    """What explains the difference, what is known of some entries, or why it is none.
+
+    Returns:
+        Causes; sentences on single entries; an excuse; and, where nothing explains the formula by
+        one step, its kinds of term.
+    """
     same = case.hand.shape == engine.shape
     silent = (_without_value(case, engine) or _rounding_alone(case)) if same else None
     tried = readings(case)
@@ -134,11 +143,13 @@ def _explained(
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
     rough: list[Cause] = []
+    ways: Ready = []
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
-        derived = [] if written and causes else [*_by_derivation(loose, signs)]
-        every = [*_singly(loose, tried), *derived]
+        ways = [] if (written and causes) or signs else ready(case)
+        derived = taken_otherwise(loose, ways) if ways else []
+        every = [*_singly(loose, tried), *map(_as_steps, derived)]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         causes = _outranked(causes, exact)
@@ -148,20 +159,25 @@ def _explained(
     listed = all({*c.kinds} == {"coefficient"} and len(c.kinds) > 1 for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
-        causes = [*_singly(case, changed), *causes] or rough
+        causes = [*_singly(case, changed)] or rough or causes
         near = None if causes else verdicts.to_digits(case, engine)
         if near is not None:
-            return [], (), near
+            return [], (), near, None
+    split: Apart | None = None
     if not causes and not signs:
-        found_ = one_for_each_kind(case) or several_taken_otherwise(case)
-        causes = [_as_steps(found) for found in found_]
-    if not causes:
+        split = apart(case)
+        few = case if written else replace(case, slack=min(_left(worst), TOLERANCES.slips_leave))
+        found_ = one_for_each_kind(few, ways, split) or several_taken_otherwise(few, ways, split)
+        causes = _exactly([_as_steps(found) for found in found_], worst)
+        if not causes:
+            causes = _exactly([*_in_pairs(few, tried)], worst)
+    if not causes and signs:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
         # beside a list of slips only the likeliest reading: each costs a search of its own
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
-    return causes, partial, None
+    return causes, partial, None, split
 
 
 def _texts_again(
@@ -216,6 +232,12 @@ def _left(worst: float) -> float:
     return max(TOLERANCES.formula_agrees, most)
 
 
+def _exactly(causes: list[Cause], worst: float) -> list[Cause]:
+    """Explanations that leave nothing; where there are none, those that leave differences."""
+    exact = [cause for cause in causes if cause.error_after <= TOLERANCES.formula_agrees]
+    return exact or _roughly(causes, worst)
+
+
 def _roughly(causes: list[Cause], worst: float) -> list[Cause]:
     """Explanations that leave what finite differences leave, and far less than was off."""
     near = [cause for cause in causes if cause.error_after <= _left(worst)]
@@ -235,14 +257,6 @@ def _ranked(causes: list[Cause]) -> list[Cause]:
         kinds.setdefault(cause.kinds, cause)
     kept = list(kinds.values())
     return [cause for cause in kept if cause.cost <= kept[0].cost + _FAR][:_NAMED]
-
-
-def _by_derivation(case: Case, signs: bool) -> Iterator[Cause]:
-    """Causes that are one step of a textbook's derivation, taken otherwise."""
-    if signs:
-        return
-    for found in taken_otherwise(case):
-        yield _as_steps(found)
 
 
 def _the_formula(does: Iterable[str]) -> str:
@@ -294,7 +308,7 @@ def _hidden(
             told = [s for s in _of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    said = verdicts.together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
+    said = together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
     remarks = [_("but it holds only for {numbers}").format(numbers=said)] if only else []
     return ([_slip_cause(tuple(slips))] if slips else []), largest, remarks
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
 
@@ -52,15 +52,6 @@ class Excuse:
 
     form: str
     remarks: tuple[str, ...]
-
-
-def together(pieces: Iterable[str]) -> str:
-    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
-    told, *rest = [*pieces] or [""]
-    pair = _("{first} and {last}")
-    for piece in rest:
-        told = pair.format(first=told, last=piece)
-    return told
 
 
 # -------- Numbers in place of names

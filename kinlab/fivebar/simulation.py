@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array, shaped
 from kinlab.engine.integrator import integrate
-from kinlab.errors import InertiaError, OptionError, SingularError
+from kinlab.errors import InertiaError, SingularError
 from kinlab.fivebar.closed_chain import CRANKS, ClosedChain
 from kinlab.tolerances import TOLERANCES
 
@@ -35,7 +35,6 @@ class LoopMotion:
         qd: (K+1, 4), rad/s. qdd: (K+1, 4), rad/s².
         tau: at the cranks, (K+1, 2), N m. work: by them, (K+1,), J.
         energy: kinetic plus potential, (K+1,), J.
-        gap: of the loop, (K+1,), m.
     """
 
     t: Array
@@ -45,7 +44,6 @@ class LoopMotion:
     tau: Array
     work: Array
     energy: Array
-    gap: Array
 
 
 class ConstraintSolver:
@@ -143,39 +141,6 @@ def forward_dynamics(chain: ClosedChain, q: ArrayLike, qd: ArrayLike, tau: Array
     return ConstraintSolver(chain).acceleration(pose, rates, shaped(tau, (2,), f"{name}: tau"))
 
 
-def simulate(
-    chain: ClosedChain,
-    q: ArrayLike,
-    qd: ArrayLike,
-    duration: float,
-    step: float = 1e-3,
-    torque: Torque | None = None,
-) -> LoopMotion:
-    """Integrates the loop with adaptive steps, putting position and velocity back onto it.
-
-    Args:
-        chain: from ``FiveBar.closed_chain()``.
-        q: a closed pose, (4,), rad. qd: rates that keep the loop, (4,), rad/s.
-        duration: s. step: between the answers, s.
-        torque: crank torques (2,) from (t, q, qd); none lets it fall.
-
-    Raises:
-        OptionError: a duration or step that is not positive, or torques too stiff to integrate.
-        StateError, InertiaError, SingularError: as :func:`forward_dynamics`.
-    """
-    name = chain.linkage.name
-    if not (0.0 < step <= duration < np.inf):
-        raise OptionError(f"{name}: need 0 < step <= duration; got {step!r} and {duration!r} s")
-    count = round(duration / step)
-    start = (shaped(q, (4,), f"{name}: q"), shaped(qd, (4,), f"{name}: qd"))
-
-    def driven(t: float, at: Array, rate: Array) -> Array:
-        asked = np.zeros(2) if torque is None else torque(t, at, rate)
-        return shaped(asked, (2,), f"{name}: tau")
-
-    return follow(chain, *start, np.linspace(0.0, count * step, count + 1), driven)
-
-
 def follow(
     chain: ClosedChain,
     q: Array,
@@ -183,7 +148,18 @@ def follow(
     times: Array,
     torque: Callable[[float, Array, Array], Array],
 ) -> LoopMotion:
-    """As :func:`simulate`, at times of one's own, (K+1,), with torques that are always given."""
+    """Integrates the loop with adaptive steps, putting position and velocity back onto it.
+
+    Args:
+        chain: from ``FiveBar.closed_chain()``.
+        q: a closed pose, (4,), rad. qd: rates that keep the loop, (4,), rad/s.
+        times: of the answers, (K+1,), s.
+        torque: crank torques (2,) from (t, q, qd).
+
+    Raises:
+        OptionError: torques too stiff to integrate.
+        InertiaError, SingularError: as :func:`forward_dynamics`.
+    """
     solver = ConstraintSolver(chain)
 
     def slope(t: float, state: Array) -> Array:
@@ -208,7 +184,6 @@ def follow(
         tau=tau,
         work=rows[:, 8],
         energy=np.array([sum(chain.energy(*x)) for x in zip(places, rates, strict=True)]),
-        gap=np.array([np.linalg.norm(chain.closure(x)[0]) for x in places]),
     )
 
 

@@ -9,6 +9,7 @@ import pytest
 import kinlab as kl
 from kinlab.analysis.singularities import minors
 from kinlab.analysis.singularities.certified import nearest_zero
+from kinlab.analysis.singularities.factor import Factor
 from kinlab.analysis.singularities.nearest import slope_bound
 from kinlab.analysis.structure.task_space import read_task
 
@@ -159,7 +160,7 @@ def test_nearest_zero_of_a_known_function():
     # cos x + cos y - 1 = 0 from the origin: symmetric, at cos x = 1/2 on the diagonal
     coefficients = np.zeros((3, 3, 1))
     coefficients[1, 0], coefficients[0, 1], coefficients[0, 0] = 1.0, 1.0, -1.0
-    factor = minors.Factor((0, 1), (1, 1), (True, True), coefficients, 1)
+    factor = Factor((0, 1), (1, 1), (True, True), coefficients, 1)
     low, high = np.full(2, -PI), np.full(2, PI)
     zero = nearest_zero(factor, np.zeros(2), low, high, np.inf, 5000)
     angle = np.linspace(0.0, 0.5 * PI, 100_001)

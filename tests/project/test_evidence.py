@@ -9,7 +9,8 @@ import pytest
 
 import kinlab as kl
 from kinlab.fivebar.design.front import DesignFront
-from kinlab.fivebar.design.synthesis import read_problem, solve
+from kinlab.fivebar.design.problem import read_problem
+from kinlab.fivebar.design.synthesis import solve
 
 PUMA = [0.3, -0.5, 0.6, 0.4, 0.9, -0.3]
 

@@ -9,6 +9,8 @@ module            what it holds
                   :mod:`kinlab.symbolic`
 ``edge``          Whether a singular configuration lies on the edge of the workspace, or the tool
                   passes on
+``factor``        Trigonometric polynomials of a few joints, with what they leave of a box around
+                  any centre
 ``families``      Singular configurations of an arm: found from many seeds, grouped into families
 ``loci``          Curves of the singular set in a slice of joint space, by pseudo-arclength
                   continuation

@@ -2,7 +2,7 @@
 
 Boxes of joint space are kept by the least distance that a zero in them can have. In a box each
 function is its linear part and a rest that is bounded
-(:meth:`kinlab.analysis.singularities.minors.Factor.enclosures`), so that a zero lies in a slab; box
+(:meth:`kinlab.analysis.singularities.factor.Factor.enclosures`), so that a zero lies in a slab; box
 and slab give the distance (a quadratic program with one constraint, bounded from below by its
 dual), and the slab cuts the box down. The box with the least distance is split next, hence the
 bound grows, and the search stops where it meets the best zero found. What the local searches draw
@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from kinlab.analysis.singularities.minors import Enclosures, Factor
+from kinlab.analysis.singularities.factor import Enclosures, Factor
 from kinlab.arrays import Array
 from kinlab.host.progress import pulse
 from kinlab.tolerances import TOLERANCES

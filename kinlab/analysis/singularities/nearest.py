@@ -19,7 +19,8 @@ from numpy.typing import ArrayLike
 from kinlab.analysis.metrics import counting, singular_values
 from kinlab.analysis.singularities import singular_set as sets
 from kinlab.analysis.singularities.certified import nearest_zero
-from kinlab.analysis.singularities.minors import Factor, factors
+from kinlab.analysis.singularities.factor import Factor
+from kinlab.analysis.singularities.minors import factors
 from kinlab.analysis.singularities.singularity import Singularity, describe_singularity
 from kinlab.analysis.solver import solve
 from kinlab.analysis.structure.task_space import (

@@ -8,15 +8,15 @@ module           what it holds
 ``books``        The textbooks' derivations as text, each written once, for any serial arm, and for
                  the five-bar
 ``derivations``  The textbooks' derivations walked with one step, then two or three, taken otherwise
+``givens``       The numbers of an arm or a five-bar as the derivations ask for them
 ``known``        The table of known confusions: every reading that makes sense for a quantity
-``numbers``      The robot's numbers taken otherwise: one of them another, or all of a kind rounded
 ``operations``   What one can do otherwise at one operator, call, choice or matrix of a derivation
 ``otherwise``    What the engine says if asked otherwise: another frame, another split of C, terms
                  left out
 ``parts``        A formula taken apart by kind of term: what is right of it, what is not, one step
                  for each
-``roads``        The numbers of an arm or a five-bar as the derivations ask for them, and which
-                 derivation gives what
+``roads``        Which derivation gives what: a quantity's roads, each walked with any of its steps
+                 otherwise
 ``robots``       Readings of the robot itself: convention, offsets, base and tool, gravity,
                  inertias
 ``steps``        Everything that one can do otherwise in one place of a derivation

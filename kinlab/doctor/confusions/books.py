@@ -117,6 +117,171 @@ SPONG = SICILIANO.replace(
 )
 """The same with moments about the centre of mass (Spong 7.149)."""
 
+_SPATIAL = """
+none = twist(zero, zero)
+tw[0] = none
+# the start of the recursion
+dtw[0] = twist(-g, zero)
+for i in outward:
+    # the joint's axis S
+    S[i] = twist(zero, z[i]) if hinge[i] else twist(z[i], zero)
+    # the transform X of twists
+    X[i] = blocks(R[i].T, -(R[i].T @ skew(P[i])), nil, R[i].T)
+    # the link's spatial inertia
+    Is[i] = blocks(m[i]*one, -(m[i]*skew(c[i])), m[i]*skew(c[i]),
+                   I[i] - m[i]*skew(c[i]) @ skew(c[i]))
+"""
+_SPATIAL_FORCES = """
+    # the twist V of the link
+    tw[i] = X[i] @ tw[i-1] + qd[i]*S[i]
+    # the acceleration of the link as a twist
+    dtw[i] = X[i] @ dtw[i-1] + qdd[i]*S[i] + motion(tw[i], qd[i]*S[i])
+    # the link's own force and moment
+    F[i] = Is[i] @ dtw[i] + force(tw[i], Is[i] @ tw[i])
+f[n+1] = none
+X[n+1] = blocks(one, nil, nil, one)
+for i in inward:
+    # the force f of the link
+    f[i] = F[i] + X[i+1].T @ f[i+1]
+    # the joint torque
+    tau[i] = f[i] @ S[i] + Ia[i]*qdd[i]
+"""
+_COMPOSITE = """
+Ic[n+1] = blocks(nil, nil, nil, nil)
+X[n+1] = blocks(one, nil, nil, one)
+for i in inward:
+    # the composite body's inertia
+    Ic[i] = Is[i] + X[i+1].T @ Ic[i+1] @ X[i+1]
+f[n+1] = none
+for k in outward:
+    for j in inward:
+        # the force f of the link
+        f[j] = Ic[k] @ S[k] if k <= j else X[j+1].T @ f[j+1]
+        # the mass matrix
+        H[j] = S[j] @ f[j] if j <= k else number
+    row[k] = columns(H)
+M = columns(row)
+# the mass matrix
+M = M + M.T - both_(M)
+# the rotors' inertia
+M = M + diagonal(rotors)
+"""
+
+
+def spatial(standard: bool) -> str:
+    """The recursion with spatial vectors, the linear part first (Featherstone's)."""
+    return _in_convention(_SPATIAL, standard) + _SPATIAL_FORCES
+
+
+def composite(standard: bool) -> str:
+    """The mass matrix by composite bodies (Featherstone's)."""
+    return _in_convention(_SPATIAL, standard) + _COMPOSITE
+
+
+def _in_convention(text: str, standard: bool) -> str:
+    if not standard:
+        return text
+    text = text.replace("R[i].T @ skew(P[i])", "skew(P[i]) @ R[i].T")
+    return text.replace(
+        "twist(zero, z[i]) if hinge[i] else twist(z[i], zero)",
+        "(twist(cross(R[i].T @ z[i], P[i]), R[i].T @ z[i]) if hinge[i]\n"
+        "            else twist(R[i].T @ z[i], zero))",
+    )
+
+
+_ENERGY = """
+    # the velocity of the centre of mass
+    vc[i] = v[i] + cross(w[i], c[i])
+    # the kinetic energy
+    each[i] = 0.5*m[i]*vc[i] @ vc[i] + 0.5*w[i] @ I[i] @ w[i]
+    # the sum over the links
+    E = E + each[i] + 0.5*Ia[i]*qd[i]**2
+"""
+_MOVED = """
+w[0] = zero
+v[0] = zero
+for i in outward:
+    # the angular velocity w of the link
+    w[i] = R[i].T @ (w[i-1] + qd[i]*z[i]) if hinge[i] else R[i].T @ w[i-1]
+    # the velocity v of the link's origin
+    v[i] = R[i].T @ v[i-1] if hinge[i] else R[i].T @ (v[i-1] + qd[i]*z[i])
+    # the velocity v of the link's origin
+    v[i] = v[i] + cross(w[i], P[i])
+"""
+ENERGIES = {"kinetic_energy": "E", "link_kinetic_energies": "each"}
+"""By quantity: what is asked for."""
+
+
+def energies(standard: bool, in_base: bool) -> str:
+    """The kinetic energy by the links' velocities, in their axes or in the base's."""
+    moved = _MOVED if standard else VELOCITIES.partition("    asked[i]")[0]
+    text = "E = number" + moved + _ENERGY
+    return _based(text) if in_base else text
+
+
+COMPOSITE_IN_BASE = """
+Ic[n+1] = blocks(nil, nil, nil, nil)
+for i in inward:
+    # the centre of mass
+    pc[i] = o_[i] + R_[i] @ c[i]
+    # the link's spatial inertia
+    Is[i] = blocks(m[i]*one, -(m[i]*skew(pc[i])), m[i]*skew(pc[i]),
+                   R_[i] @ I[i] @ R_[i].T - m[i]*skew(pc[i]) @ skew(pc[i]))
+    # the composite body's inertia
+    Ic[i] = Is[i] + Ic[i+1]
+    # the joint's axis S
+    S[i] = twist(cross(o[i], z[i]), z[i]) if hinge[i] else twist(z[i], zero)
+for k in outward:
+    for j in outward:
+        # the mass matrix
+        H[j] = S[j] @ (Ic[k] @ S[k]) if j <= k else number
+    row[k] = columns(H)
+M = columns(row)
+# the mass matrix
+M = M + M.T - both_(M)
+# the rotors' inertia
+M = M + diagonal(Ia)
+"""
+"""The same with all about the base's origin."""
+
+EXPONENTIALS = """
+T[0] = base
+for i in outward:
+    # the joint's axis, where it is at rest
+    K[i] = skew(z[i])
+    # Rodrigues' rotation
+    R[i] = one + sin(q[i])*K[i] + (1 - cos(q[i]))*(K[i] @ K[i]) if hinge[i] else one
+    # the joint's displacement
+    E[i] = pose((R[i]), (one - R[i]) @ o[i] if hinge[i] else q[i]*z[i])
+    # the product of exponentials
+    T[i] = T[i-1] @ E[i]
+# the tool's pose
+pose = T[n] @ home @ tool
+"""
+
+RATES = """
+# the tool's point
+p = last + tool
+w[0] = zero
+u[0] = zero
+for i in outward:
+    # the angular velocity w of the link
+    w[i] = w[i-1] + qd[i]*z[i] if hinge[i] else w[i-1]
+    # the velocity of the joint's origin
+    u[i] = u[i-1] + cross(w[i-1], o[i] - o[i-1])
+    # the velocity of the joint's origin
+    u[i] = u[i] if hinge[i] else u[i] + qd[i]*z[i]
+# the velocity of the tool's point
+dp = u[n] + cross(w[n], p - o[n])
+for i in outward:
+    # the rate of the joint's axis
+    dz[i] = cross(w[i-1], z[i])
+    # the rate of the Jacobian's column
+    J[i] = (twist(cross(dz[i], p - o[i]) + cross(z[i], dp - u[i]), dz[i]) if hinge[i]
+            else twist(dz[i], zero))
+E = columns(J)
+"""
+
 COLUMNS = """
 # the tool's point
 p = last + tool
@@ -130,6 +295,12 @@ Jb = columns(J)
 STATICS = """
 # the joint torques of a wrench
 tau = Jb.T @ wrench
+"""
+
+THROUGH = """
+for i in outward:
+    # the force and moment through the joint
+    asked[i] = twist(f[i], nn[i])
 """
 
 WRENCHES = """
@@ -146,10 +317,8 @@ E = D @ v
 """
 
 PASSED_ON = """
-f[n+1] = force
-nn[n+1] = moment
 P[n+1] = end
-R[n+1] = turn
+R[n+1] = one
 for i in inward:
     # the force f of the link
     f[i] = R[i+1] @ f[i+1]
@@ -180,6 +349,7 @@ for k in outward:
         Lw[j] = (z[j] if hinge[j] else zero) if j <= k else zero
     Jv = columns(Lv)
     Jw = columns(Lw)
+    each[k] = stacked(Jv, Jw)
     # the mass matrix
     M = M + m[k]*Jv.T @ Jv + Jw.T @ (R_[k] @ I[k] @ R_[k].T) @ Jw
     # the gravity torques
@@ -208,6 +378,7 @@ LAGRANGE = {
     "gravity_torques": ("G", ""),
     "potential_energy": ("V", ""),
     "com_positions": ("com", ""),
+    "com_jacobians": ("each", ""),
     "kinetic_energy": (
         "E",
         """
@@ -399,9 +570,35 @@ def newton_euler(standard: bool, in_base: bool) -> str:
     text = SICILIANO if standard else CRAIG
     if not in_base:
         return text
+    return _based(text)
+
+
+def _based(text: str) -> str:
+    """A recursion in the links' axes with all vectors in base axes."""
     text = text.replace("R[i].T @ ", "").replace("R[i+1] @ ", "")
-    text = text.replace("c[i]", "cb[i]").replace("dvcb[i]", "dvc[i]").replace("I[i]", "Ib[i]")
+    text = text.replace("vc[i]", "v_").replace("c[i]", "cb[i]").replace("v_", "vc[i]")
+    text = text.replace("I[i]", "Ib[i]")
     return text.replace("for i in outward:\n", _IN_BASE, 1)
+
+
+def loaded(text: str) -> str:
+    """A recursion whose last link holds a load."""
+    for name in ("f", "nn"):
+        text = text.replace(f"{name}[n+1] = zero\n", "")
+    return text
+
+
+def held(in_tool: bool, in_base: bool) -> str:
+    """The wrench at the tool about the last link's origin, in the link's axes or in the base's."""
+    turn = {(False, False): "Rn.T @ ", (True, False): "Rt @ ", (True, True): "Rn @ Rt @ "}
+    to = turn.get((in_tool, in_base), "")
+    arm = "arm" if in_base else "e"
+    return f"""
+# the wrench in the axes of the recursion
+f[n+1] = {to}fw
+# the wrench about the last link's origin
+nn[n+1] = {to}nw + cross({arm}, f[n+1])
+"""
 
 
 def passed_on(standard: bool, in_base: bool) -> str:
@@ -481,8 +678,10 @@ _MOVING = """
     fv[i] = ((v @ rod[i])**2*(crank[i] @ rod[i])/l1[i] + (v @ crank[i])**2/l2[i])/(l1[i]*k[i]**3)
     # the crank's acceleration
     acc[i] = J[i] @ a + fv[i]
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
     # the crank's own torque
-    own[i] = IA[i]*acc[i] + mc[i]*g*(crank[i] @ E1)
+    own[i] = IA[i]*acc[i] + mc[i]*cc[i]*g*(crank[i] @ E1)
 """
 _TORQUE = """
 Jm = columns(J).T
@@ -517,6 +716,9 @@ pull = columns(Q) @ legs
 tau = own + inv(Jm).T @ (m*(a + g*E2) + pull)
 """
 _GAIN = """
+for i in outward:
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # G, the torque per acceleration
 E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
@@ -542,6 +744,8 @@ for i in outward:
         "E",
         _LOOP
         + """
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # the load's inertia
 E = columns(IA) + m*norm(inv(Jm).T)**2
@@ -618,6 +822,25 @@ LINES = (
     N_("the Lagrangian L = T - V"),
     N_("the velocity torques"),
     N_("the equation of motion"),
+    N_("the joint's axis S"),
+    N_("the joint's axis, where it is at rest"),
+    N_("Rodrigues' rotation"),
+    N_("the joint's displacement"),
+    N_("the product of exponentials"),
+    N_("the force and moment through the joint"),
+    N_("the wrench in the axes of the recursion"),
+    N_("the wrench about the last link's origin"),
+    N_("the transform X of twists"),
+    N_("the link's spatial inertia"),
+    N_("the twist V of the link"),
+    N_("the acceleration of the link as a twist"),
+    N_("the composite body's inertia"),
+    N_("the velocity of the centre of mass"),
+    N_("the sum over the links"),
+    N_("the velocity of the joint's origin"),
+    N_("the velocity of the tool's point"),
+    N_("the rate of the joint's axis"),
+    N_("the rate of the Jacobian's column"),
     N_("dM_ij/dq_k"),
     N_("Mdot"),
     N_("Mdot v"),
@@ -647,6 +870,7 @@ LINES = (
     N_("the row of J"),
     N_("the bias f(v) of the crank's acceleration"),
     N_("the crank's acceleration"),
+    N_("the crank's inertia about its base pin"),
     N_("the crank's own torque"),
     N_("the torque by virtual work"),
     N_("G, the torque per acceleration"),

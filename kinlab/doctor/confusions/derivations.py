@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import comb
@@ -12,8 +12,8 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.parts import Apart, apart, joined, spoils
-from kinlab.doctor.confusions.roads import Road, Ways, roads
+from kinlab.doctor.confusions.parts import Apart, joined, spoils
+from kinlab.doctor.confusions.roads import Road, Ways, roads, through_links
 from kinlab.doctor.confusions.steps import steps
 from kinlab.doctor.confusions.walk import Step
 from kinlab.doctor.text.pairs import pairs_adding_up
@@ -47,20 +47,36 @@ class Found:
     cost: float
 
 
-def taken_otherwise(case: Case) -> list[Found]:
+Shapes = dict[int, tuple[int, ...]]
+Ready = list[tuple[Road, Shapes]]
+
+
+def ready(case: Case) -> Ready:
+    """The derivations that give the engine's answer, with the shapes of their expressions."""
+    return _ready(case, roads(case))
+
+
+def _ready(case: Case, tried: Iterable[Road]) -> Ready:
+    return [(road, shapes) for road in tried if (shapes := _sound(case, road)) is not None]
+
+
+def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     """What explains the hand formula by one step; nothing where none does."""
-    ready = [(road, shapes) for road in roads(case) if (shapes := _sound(case, road)) is not None]
     near: list[Found] = []
     for singly in (False, True):
         found: list[Found] = []
-        for road, shapes in ready:
-            if singly and not road.pairs:
-                continue
-            tried = steps(road.of, shapes, road.n, singly)
-            found += _tried(case, road, [(step,) for step in tried])
+        for road, shapes in ways:
+            if road.pairs or not singly:
+                tried = steps(road.of, shapes, road.n, singly)
+                found += _tried(case, road, [(step,) for step in tried])
         near += found
         if any(one.error <= TOLERANCES.formula_agrees for one in found):
             return found
+    for road, shapes in _ready(case, through_links(case)):
+        found = [*_tried(case, road, [(step,) for step in steps(road.of, shapes, road.n, False)])]
+        if any(one.error <= TOLERANCES.formula_agrees for one in found):
+            return found
+        near += found
     return near
 
 
@@ -70,33 +86,28 @@ def with_these(known: list[Found], case: Case) -> list[Found]:
     return [found for road in roads(case) for found in _tried(case, road, ways)]
 
 
-def one_for_each_kind(case: Case) -> list[Found]:
+def one_for_each_kind(case: Case, ways: Ready, split: Apart | None) -> list[Found]:
     """What explains the hand formula by one step for each kind of term that is wrong."""
-    split = apart(case)
     if split is None or np.sum(~split.right) < 2:
         return []
     found: list[Found] = []
-    for road in roads(case):
-        shapes = _sound(case, road)
-        if shapes is not None:
-            singles = steps(road.of, shapes, road.n, False)
-            values = _walked(road, [(), *((step,) for step in singles)], split.stacks, case)
-            ways = [way for way in joined(split, values, singles) if _compatible(way)]
-            found += _tried(case, road, ways)
+    for road, shapes in ways:
+        singles = steps(road.of, shapes, road.n, False)
+        values = _walked(road, [(), *((step,) for step in singles)], split.stacks, case)
+        both = [way for way in joined(split, values, singles) if _compatible(way)]
+        found += _tried(case, road, both)
     return found
 
 
-def several_taken_otherwise(case: Case) -> list[Found]:
+def several_taken_otherwise(case: Case, ways: Ready, split: Apart | None) -> list[Found]:
     """What explains the hand formula by two steps, by three, or by four whose effects add up.
 
     Steps that leave what is right as it is are joined first; then, where there are few, all of
     them, since two may make up for each other.
     """
     ready = []
-    split = apart(case)
-    for road in roads(case):
-        shapes = _sound(case, road) if road.pairs else None
-        if shapes is not None:
+    for road, shapes in ways:
+        if road.pairs:
             every = sorted(steps(road.of, shapes, road.n, False), key=lambda s: s.cost)
             ready.append(
                 (road, *_apart(case, road, [s for s in every if s.cost <= _LIKELY], split))
@@ -168,7 +179,7 @@ def _compatible(way: tuple[Step, ...]) -> bool:
     return len(set(places)) == len(places)
 
 
-def _sound(case: Case, road: Road) -> dict[int, tuple[int, ...]] | None:
+def _sound(case: Case, road: Road) -> Shapes | None:
     """The shapes of a derivation's expressions, if it is the engine's answer at all."""
     few = case.few(2)
     values, walk = road.walked([()], few.arguments)

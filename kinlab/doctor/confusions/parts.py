@@ -17,6 +17,7 @@ from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.walk import Step
+from kinlab.doctor.confusions.words import together
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
@@ -67,21 +68,33 @@ class Apart:
         The first part is what there is at rest; the others are what they add to it.
         """
         count = len(self.names)
-        parts = np.array(values.reshape(len(values), count, -1, *values.shape[2:]))
-        parts[:, 1:] -= parts[:, :1]
-        return parts
+        return _added(values.reshape(len(values), count, -1, *values.shape[2:]))
 
-    def agreeing(self, parts: Array, wanted: Array) -> Flags:
+    def agreeing(
+        self, parts: Array, wanted: Array, slack: float = TOLERANCES.formula_agrees
+    ) -> Flags:
         """Which of the ways agree in which part, (B, parts)."""
         gap = np.abs(parts - wanted).reshape(*parts.shape[:3], -1)
         worst = np.max(gap, axis=3, initial=0.0) / self.size
         worst = np.where(np.isfinite(worst), worst, np.inf)
-        return np.asarray(np.max(worst, axis=2) <= TOLERANCES.formula_agrees)
+        return np.asarray(np.max(worst, axis=2) <= slack)
 
     @property
     def right(self) -> Flags:
         """Which parts of the hand formula are right, (parts,)."""
         return self.agreeing(self.hand[None], self.engine)[0]
+
+    @property
+    def wrong(self) -> Flags:
+        """Which parts are off by more than finite differences leave, (parts,)."""
+        return ~self.agreeing(self.hand[None], self.engine, TOLERANCES.nearly_agrees)[0]
+
+
+def _added(values: Array) -> Array:
+    """What each part adds to the first, (B, parts, ...)."""
+    parts = np.array(values)
+    parts[:, 1:] -= parts[:, :1]
+    return parts
 
 
 def apart(case: Case) -> Apart | None:
@@ -103,8 +116,7 @@ def apart(case: Case) -> Apart | None:
     by_block = [x.reshape(len(blocks), _STATES, *x.shape[1:]) for x in (hand, engine)]
     sums = []
     for x in by_block:
-        parts = np.array(x[:-1])
-        parts[1:] -= parts[:1]
+        parts = _added(x[None, :-1])[0]
         rest = np.max(np.abs(x[-1] - np.sum(parts, axis=0)))
         if rest > TOLERANCES.formula_agrees * float(np.max(np.abs(by_block[1]))):
             return None
@@ -150,27 +162,18 @@ def spoils(found: Apart, values: Array) -> Flags:
     return np.asarray(np.any(found.right & ~still, axis=1))
 
 
-def proved(case: Case, engine: Array) -> tuple[str, ...]:
+def proved(case: Case, engine: Array, found: Apart | None) -> tuple[str, ...]:
     """What is right of a formula that is wrong, in sentences: kinds of term, and entries."""
     said = []
-    found = apart(case)
-    if found is not None and found.right.any() and not found.right.all():
+    if found is not None and found.right.any() and found.wrong.any():
         at_rest = _(_AT_REST.get(case.quantity.name, _GRAVITY))
         words = [_(_TERMS[name]) if name else at_rest for name in found.names]
         good = [word for word, right in zip(words, found.right, strict=True) if right]
-        bad = [word for word, right in zip(words, found.right, strict=True) if not right]
+        bad = [word for word, wrong in zip(words, found.wrong, strict=True) if wrong]
         told = _("{good}: right; {bad}: wrong")
-        said.append(told.format(good=_list(good), bad=_list(bad)))
+        said.append(told.format(good=together(good), bad=together(bad)))
     entries = _entries(case, engine)
     return (*said, entries) if entries else tuple(said)
-
-
-def _list(words: list[str]) -> str:
-    first, *rest = words
-    both = _("{first} and {last}")
-    for word in rest:
-        first = both.format(first=first, last=word)
-    return first
 
 
 def _entries(case: Case, engine: Array) -> str:
@@ -194,11 +197,11 @@ def _entries(case: Case, engine: Array) -> str:
             inside = np.take(right, np.flatnonzero(whole), axis=axis)
             if inside.any() and inside.sum() == right.sum():
                 names = [str(int(k) + 1) for k in np.flatnonzero(whole)]
-                return _(one if len(names) == 1 else many).format(list=_list(names))
+                return _(one if len(names) == 1 else many).format(list=together(names))
     places = np.argwhere(right)
     if case.index or len(places) > _NAMED:
         said = _("{right} of {all} entries: right")
         return said.format(right=len(places), all=int(live.sum()))
     name = case.quantity.name
     names = [shown_entry(f"{name}[{','.join(map(str, place.tolist()))}]") for place in places]
-    return _("{list}: right").format(list=_list(names))
+    return _("{list}: right").format(list=together(names))

@@ -311,6 +311,19 @@ class Walk:
             out = np.stack(np.broadcast_arrays(*x), axis=-1)
         elif name == "twist":
             out = np.concatenate(np.broadcast_arrays(*x), axis=-1)
+        elif name == "skew":
+            out = skew(x[0])
+        elif name == "blocks":
+            rows = [np.concatenate(np.broadcast_arrays(*x[k : k + 2]), axis=-1) for k in (0, 2)]
+            out = np.concatenate(np.broadcast_arrays(*rows), axis=-2)
+        elif name == "stacked":
+            out = np.concatenate(np.broadcast_arrays(*x), axis=-2)
+        elif name == "motion":
+            out = _product(_crossing(x[0]), x[1])
+        elif name == "force":
+            out = -_product(np.swapaxes(_crossing(x[0]), -1, -2), x[1])
+        elif name == "both_":
+            out = x[0] * np.eye(x[0].shape[-1])
         elif name == "diagonal":
             out = x[0][..., None] * np.eye(x[0].shape[-1])
         elif name == "inv":
@@ -324,6 +337,13 @@ class Walk:
             out = np.sum((products - np.eye(x[0].shape[-1])) ** 2, axis=(-2, -1))
         elif name == "conditions":
             out = np.stack([x[0][..., 0, 0] - x[0][..., 1, 1], x[0][..., 0, 1]], axis=-1)
+        elif name == "times_j":
+            out = np.sum(x[0], axis=-1) * x[1][..., None, :]
+        elif name == "times_i":
+            out = np.sum(x[0], axis=-1) * x[1][..., None]
+        elif name == "pose":
+            out = np.zeros((*np.broadcast_shapes(x[0].shape[:2], x[1].shape[:2]), 4, 4), x[0].dtype)
+            out[..., :3, :3], out[..., :3, 3], out[..., 3, 3] = x[0], x[1], 1.0
         elif name == "ikj":
             out = np.swapaxes(x[0], -1, -2)
         elif name == "jki":
@@ -387,6 +407,21 @@ def _product(one: Array, two: Array) -> Array:
         raise Absent
     both: Array = np.matmul(one, two)
     return both
+
+
+def skew(vector: Array) -> Array:
+    """The matrix of the cross product with a vector."""
+    turned: Array = np.cross(vector[..., None, :], np.eye(3))
+    return np.swapaxes(turned, -1, -2)
+
+
+def _crossing(twist: Array) -> Array:
+    """The matrix of a twist's product with a twist, the linear part first."""
+    if twist.shape[-1] != 6:
+        raise Absent
+    moving, turning = skew(twist[..., :3]), skew(twist[..., 3:])
+    top = np.concatenate([turning, moving], axis=-1)
+    return np.concatenate([top, np.concatenate([0 * turning, turning], axis=-1)], axis=-2)
 
 
 def _regular(matrix: Array) -> Array:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from kinlab.doctor.confusions.walk import again
 from kinlab.host.language import N_, _
@@ -37,6 +37,18 @@ MEANT = {
     "qd": N_("the velocity qd"),
     "qdd": N_("the acceleration qdd"),
     "R_": N_("the rotation R"),
+    "x_": N_("the axis x"),
+    "y_": N_("the axis y"),
+    "tw": N_("the twist V"),
+    "fw": N_("the wrench's force"),
+    "nw": N_("the wrench's moment"),
+    "e": N_("the tool's offset"),
+    "arm": N_("the tool's offset"),
+    "dtw": N_("the acceleration as a twist"),
+    "Is": N_("the spatial inertia"),
+    "Ic": N_("the inertia about the centre"),
+    "dz": N_("the axis's rate"),
+    "vc": N_("the velocity of the centre of mass"),
     "crank": N_("the crank's direction u"),
     "rod": N_("the rod's direction w"),
     "l1": N_("the crank's length l1"),
@@ -59,6 +71,20 @@ _SPELT = {
     "st": "sin(theta)",
     "ca": "cos(alpha)",
     "sa": "sin(alpha)",
+    "tw": "V",
+    "Rn": "R",
+    "Rt": "R",
+    "pc": "p_C",
+    "fw": "f",
+    "nw": "n",
+    "dtw": "A",
+    "Is": "I",
+    "x_": "x",
+    "y_": "y",
+    "vc": "v_C",
+    "dz": "z_dot",
+    "dp": "p_dot",
+    "u": "o_dot",
     "crank": "u",
     "rod": "w",
     "dw": "omega_dot",
@@ -112,6 +138,8 @@ KNOWN = {
     "M a": N_("the inertia terms"),
     "o": N_("the joint's origin"),
     "R P_C": N_("the centre of mass in the link"),
+    "m*skew(P_C) skew(P_C)": N_("the parallel-axis term"),
+    "m*skew(p_C) skew(p_C)": N_("the parallel-axis term"),
     "m*Jv^T Jv": N_("the mass's part"),
     "Jw^T (R I R^T) Jw": N_("the inertia tensor's part"),
     "D": "dM_ij/dq_k",
@@ -263,3 +291,12 @@ def summands(node: ast.expr) -> Iterator[ast.expr]:
         yield from summands(node.right)
     else:
         yield node
+
+
+def together(pieces: Iterable[str]) -> str:
+    """Pieces of formulas in a sentence: ``l1 = 0.5 and m2 = 1``."""
+    told, *rest = [*pieces] or [""]
+    pair = _("{first} and {last}")
+    for piece in rest:
+        told = pair.format(first=told, last=piece)
+    return told

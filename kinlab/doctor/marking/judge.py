@@ -10,6 +10,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
+from kinlab.doctor.confusions.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas
 from kinlab.doctor.marking.marks import (
@@ -27,7 +28,6 @@ from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.doctor.text.own_names import in_robot_names
-from kinlab.doctor.verdicts import together
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences

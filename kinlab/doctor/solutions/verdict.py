@@ -20,6 +20,7 @@ from kinlab.check.quantities.inverse import TASKS, Task, as_solutions, reached
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.derivations import (
     Found,
+    ready,
     several_taken_otherwise,
     taken_otherwise,
     with_these,
@@ -185,7 +186,11 @@ def _causes(found: Solutions, engine: Array) -> list[Cause]:
     whole = list(_by_reading(found, engine)) or list(_by_mixing(found))
     if whole:
         return whole
-    for search in (taken_otherwise, several_taken_otherwise):
+    searches: tuple[Callable[[Case], list[Found]], ...] = (
+        lambda case: taken_otherwise(case, ready(case)),
+        lambda case: several_taken_otherwise(case, ready(case), None),
+    )
+    for search in searches:
         for limited in (False, True):
             causes = _by_derivation(found, search, limited)
             if causes:

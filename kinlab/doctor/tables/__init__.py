@@ -16,6 +16,7 @@ module          what it holds
 ``report``      Diagnoses of tables written down: one self-contained HTML page, or Markdown
 ``result``      What the table doctor says: verdict, causes, evidence; as text, HTML and plain
                 data
+``rows``        Whole rows: which one is left out, doubled or too many?
 ``search``      The search for kinematic slips: one, then two, the simplest first
 ``words``       What is wrong with a cell, told from what is written and what is meant
 ``zeros``       The same arm in other frames: other zeros of its joints, another base, another

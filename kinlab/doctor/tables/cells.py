@@ -63,8 +63,8 @@ def one_change(bases: Sequence[Reading], target: Target) -> list[Reading]:
     for start in range(0, len(bases), 64):
         part = bases[start : start + 64]
         poses = stacked_frames([one.chain for one in part], few.q)
-        gap, last = _differences(poses, few)
-        steady, fixed = _spread(gap, target.size), _spread(last, target.size)
+        gap, last = differences(poses, few)
+        steady, fixed = spread(gap, target.size), spread(last, target.size)
         for k, first in enumerate(part):
             n = first.chain.n
             for frame in np.flatnonzero(steady[k] <= target.steady):
@@ -78,7 +78,7 @@ def one_change(bases: Sequence[Reading], target: Target) -> list[Reading]:
     return found
 
 
-def _differences(poses: Array, target: Target) -> tuple[Array, Array]:
+def differences(poses: Array, target: Target) -> tuple[Array, Array]:
     """F^-1 T_ref T^-1 F for frames 0 to n, (K, N, n + 1, 4, 4), and T^-1 T_ref, (K, N, 4, 4)."""
     back = inverse(poses[:, :, -1])
     world = target.poses @ back
@@ -86,7 +86,7 @@ def _differences(poses: Array, target: Target) -> tuple[Array, Array]:
     return inverse(own) @ (world[:, :, None] @ own), back @ target.poses
 
 
-def _spread(motion: Array, size: float) -> Array:
+def spread(motion: Array, size: float) -> Array:
     """Largest change over the states (axis 1), lengths over the arm's size."""
     spread = np.abs(motion - motion[:, :1])
     spread[..., :3, 3] /= size
@@ -217,88 +217,6 @@ def row_text(row: Array) -> str:
     return f"a {a}, alpha {degrees(row[ALPHA])}, d {d}, theta {degrees(row[THETA])}"
 
 
-def inserted(chain: Chain, target: Target) -> list[Reading]:
-    """Rows that are left out: a chain with one joint fewer than the target."""
-    found = []
-    for row in range(chain.n + 1):
-        for slides in (False, True):
-            for sign in (1.0, -1.0):
-                new = Chain(
-                    chain.modified,
-                    np.insert(chain.cells, row, 0.0, axis=0),
-                    np.insert(chain.prismatic, row, slides),
-                    np.insert(chain.sign, row, sign),
-                    chain.base,
-                    chain.tool,
-                    (*chain.source[:row], None, *chain.source[row:]),
-                )
-                frame = row if chain.modified else row + 1
-                gap, _last = _differences(frames(new, target.few.q)[None], target.few)
-                if _spread(gap, target.size)[0, frame] > target.steady:
-                    continue
-                solved = row_of(chain.modified, np.mean(gap[0, :, frame], axis=0), target.steady)
-                if solved is None:
-                    continue
-                for column in range(4):
-                    value = float(solved[column])
-                    angle = column in (ALPHA, THETA)
-                    new = new.with_cell(
-                        row, column, wrapped(value) if angle else tidy_length(value, 0.0)
-                    )
-                if not target.met(new):
-                    continue
-                left_out = (
-                    _("row {row} is left out: prismatic, {meant}")
-                    if slides
-                    else _("row {row} is left out: revolute, {meant}")
-                )
-                cause = Cause(
-                    row + 1,
-                    "order",
-                    None,
-                    new.cells[row],
-                    "left out",
-                    left_out.format(row=row + 1, meant=row_text(new.cells[row])),
-                    1.0 if sign > 0 else 1.4,
-                )
-                found.append(Reading(new, (cause,)))
-    return found
-
-
-def removed(chain: Chain) -> list[Reading]:
-    """The chain without each of its rows."""
-    found = []
-    for row in range(chain.n):
-        keep = [k for k in range(chain.n) if k != row]
-        new = replace(
-            chain,
-            cells=chain.cells[keep],
-            prismatic=chain.prismatic[keep],
-            sign=chain.sign[keep],
-            source=tuple(chain.source[k] for k in keep),
-        )
-        twins = [
-            k
-            for k in (row - 1, row + 1)
-            if 0 <= k < chain.n and np.array_equal(chain.cells[k], chain.cells[row])
-        ]
-        told = _("row {row} is too many").format(row=row + 1)
-        if twins:
-            told = _("row {row} repeats row {other}").format(row=row + 1, other=twins[0] + 1)
-        cost = 1.0 if twins and twins[0] < row else 1.1 if twins else 1.5
-        cause = Cause(
-            row + 1,
-            "order",
-            chain.cells[row],
-            None,
-            "doubled" if twins else "too many",
-            told,
-            cost,
-        )
-        found.append(Reading(new, (cause,)))
-    return found
-
-
 def two_cells(chain: Chain, target: Target) -> list[Reading]:
     """Every way to meet the target by changing two cells of the user's table."""
     found = _two_angles(chain, target)
@@ -368,12 +286,12 @@ def _turned(chain: Chain, target: Target) -> list[Reading]:
     """Single angles that make the rotations agree, whatever the positions."""
     few = target.few
     poses = frames(chain, few.q)
-    gap, _last = _differences(poses[None], few)
+    gap, _last = differences(poses[None], few)
     found = []
     for row, column in _in_order(chain, (ALPHA, THETA)):
         motion = gap[0, :, chain.frame_of(row, column)].copy()
         motion[:, :3, 3] = 0.0
-        if _spread(motion[None], 1.0)[0] > target.steady:
+        if spread(motion[None], 1.0)[0] > target.steady:
             continue
         angle, _length, rest = _screw(np.mean(motion, axis=0), AXIS_OF[column])
         if rest <= target.steady and abs(angle) > target.steady:

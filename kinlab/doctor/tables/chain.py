@@ -20,7 +20,6 @@ from kinlab.model.link import Convention
 
 COLUMNS = ("a", "alpha", "d", "theta")
 A, ALPHA, D, THETA = range(4)
-LENGTHS = (A, D)
 AXIS_OF = {A: 0, ALPHA: 0, D: 2, THETA: 2}
 """The axis, x or z, along or about which a column of the table moves the frame."""
 

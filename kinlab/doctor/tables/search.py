@@ -7,10 +7,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.cells import inserted, one_change, removed, two_cells
+from kinlab.doctor.tables.cells import one_change, two_cells
 from kinlab.doctor.tables.chain import Chain
 from kinlab.doctor.tables.readings import Reading, readings
 from kinlab.doctor.tables.reference.target import Target
+from kinlab.doctor.tables.rows import inserted, removed
 from kinlab.doctor.tables.words import SIX
 
 

@@ -14,6 +14,8 @@ from kinlab.arrays import Array
 from kinlab.doctor.changes import Case
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
 
 WRENCH = ("fx", "fy", "fz", "nx", "ny", "nz")
 """The names of a wrench's parts, in order."""
@@ -21,13 +23,14 @@ _SPELT = re.compile(r"([fFnNM])_?([xyz])")
 _MOVING = re.compile(r"qdd?\d+|m\d+|g")
 
 
-def with_forces(file: FormulaFile, taken: set[str]) -> FormulaFile:
+def with_forces(file: FormulaFile, robot: Robot) -> FormulaFile:
     """The file with fx for F_x, nz for M_z, where nothing else is called so.
 
     Args:
         file: the formulas.
-        taken: the robot's own names.
+        robot: whose they are.
     """
+    taken = set(vocabulary(robot.table).values) if robot.table is not None else set()
     used = {name for node in file.formulas.values() for name in tree.names(node)}
     meant = {}
     for name in sorted(used - {*file.symbols} - taken):

@@ -18,8 +18,8 @@ from kinlab.arrays import Array, seed_of, whole, word
 from kinlab.errors import FileError, OptionError, UnreachableError
 from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.design.goals import GOALS
-from kinlab.fivebar.design.problem import Problem
-from kinlab.fivebar.design.synthesis import FiveBarDesign, Range, finish, read_problem, solve
+from kinlab.fivebar.design.problem import Problem, Range, read_problem
+from kinlab.fivebar.design.synthesis import FiveBarDesign, finish, solve
 from kinlab.host.evidence import Evidence
 from kinlab.host.files import read_text, write_text
 from kinlab.host.introductions import Told

@@ -2,33 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import Array, number, seed_of, shown, word
-from kinlab.errors import OptionError, UnreachableError
-from kinlab.fivebar.arguments import HANGING, Mode, read_mode
+from kinlab.arrays import Array, seed_of
+from kinlab.errors import UnreachableError
+from kinlab.fivebar.arguments import Mode
 from kinlab.fivebar.design.goals import GOALS
-from kinlab.fivebar.design.problem import Problem
+from kinlab.fivebar.design.problem import Problem, Range, read_problem
 from kinlab.fivebar.design.search import Progress, evolve, exchange, search_points
 from kinlab.fivebar.linkage import FiveBar
-from kinlab.fivebar.workspace import Rectangle, read_rectangle
+from kinlab.fivebar.workspace import Rectangle
 from kinlab.host.evidence import Evidence
 from kinlab.host.introductions import Told
 from kinlab.tolerances import TOLERANCES
-
-_SIZES = (0.02, 2.5)
-"""Range of lengths where none is given, in parts of the farthest corner's distance."""
-
-_SPAN = (1e-6, 1e6)
-"""m. Shortest side and farthest corner of a rectangle that is designed for."""
-
-Range = tuple[float, float] | float | None
 
 
 @dataclass(frozen=True)
@@ -307,112 +298,3 @@ def require_feasible(problem: Problem, x: Array) -> None:
             f"line); the nearest is {near} m; widen the lengths, or move the rectangle from the "
             "base pins"
         )
-
-
-def read_problem(
-    workspace: ArrayLike,
-    goal: str | Mapping[str, float],
-    l1: Range,
-    l2: Range,
-    e: Range,
-    height: Range,
-    limits: Mapping[str, float] | None,
-    payload: float | None,
-    mode: Mode | None,
-) -> Problem:
-    """Reads the arguments of :func:`design_fivebar`.
-
-    Raises:
-        OptionError: as there.
-    """
-    what = "design_fivebar"
-    box = read_rectangle(workspace, what)
-    if not (box.x_max > box.x_min and box.y_max > box.y_min):
-        raise OptionError(f"{what}: workspace {tuple(box)} has no area; give it two sides")
-    shortest = min(box.x_max - box.x_min, box.y_max - box.y_min)
-    if shortest < _SPAN[0] or np.max(np.abs(box)) > _SPAN[1]:
-        raise OptionError(
-            f"{what}: workspace {tuple(box)} is no machine's, its shorter side being {shortest:g} "
-            f"m; metres between {_SPAN[0]:g} and {_SPAN[1]:g} are taken"
-        )
-    weights = _weights(goal)
-    asked = _limits(limits)
-    needs = [name for name in ("torque",) if name in weights or name in asked]
-    if needs and payload is None:
-        raise OptionError(f"{what}: the goal torque needs the payload, kg; give payload=")
-    mass = 0.0 if payload is None else number(payload, f"{what}: payload", above=0.0)
-    tall = box.y_max - box.y_min
-    far = float(np.hypot(max(abs(box.x_min), abs(box.x_max)), max(abs(box.y_min), abs(box.y_max))))
-    far = far if height is None else float(np.hypot(box.x_max - box.x_min, tall))
-    least, most = (part * far for part in _SIZES)
-    ranges = [
-        _range(value, f"{what}: {name}", (0.0 if name == "e" else least, most))
-        for name, value in (("l1", l1), ("l2", l2), ("e", e))
-    ]
-    for name, (low, _) in zip(("l1", "l2", "e"), ranges, strict=True):
-        if low < 0.0 or (low == 0.0 and name != "e"):
-            raise OptionError(f"{what}: {name} starts at {low:g} m; lengths are positive")
-    if height is not None:
-        ranges.append(_range(height, f"{what}: height", (-2.0 * most, 0.0)))
-    side = -1.0 if height is None and 0.5 * (box.y_min + box.y_max) > 0.0 else 1.0
-    if height is not None and sum(ranges[3]) + tall > 0.0:
-        side = -1.0
-    signs = read_mode(mode if mode is not None else np.asarray(HANGING) * side)
-    return Problem(
-        box=box,
-        free_height=height is not None,
-        mode=(int(signs[0]), int(signs[1])),
-        lengths=tuple(ranges),
-        weights=weights,
-        limits=asked,
-        payload=mass,
-    )
-
-
-def _weights(goal: Any) -> dict[str, float]:
-    if isinstance(goal, str):
-        return {word(goal, GOALS, "design_fivebar: goal"): 1.0}
-    if not isinstance(goal, Mapping) or not goal:
-        raise OptionError(
-            f"design_fivebar: goal is {shown(goal)}; give a name, or names with weights"
-        )
-    out = {}
-    for name, weight in goal.items():
-        word(name, GOALS, "design_fivebar: goal")
-        out[name] = number(weight, f"design_fivebar: weight of {name}", above=0.0)
-    return out
-
-
-def _limits(limits: Any) -> dict[str, float]:
-    if limits is None:
-        return {}
-    if not isinstance(limits, Mapping):
-        raise OptionError(f"design_fivebar: limits is {shown(limits)}; give names with numbers")
-    out = {}
-    for name, limit in limits.items():
-        word(name, GOALS, "design_fivebar: limit")
-        value = number(limit, f"design_fivebar: limit of {name}", above=0.0)
-        if name == "transmission" and not value < 90.0:
-            raise OptionError(
-                f"design_fivebar: limit of transmission is {value:g}°; it is an angle below 90°"
-            )
-        if name == "condition" and not value > 1.0:
-            raise OptionError(f"design_fivebar: limit of condition is {value:g}; above 1")
-        out[name] = value
-    return out
-
-
-def _range(value: Any, what: str, default: tuple[float, float]) -> tuple[float, float]:
-    if value is None:
-        return default
-    if isinstance(value, Sequence) and not isinstance(value, str) and len(value) == 2:
-        low, high = (number(each, what) for each in value)
-        if max(abs(low), abs(high)) > _SPAN[1]:
-            raise OptionError(f"{what} is ({low:g}, {high:g}); at most {_SPAN[1]:g} m")
-        if low > high:
-            raise OptionError(f"{what} is ({low:g}, {high:g}); give the least first")
-        return low, high
-    one = number(value, what)
-    if abs(one) > _SPAN[1]:
-        raise OptionError(f"{what} is {one:g}; at most {_SPAN[1]:g} m")
-    return one, one

@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.singularities.minors import Factor, factors
+from kinlab.analysis.singularities.factor import Factor
+from kinlab.analysis.singularities.minors import factors
 from kinlab.analysis.structure.task_space import revolute
 from kinlab.arrays import Array, frozen, truth
 from kinlab.engine.states import joint_vector

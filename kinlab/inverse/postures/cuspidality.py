@@ -20,7 +20,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.analysis.singularities.minors import Factor, factors
+from kinlab.analysis.singularities.factor import Factor
+from kinlab.analysis.singularities.minors import factors
 from kinlab.analysis.structure.task_space import TaskSpace, read_task, revolute, search_box
 from kinlab.arrays import Array, between, seed_of, truth, whole
 from kinlab.engine.fast.stacks import fk

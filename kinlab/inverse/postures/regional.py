@@ -21,7 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.analysis.singularities.minors import Factor, factors
+from kinlab.analysis.singularities.factor import Factor
+from kinlab.analysis.singularities.minors import factors
 from kinlab.analysis.structure.axes import Axes, first_axis
 from kinlab.analysis.structure.task_space import read_task, revolute
 from kinlab.arrays import Array

@@ -148,10 +148,17 @@ def _regional(robot: Robot, cells: int) -> SolutionMap:
         + ("" if four else "; that no pose has more than two solutions")
         + ("" if special.complete else "; the cusps"),
     )
-    return _mapped(
-        (robot.name, ("rho", "z"), u, v),
-        counts,
-        (curves, evidence, cusps, arm.points(crossed[:, :2]), collapsed_points(arm)),
+    return SolutionMap(
+        robot.name,
+        ("rho", "z"),
+        u,
+        v,
+        **_grids(counts, u, v),
+        curves=curves,
+        evidence=evidence,
+        cusps=cusps,
+        nodes=arm.points(crossed[:, :2]),
+        collapsed=collapsed_points(arm),
         kind="quaternary" if four else "binary",
         generic=generic,
     )
@@ -172,13 +179,19 @@ def _planar(robot: Robot, cells: int, angle: float) -> SolutionMap:
         proved="each counted solution is one",
         found="that there is no other at any of them",
     )
-    return _mapped((robot.name, ("x", "y"), u, v), counts, (curves, evidence))
+    return SolutionMap(
+        robot.name, ("x", "y"), u, v, **_grids(counts, u, v), curves=curves, evidence=evidence
+    )
 
 
-def _mapped(plane: Any, counts: SolutionCounts, shown: Any, **kind: Any) -> SolutionMap:
-    numbers = (counts.count, counts.within_limits, counts.complete)
-    grids = (one.reshape(len(plane[2]), len(plane[3])) for one in numbers)
-    return SolutionMap(*plane, *grids, *shown, **kind)
+def _grids(counts: SolutionCounts, u: Array, v: Array) -> dict[str, Any]:
+    """Counts of a stack of points as fields of a map over u and v."""
+    shape = (len(u), len(v))
+    return {
+        "count": counts.count.reshape(shape),
+        "within_limits": counts.within_limits.reshape(shape),
+        "complete": counts.complete.reshape(shape),
+    }
 
 
 def _planar_curves(robot: Robot, angle: float) -> Array:
