@@ -422,6 +422,8 @@ def _plain(
 
 
 def _text(value: Any, place: str) -> str:
+    if isinstance(value, list):  # a matrix as TOML has it
+        value = "[" + ", ".join(_text(one, place) for one in value) + "]"
     if not isinstance(value, str):
         raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
     if len(value) > _LENGTH:

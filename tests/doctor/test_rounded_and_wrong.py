@@ -156,7 +156,7 @@ def test_a_number_is_not_called_a_parameter_by_chance():
     [
         ("J12", "0.4*c12", "-0.4*s12", ("sin/cos",)),
         ("J11", "-l1*s1 + l1*c12", "-l1*s1 - l2*s12", ("index", "sin/cos")),
-        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_{1} + l_2 c_{12}", ("sin/cos",)),
+        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_1 + l_2 c_{12}", ("sin/cos",)),
         (
             "g1",
             "(m2+m2)*g*l1*cos(q1) - m1*g*l2*cos(q1+q2)",

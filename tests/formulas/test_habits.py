@@ -41,6 +41,13 @@ def test_an_entry_in_another_formula_is_that_formula():
     assert found[1].causes[0].shown == {"M21": "m2*l2^2 + m2*l1*l2*c2"}
 
 
+def test_a_matrix_as_a_table_of_toml():
+    rows = [["(m1+m2)*l1^2 + m2*l2^2 + 2*m2*l1*l2*c2", "m2*l2^2 + m2*l1*l2*c2"], ["M12", "m2*l2^2"]]
+    assert judged(M=rows)[:2] == ([True], [])
+    assert judged(g=["(m1+m2)*g*l1*c1 + m2*g*l2*c12", "m2*g*l2*c12"])[:2] == ([True], [])
+    assert "int; write the formula as text" in judged(M=[[1, "2"], ["3", "4"]])[1][0]
+
+
 @pytest.mark.parametrize(
     ("entry", "text", "told"),
     [

@@ -254,7 +254,7 @@ def _recursion(case: Case, text: str, in_base: bool, said: str = "tau", pairs: b
 
 def _solved(matrix: Array, right: Array) -> Array:
     """The solutions of (B, N, n, n) systems; NaN where there is none."""
-    some = np.isfinite(matrix).all(axis=(2, 3))[..., None, None]
+    some = np.asarray(np.isfinite(matrix).all(axis=(2, 3)))[..., None, None]
     safe = np.where(some, matrix, np.eye(matrix.shape[-1]))
     regular = np.asarray(np.linalg.matrix_rank(safe) == matrix.shape[-1])
     some = some & regular[..., None, None]
