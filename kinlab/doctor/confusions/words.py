@@ -106,6 +106,7 @@ _SPELT = {
     "early": "dL/dqd(t1)",
     "later": "dq(t2)",
     "earlier": "dq(t1)",
+    "pull": "f",
 }
 
 _CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
