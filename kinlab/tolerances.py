@@ -122,6 +122,13 @@ class Tolerances:
     noise_step: float = 1e-8
     """Step in rad over which a smooth function is straight to 1e-16 of its size."""
 
+    least_step: float = 1e-13
+    """Step in rad that a formula hardly feels: it changes by 1e-13 times its slope."""
+
+    erratic: float = 1e-3
+    """Share of its size by which the least step changes only what is rounding alone: elsewhere a
+    matrix would need a condition number of 1e10."""
+
     noise_of_differences: float = 1e-13
     """Noise of a function, relative to its size, that its own arithmetic does not make (1e-15)
     and differences do: 1e-12 with steps of 1e-4."""

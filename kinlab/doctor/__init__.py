@@ -10,6 +10,8 @@ module              what it holds
 ``examine``         The examination: compare, try the readings, look for slips in the entries,
                     rank what explains
 ``file``            A file of formulas as text, each examined entry by entry
+``numbers``         The robot's numbers taken otherwise: one of them another, or all of a kind
+                    rounded
 ``regression``      The difference of a function from the derived formula as a short sum of known
                     terms
 ``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,

@@ -28,10 +28,10 @@ from kinlab.doctor.confusions.derivations import (
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.numbers import other_numbers
 from kinlab.doctor.confusions.parts import Apart, apart, proved
 from kinlab.doctor.confusions.words import together
 from kinlab.doctor.derived import derivation
+from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -130,7 +130,7 @@ def _explained(
         one step, its kinds of term.
     """
     same = case.hand.shape == engine.shape
-    silent = _without_value(case, engine) if same else None
+    silent = (_without_value(case, engine) or _rounding_alone(case)) if same else None
     tried = readings(case)
     signs = _bare_signs(case.hand)
     if signs:
@@ -159,16 +159,19 @@ def _explained(
     listed = all({*c.kinds} == {"coefficient"} and len(c.kinds) > 1 for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
-        causes = [*_singly(case, changed), *causes] or rough
+        causes = [*_singly(case, changed)] or rough or causes
         near = None if causes else verdicts.to_digits(case, engine)
         if near is not None:
             return [], (), near, None
     split: Apart | None = None
     if not causes and not signs:
         split = apart(case)
-        found_ = one_for_each_kind(case, ways, split) or several_taken_otherwise(case, ways, split)
-        causes = [_as_steps(found) for found in found_]
-    if not causes:
+        few = case if written else replace(case, slack=min(_left(worst), TOLERANCES.slips_leave))
+        found_ = one_for_each_kind(few, ways, split) or several_taken_otherwise(few, ways, split)
+        causes = _exactly([_as_steps(found) for found in found_], worst)
+        if not causes:
+            causes = _exactly([*_in_pairs(few, tried)], worst)
+    if not causes and signs:
         causes = [*_in_pairs(case, tried)]
     if same and all(len(cause.kinds) > _LIST for cause in causes):
         # beside a list of slips only the likeliest reading: each costs a search of its own
@@ -217,10 +220,22 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     return Cause(told, ("no value",), ("",), error, 1.0)
 
 
+def _rounding_alone(case: Case) -> Cause | None:
+    """A function that inverts what has no inverse."""
+    said = verdicts.erratic(case)
+    return Cause(said, ("singular matrix",), ("",), 0.0, 1.0) if said else None
+
+
 def _left(worst: float) -> float:
     """The relative error that finite differences may leave once a slip of that size is undone."""
     most = min(TOLERANCES.finite_differences, TOLERANCES.left_of_slip * worst)
     return max(TOLERANCES.formula_agrees, most)
+
+
+def _exactly(causes: list[Cause], worst: float) -> list[Cause]:
+    """Explanations that leave nothing; where there are none, those that leave differences."""
+    exact = [cause for cause in causes if cause.error_after <= TOLERANCES.formula_agrees]
+    return exact or _roughly(causes, worst)
 
 
 def _roughly(causes: list[Cause], worst: float) -> list[Cause]:

@@ -16,6 +16,7 @@ from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.meanings import stands_for
 from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
@@ -92,7 +93,7 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
-    file = _with_slides(file, robot)
+    file = with_habits(file, robot)
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
         return [one for found in done.values() for one in found]
@@ -105,28 +106,6 @@ def examine_formulas(
         for plain, found in done.items()
         for first, second in zip(found, again[plain], strict=True)
     ]
-
-
-def _with_slides(file: FormulaFile, robot: Robot) -> FormulaFile:
-    """The file with d3 for q3 where joint 3 slides, and nothing else is called so."""
-    words = vocabulary(robot.table) if robot.table is not None else None
-    if words is None or robot.table is None:
-        return file
-    slides = [k for k, link in enumerate(robot.table.links, 1) if link.joint == "prismatic"]
-    spelled = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
-    meant = {
-        way.format(k=k): f"q{'d' * n}{k}" for k in slides for n in range(3) for way in spelled[n]
-    }
-    used = {
-        n for node in (*file.formulas.values(), *file.symbols.values()) for n in tree.names(node)
-    }
-    new = {}
-    for name in sorted(used - {*words.values, *file.symbols}):
-        plain = name.replace("_", "")
-        if plain in meant and plain not in words.values:
-            new[name] = meant[plain]
-    symbols = file.symbols | {name: tree.sym(value) for name, value in new.items()}
-    return replace(file, symbols=symbols, symbol_texts=file.symbol_texts | new)
 
 
 def _by_quantity(
@@ -204,7 +183,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
     """
-    file = _with_slides(file, robot)
+    file = with_habits(file, robot)
     wanted, titles = _claims(file, robot)
     for plain, formulas in wanted.items():
         _answers(plain, formulas, titles, robot, file, _FEWEST, 0)

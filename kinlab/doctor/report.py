@@ -33,6 +33,7 @@ from kinlab.formulas.record import AnswerShapeError, function_name, state_by_sta
 from kinlab.formulas.text import (
     SHORTHAND,
     FormulaFile,
+    alone,
     entries_of,
     formula_file,
     joint_spelling,
@@ -151,12 +152,12 @@ def _of_sound(
     left = document
     for entry in entries_of(document):
         try:
-            alone = formula_file(with_entries(document, {entry}), path)
+            one = formula_file(alone(document, entry), path)
             try:
-                robot = robot_of(alone)
+                robot = robot_of(one)
             except KinlabError as missing:
                 return [], [Unread(path, missing)]
-            require_sound(alone, robot)
+            require_sound(one, robot)
         except KinlabError as problem:
             bad.append(Unread(f"{path}: {entry}", problem))
             left = with_entries(left, set(entries_of(left)) - {entry})

@@ -13,8 +13,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.numbers import rounded_robots
 from kinlab.doctor.confusions.robots import with_gravity
+from kinlab.doctor.numbers import rounded_robots
 from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.formulas import tree

@@ -198,7 +198,7 @@ def in_text(
     for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
         target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
         lines.append(Line(written, names, at, np.array(target), forms, numeric=at is own))
-    tried = [(line, 1) for line in lines if numbers] + [(line, 2) for line in lines]
+    tried = [(line, 1) for line in lines if numbers and left_out] + [(line, 2) for line in lines]
     found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
     found = found or _part_by_part(lines[0], right)
     found = found or next(filter(None, (mended(line) for line in lines)), [])

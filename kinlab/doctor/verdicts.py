@@ -22,6 +22,7 @@ from kinlab.doctor.rounding import (
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
 from kinlab.doctor.text.stand_ins import FREE, STEPS
 from kinlab.doctor.text.written import Written
+from kinlab.errors import KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -33,6 +34,8 @@ _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
 _FEW = 8
 """States at which the noise of a function is measured."""
+_COORDINATES = 6
+"""Of a twist."""
 _ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
@@ -253,7 +256,7 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
     most = float(np.max(own))
     error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
     noisy = error <= TOLERANCES.coefficient_digits and _takes_differences(case, most)
-    if not noisy and error > TOLERANCES.slips_leave:
+    if not noisy and not error <= TOLERANCES.slips_leave:
         return None
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
@@ -274,6 +277,43 @@ def _takes_differences(case: Case, size: float) -> bool:
     )
     noise = float(np.max(np.abs(before - 2.0 * at + after)))
     return noise > TOLERANCES.noise_of_differences * size
+
+
+def erratic(case: Case) -> str | None:
+    """What is wrong with a function whose answer is rounding alone, or None.
+
+    A step of 1e-13 rad changes a formula by 1e-13 of its size and what inverts a singular matrix as
+    a whole.
+    """
+    if case.again is None or "q" not in case.arguments:
+        return None
+    few = {name: stack[:_FEW] for name, stack in case.arguments.items()}
+    with np.errstate(all="ignore"):
+        try:
+            at, near = (
+                np.asarray(case.again({**few, "q": few["q"] + k * TOLERANCES.least_step}))
+                for k in (0, 1)
+            )
+        except (KinlabError, np.linalg.LinAlgError):
+            return None
+    flat = at.reshape(len(at), -1)
+    change = np.max(np.abs(near.reshape(flat.shape) - flat), axis=1)
+    known = np.isfinite(change)
+    if not known.any():
+        return None
+    size = np.max(np.abs(flat[known]), axis=1)
+    if np.median(change[known] / np.where(size, size, 1.0)) < TOLERANCES.erratic:
+        return None
+    if case.quantity.name == "least_rates" and case.robot.n > _COORDINATES:
+        return _(
+            "what the formula gives is rounding alone: it inverts a singular matrix. J^T J has no "
+            "inverse where there are more joints than coordinates; J^T (J J^T)^-1 is meant, not "
+            "(J^T J)^-1 J^T"
+        )
+    return _(
+        "what the formula gives is rounding alone: it inverts a singular matrix, or divides by "
+        "what is zero"
+    )
 
 
 def _digits(error: float) -> int:

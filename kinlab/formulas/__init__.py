@@ -5,6 +5,7 @@ module          what it holds
 ==============  ==================================================================================
 ``arithmetic``  The one walk over Python's syntax tree of arithmetic: a whitelist, whatever the
                 signs mean
+``beside``      Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
 ``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered or
                 cancelled
 ``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then

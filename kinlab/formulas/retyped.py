@@ -199,7 +199,9 @@ class Typing:
 
     @cached_property
     def _latex(self) -> bool:
-        return is_latex(self.typed) or bool(re.search(r"_\w|[A-Za-z]\s+[A-Za-z]", self.typed))
+        plain = re.search(r"[A-Za-z]{3,}_?\d|cos\(|sin\(", self.typed)  # theta_1, sin(q1)
+        beside = re.search(r"_\w|[A-Za-z]\s+[A-Za-z]", self.typed)
+        return is_latex(self.typed) or bool(beside and not plain)
 
     @cached_property
     def _times(self) -> str:
@@ -207,7 +209,8 @@ class Typing:
         met = []
         for one, two in zip(self.leaves, self.leaves[1:], strict=False):
             between = self.typed[one.end : two.start]
-            if one.plain not in "+-" and (not between or _BETWEEN.fullmatch(between)):
+            signs = {one.plain, two.plain} & {"+", "-"}
+            if not signs and (not between or _BETWEEN.fullmatch(between)):
                 met.append(between)
         usual = max(met, key=met.count) if met else "*"
         return usual or " "
@@ -254,7 +257,10 @@ class Typing:
             return rf"\{name}" if self._latex else name
         head, digits = re.fullmatch(r"(.*?)(\d*)", name).groups()  # type: ignore[union-attr]
         for like, shown in known.items():
-            found = re.fullmatch(r"(.*?)(\d+)", like)
+            found = re.fullmatch(r"(.*?)_?(\d+)", like)
+            wave = found and {found[1], head} == {"s", "c"} and found[2] == digits
+            if found and wave and shown.count(found[1]) == 1:  # c_12 where he has s_12
+                return shown.replace(found[1], head)
             if not found or not digits or found[1] != head:
                 continue
             if (zero := f"[{int(found[2]) - 1}]") in shown:
@@ -318,7 +324,7 @@ def _values(text: str) -> Array | None:
     """Values of a plain text where every name is any number, the same wherever it stands."""
 
     def anything(name: str) -> Array:
-        seed = [ord(letter) for letter in name]
+        seed = [ord(letter) for letter in name.replace("_", "")]
         return np.random.default_rng(seed).uniform(0.5, 1.5, _SAMPLES)
 
     try:

@@ -144,6 +144,7 @@ _ABOUT = ("title", "source", "name")
 """Keys of a formula file that tell about it."""
 
 _TABLES = ("formulas", "latex")
+_WORD = re.compile(r"[A-Za-z]\w*")
 
 
 def entries_of(document: Mapping[str, Any]) -> list[str]:
@@ -164,6 +165,19 @@ def with_entries(document: Mapping[str, Any], kept: set[str]) -> dict[str, Any]:
         if isinstance(table := left.get(key), dict):
             left[key] = {name: value for name, value in table.items() if name in kept}
     return left
+
+
+def alone(document: Mapping[str, Any], entry: str) -> dict[str, Any]:
+    """The document of a formula file with one entry, and those that its text names."""
+    kept, waiting = {entry}, [entry]
+    while waiting:
+        one = with_entries(document, {waiting.pop()})
+        texts = [one, *(one.get(key, {}) for key in _TABLES)]
+        words = {w for text in texts for value in text.values() for w in _WORD.findall(str(value))}
+        more = (words & {*entries_of(document)}) - kept
+        waiting += sorted(more)
+        kept |= more
+    return with_entries(document, kept)
 
 
 def parse(text: str, place: str = "expression") -> Node:
@@ -408,6 +422,8 @@ def _plain(
 
 
 def _text(value: Any, place: str) -> str:
+    if isinstance(value, list):  # a matrix as TOML has it
+        value = "[" + ", ".join(_text(one, place) for one in value) + "]"
     if not isinstance(value, str):
         raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
     if len(value) > _LENGTH:

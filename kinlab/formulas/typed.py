@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
 from kinlab.formulas import latex
+from kinlab.formulas.beside import with_products
 
 # -------- Which writing it is
 
@@ -73,8 +74,8 @@ _ALONE = re.compile(
     r"(?:(?<![A-Za-z])(?:sin|cos|tan|sqrt)(?![A-Za-z])|(?<![A-Za-z])[A-Za-z](?![A-Za-z])|[^A-Za-z])*"
 )
 """Text without words: names of one letter, and functions."""
-_BESIDE = re.compile(r"_\w+\s+[A-Za-z]")
-"""A product of names without a sign, as only LaTeX has it."""
+_GLUED = re.compile(r"_\w[A-Za-z]")
+"""A product of names without a sign or a blank, as only LaTeX has it."""
 _PRIMED = re.compile(r"(?<![A-Za-z])(q|th|theta|θ)(_?[\d₀-₉]+)('{1,2}|′{1,2}|″)(?!')")
 """θ1' and q2'', the rates of a joint."""
 _CENTRE = re.compile(r"lc([₀-₉]+)")
@@ -152,7 +153,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
         text = latex.expression(text, place)
     else:
         text = _plain_signs(text, place)
-        text = _without_indices(text, place, writing)
+        text = with_products(_without_indices(text, place, writing), _FUNCTIONS, place)
     return _capitals(text, place, writing)
 
 
@@ -188,7 +189,7 @@ def leaves_of(text: str, place: str, writing: Hand, typeset: bool) -> list[latex
 
 def _side_by_side(text: str) -> bool:
     """Whether a text without a backslash has its factors side by side: m₁l₁² cos θ₂, m_1 l_1."""
-    unlike = not text.isascii() or _BESIDE.search(text)
+    unlike = not text.isascii() or _GLUED.search(text)
     return bool(unlike and _ALONE.fullmatch(_CENTRE.sub(r"l\1", text)))
 
 
@@ -204,9 +205,13 @@ _OUTSIDE = (
 )
 
 
+_COMMENT = re.compile(r"(?<!\\)%.*")
+"""What MATLAB and LaTeX leave out."""
+
+
 def bare(text: str) -> str:
     """A formula without the dollars and environments around it, and the mark behind it."""
-    text = text.strip()
+    text = _COMMENT.sub("", text).strip()
     changed = True
     while changed:
         changed = False
@@ -224,14 +229,34 @@ def bare(text: str) -> str:
     return text
 
 
+_POWER = re.compile(r"(?<![\w.])(?:power|pow)\s*(?=\()")
+_DEGREES = re.compile(r"(?<![\w.])a?(sin|cos|tan)d\s*\(")
+
+
 def _plain_signs(text: str, place: str) -> str:
-    text = _ELEMENTWISE.sub(r"\1", text)
+    text = _with_powers(_PREFIX.sub("", _ELEMENTWISE.sub(r"\1", text)))
+    if found := _DEGREES.search(text):
+        raise ExpressionError(
+            f"{place}: {found[0]}...) takes degrees, and joints are in radians; write {found[1]}"
+        )
     if _CHAINED.search(text):
         raise ExpressionError(
             f"{place}: a power of a power without parentheses: Python reads a^b^c from the right, "
             "MATLAB from the left; write (a^b)^c"
         )
-    return _PREFIX.sub("", text)
+    return text
+
+
+def _with_powers(text: str) -> str:
+    """``power(a, 2)`` and ``pow(a, 2)`` as ``(a)**(2)``."""
+    while found := _POWER.search(text):
+        end = found.end() + _closes(text[found.end() :])
+        parts = _parts(text[found.end() + 1 : end], ",")
+        if end < found.end() or len(parts) != 2:
+            break
+        base, power = (part if part.isalnum() else f"({part})" for part in parts)
+        text = f"{text[: found.start()]}{base}**{power}{text[end + 1 :]}"
+    return text
 
 
 def _without_indices(text: str, place: str, writing: Hand) -> str:

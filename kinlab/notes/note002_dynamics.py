@@ -200,7 +200,7 @@ def _ends(arm: Arm, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
 
 def _ends_printed(arm: Arm, q: Array, v: Array, a: Array, dq: Array) -> Any:
     _, late = _ends(arm, q, v, a)
-    return _inner(arm, q, v, a, dq, 1.0 + _TIMES / _T) + dot(late, dq - 2.0 * dq)
+    return _inner(arm, q, v, a, dq, 1.0 + 2.0 * _TIMES / _T) + dot(late, dq - 3.0 * dq)
 
 
 _INNER = (
@@ -226,8 +226,8 @@ _INNER = (
 def variation_with_boundary(arm: Arm, q: Array, v: Array, a: Array, dq: Array) -> Any:
     """First variation with the boundary term of the integration by parts."""
     early, late = _ends(arm, q, v, a)
-    inner = _inner(arm, q, v, a, dq, 1.0 + _TIMES / _T)
-    return inner + dot(late, 2.0 * dq) - dot(early, dq)
+    inner = _inner(arm, q, v, a, dq, 1.0 + 2.0 * _TIMES / _T)
+    return inner + dot(late, 3.0 * dq) - dot(early, dq)
 
 
 @_action(

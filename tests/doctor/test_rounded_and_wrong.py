@@ -156,7 +156,7 @@ def test_a_number_is_not_called_a_parameter_by_chance():
     [
         ("J12", "0.4*c12", "-0.4*s12", ("sin/cos",)),
         ("J11", "-l1*s1 + l1*c12", "-l1*s1 - l2*s12", ("index", "sin/cos")),
-        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_{1} + l_2 c_{12}", ("sin/cos",)),
+        ("J21", "-l_1 s_1 + l_2 c_{12}", "l_1 c_1 + l_2 c_{12}", ("sin/cos",)),
         (
             "g1",
             "(m2+m2)*g*l1*cos(q1) - m1*g*l2*cos(q1+q2)",
@@ -183,3 +183,16 @@ def test_simple_slips_before_roundabout_ones_in_the_writers_line(entry, text, ri
     (found,) = judged(**{entry: text})
     assert found.causes[0].shown == {entry: right}
     assert found.causes[0].kinds == kinds
+
+
+def test_no_number_is_put_right_by_chance_of_the_masses():
+    half = "(m1 + 0.5*m2)*g*l1*c1 + 0.5*m2*g*l2*c12"  # m1/2 + m2 is m1 + m2/3 with these masses
+    (found,) = judged("planar2r_rods", g1=half)
+    assert found.causes[0].shown == {"g1": "(m2 + 0.5*m1)*g*l1*c1 + 0.5*m2*g*l2*c12"}
+
+
+def test_a_sign_and_another_slip_at_the_same_letter():
+    (found,) = judged(M12="s2*m2*l1*l2 - m2*l2**2")
+    assert found.causes[0].shown == {"M12": "c2*m2*l1*l2 + m2*l2**2"}
+    (found,) = judged(J12="c12*l2")
+    assert found.causes[0].shown == {"J12": "-s12*l2"}

@@ -85,3 +85,19 @@ def test_a_matrix_of_latex_is_corrected_by_entry():
         r" m_2 l_2^2 + m_2 l_1 l_2 s_2 \\ m_2 l_2^2 + m_2 l_1 l_2 c_2 & m_2 l_2^2 \end{bmatrix}"
     )
     assert told("M", grid).shown == {"M12": "m_2 l_2^2 + m_2 l_1 l_2 c_2"}
+
+
+def test_a_factor_is_put_in_front_as_the_writer_types_products():
+    for text in ("(m1+m2)*l1^2 + m2*l2^2 + m2*l1*l2*c2", "(m1 + m2) l1^2 + m2 l2^2 + m2 l1 l2 c2"):
+        document = {"robot": "planar2r", "formulas": {"M11": text}}
+        (found,), _unread = of_document(document, "f.toml")
+        right = text.replace("+ m2*l1", "+ 2*m2*l1").replace("+ m2 l1", "+ 2 m2 l1")
+        assert found.causes[0].shown == {"M11": right}
+
+
+def test_plain_products_stay_plain():
+    text = "l_1 sin(theta_1) + l_2 cos(theta_1 + theta_2)"
+    document = {"robot": "planar2r", "formulas": {"y": text, "g2": "m_2 g l_2 s_12"}}
+    found, _unread = of_document(document, "f.toml")
+    assert found[0].causes[0].shown == {"y": text.replace("cos", "sin")}
+    assert found[1].causes[0].shown == {"g2": "m_2 g l_2 c_12"}

@@ -224,13 +224,36 @@ def test_a_file_of_one_writer():
         ("lc2² + l1·lc2·cos(q2)", "lc2**2 + l1*lc2*cos(q2)"),
         ("m1＊（l1＋l２）", "m1*(l1+l2)"),
         ("0。5*m1", "0.5*m1"),
+        ("l1 c1 + l2 c12", "l1*c1 + l2*c12"),
+        ("l_1 cos(theta_1) + 2 l2 (c1 + c2)", "l_1*cos(theta_1) + 2*l2*(c1 + c2)"),
+        ("(m1+m2)l1^2 + 2m2 l1 l2 cos(q2)", "(m1+m2)*l1^2 + 2*m2*l1*l2*cos(q2)"),
+        ("1/2 m1 v1^2 + m1 l1/2 c1", "1/2*m1*v1^2 + m1*l1/2*c1"),
+        ("a1 cos q1 sin^2(q1 + q2)", "a1*cos(q1)*sin(q1 + q2)**2"),
+        ("a_1 c_1 + a_2 c_12", "a_1*c_1 + a_2*c_12"),
+        ("m2*np.power(l1 + l2, 2) + pow(q1,2)", "m2*(l1 + l2)**2 + q1**2"),
+        ("l1*c1; % the elbow = here", "l1*c1"),
     ],
 )
 def test_more_ways_of_typing(text, plain):
     assert " ".join(plain_formula(text).split()) == plain
 
 
-@pytest.mark.parametrize("text", [r"$c_{2+1}$", r"$c_{1+}$", r"$l_{1+x}$", "m1*l1'", "q1'''"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *(r"$c_{2+1}$", r"$c_{1+}$", r"$l_{1+x}$", "m1*l1'", "q1'''", "l1*cos q1 + q2"),
+        *(
+            "m1*g/l1 l2",
+            "m1*g/2l1",
+            "m1*g2(q1)",
+            "g (q1)",
+            "l1*cosd(q1)",
+            "l1 2",
+            "2 3",
+            "2 cos q1^2",
+        ),
+    ],
+)
 def test_what_has_two_meanings_or_none_is_refused(text):
     with pytest.raises(ExpressionError):
         parse(plain_formula(text))

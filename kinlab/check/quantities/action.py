@@ -36,9 +36,9 @@ def variation_between_fixed_ends(robot: Robot, q: Any, v: Any, a: Any, dq: Any) 
 
 
 def variation_with_free_ends(robot: Robot, q: Any, v: Any, a: Any, dq: Any) -> Array:
-    """dS/d(eps) along dq (1 + t/T): both ends move, by different amounts."""
+    """dS/d(eps) along dq (1 + 2 t/T): both ends move, by different amounts."""
     t, _ = _rule(DURATION)
-    return _variation(robot, q, v, a, dq, 1.0 + t / DURATION, np.full_like(t, 1.0 / DURATION))
+    return _variation(robot, q, v, a, dq, 1.0 + 2.0 * t / DURATION, np.full_like(t, 2.0 / DURATION))
 
 
 def _variation(robot: Robot, q: Any, v: Any, a: Any, dq: Any, shape: Array, rate: Array) -> Array:
@@ -150,7 +150,7 @@ QUANTITIES = (
         "action_variation_free_ends",
         "q v a dq",
         variation_with_free_ends,
-        "the same under dq (1 + t/T), J s, a number",
+        "the same under dq (1 + 2 t/T), J s, a number",
     ),
     SERIAL.quantity(
         "action_variation_of_motion",

@@ -10,7 +10,6 @@ module           what it holds
 ``derivations``  The textbooks' derivations walked with one step, then two or three, taken otherwise
 ``givens``       The numbers of an arm or a five-bar as the derivations ask for them
 ``known``        The table of known confusions: every reading that makes sense for a quantity
-``numbers``      The robot's numbers taken otherwise: one of them another, or all of a kind rounded
 ``operations``   What one can do otherwise at one operator, call, choice or matrix of a derivation
 ``otherwise``    What the engine says if asked otherwise: another frame, another split of C, terms
                  left out

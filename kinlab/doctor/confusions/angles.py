@@ -15,7 +15,16 @@ from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
 from kinlab.doctor.confusions.words import is_sum, minus, name_of, spelt, times
 from kinlab.host.language import _
 
-_EXCHANGED = (("l1", "l2"), ("l2", "l3"), ("x", "y"), ("px", "py"), ("s2", "c2"), ("s3", "c3"))
+_EXCHANGED = (
+    ("l1", "l2"),
+    ("l2", "l3"),
+    ("x", "y"),
+    ("px", "py"),
+    ("s2", "c2"),
+    ("s3", "c3"),
+    ("later", "earlier"),
+    ("late", "early"),
+)
 """Names that are taken for each other, both at once."""
 
 
@@ -97,6 +106,7 @@ def _factors(node: ast.expr) -> Iterator[ast.expr]:
 def exchanged(of: Program) -> Iterator[Step]:
     """Two names each for the other, in one line and in every line."""
     for one, two in _EXCHANGED:
+        names = [spelt(ast.Name(x)) for x in (one, two)]
         every: list[tuple[ast.expr, ast.expr]] = []
         for line in of.lines:
             found = [
@@ -108,11 +118,11 @@ def exchanged(of: Program) -> Iterator[Step]:
             every += edits
             if len({x.id for x in found}) == 2:
                 does = _("has {one} and {two} exchanged in {line}")
-                said = does.format(one=one, two=two, line=_(line.about))
+                said = does.format(one=names[0], two=names[1], line=_(line.about))
                 yield Step("exchanged", said, tuple(edits), 1.02)
         if len({x.id for x, _new in every if isinstance(x, ast.Name)}) == 2:
             does = _("has {one} and {two} exchanged in every line")
-            yield Step("exchanged", does.format(one=one, two=two), tuple(every), 1.03)
+            yield Step("exchanged", does.format(one=names[0], two=names[1]), tuple(every), 1.03)
 
 
 def of_angles(of: Program) -> Iterator[Step]:

@@ -162,7 +162,7 @@ for k in outward:
     row[k] = columns(H)
 M = columns(row)
 # the mass matrix
-M = M + M.T - both(M)
+M = M + M.T - both_(M)
 # the rotors' inertia
 M = M + diagonal(rotors)
 """
@@ -219,6 +219,46 @@ def energies(standard: bool, in_base: bool) -> str:
     return _based(text) if in_base else text
 
 
+COMPOSITE_IN_BASE = """
+Ic[n+1] = blocks(nil, nil, nil, nil)
+for i in inward:
+    # the centre of mass
+    pc[i] = o_[i] + R_[i] @ c[i]
+    # the link's spatial inertia
+    Is[i] = blocks(m[i]*one, -(m[i]*skew(pc[i])), m[i]*skew(pc[i]),
+                   R_[i] @ I[i] @ R_[i].T - m[i]*skew(pc[i]) @ skew(pc[i]))
+    # the composite body's inertia
+    Ic[i] = Is[i] + Ic[i+1]
+    # the joint's axis S
+    S[i] = twist(cross(o[i], z[i]), z[i]) if hinge[i] else twist(z[i], zero)
+for k in outward:
+    for j in outward:
+        # the mass matrix
+        H[j] = S[j] @ (Ic[k] @ S[k]) if j <= k else number
+    row[k] = columns(H)
+M = columns(row)
+# the mass matrix
+M = M + M.T - both_(M)
+# the rotors' inertia
+M = M + diagonal(Ia)
+"""
+"""The same with all about the base's origin."""
+
+EXPONENTIALS = """
+T[0] = base
+for i in outward:
+    # the joint's axis, where it is at rest
+    K[i] = skew(z[i])
+    # Rodrigues' rotation
+    R[i] = one + sin(q[i])*K[i] + (1 - cos(q[i]))*(K[i] @ K[i]) if hinge[i] else one
+    # the joint's displacement
+    E[i] = pose((R[i]), (one - R[i]) @ o[i] if hinge[i] else q[i]*z[i])
+    # the product of exponentials
+    T[i] = T[i-1] @ E[i]
+# the tool's pose
+pose = T[n] @ home @ tool
+"""
+
 RATES = """
 # the tool's point
 p = last + tool
@@ -257,6 +297,12 @@ STATICS = """
 tau = Jb.T @ wrench
 """
 
+THROUGH = """
+for i in outward:
+    # the force and moment through the joint
+    asked[i] = twist(f[i], nn[i])
+"""
+
 WRENCHES = """
 for i in outward:
     # the link's own force and moment
@@ -271,10 +317,8 @@ E = D @ v
 """
 
 PASSED_ON = """
-f[n+1] = force
-nn[n+1] = moment
 P[n+1] = end
-R[n+1] = turn
+R[n+1] = one
 for i in inward:
     # the force f of the link
     f[i] = R[i+1] @ f[i+1]
@@ -305,6 +349,7 @@ for k in outward:
         Lw[j] = (z[j] if hinge[j] else zero) if j <= k else zero
     Jv = columns(Lv)
     Jw = columns(Lw)
+    each[k] = stacked(Jv, Jw)
     # the mass matrix
     M = M + m[k]*Jv.T @ Jv + Jw.T @ (R_[k] @ I[k] @ R_[k].T) @ Jw
     # the gravity torques
@@ -333,6 +378,7 @@ LAGRANGE = {
     "gravity_torques": ("G", ""),
     "potential_energy": ("V", ""),
     "com_positions": ("com", ""),
+    "com_jacobians": ("each", ""),
     "kinetic_energy": (
         "E",
         """
@@ -535,6 +581,26 @@ def _based(text: str) -> str:
     return text.replace("for i in outward:\n", _IN_BASE, 1)
 
 
+def loaded(text: str) -> str:
+    """A recursion whose last link holds a load."""
+    for name in ("f", "nn"):
+        text = text.replace(f"{name}[n+1] = zero\n", "")
+    return text
+
+
+def held(in_tool: bool, in_base: bool) -> str:
+    """The wrench at the tool about the last link's origin, in the link's axes or in the base's."""
+    turn = {(False, False): "Rn.T @ ", (True, False): "Rt @ ", (True, True): "Rn @ Rt @ "}
+    to = turn.get((in_tool, in_base), "")
+    arm = "arm" if in_base else "e"
+    return f"""
+# the wrench in the axes of the recursion
+f[n+1] = {to}fw
+# the wrench about the last link's origin
+nn[n+1] = {to}nw + cross({arm}, f[n+1])
+"""
+
+
 def passed_on(standard: bool, in_base: bool) -> str:
     """Forces at rest from link to link, in the links' axes or in the base's."""
     text = PASSED_ON
@@ -556,6 +622,14 @@ ISOTROPY = """
 # the products of the Jacobian's rows
 E = defect(J @ J.T)
 """
+
+BOUNDARY = """
+# the boundary term
+b = late @ later - early @ earlier
+# the variation with its boundary term
+E = inner + b
+"""
+"""The action's variation between free ends: by parts, with dL/dqd and dq at both ends."""
 
 ITERATIVE = {
     "newton_step": "q + solve(J, target - x)",
@@ -594,8 +668,10 @@ _MOVING = """
     fv[i] = ((v @ rod[i])**2*(crank[i] @ rod[i])/l1[i] + (v @ crank[i])**2/l2[i])/(l1[i]*k[i]**3)
     # the crank's acceleration
     acc[i] = J[i] @ a + fv[i]
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
     # the crank's own torque
-    own[i] = IA[i]*acc[i] + mc[i]*g*(crank[i] @ E1)
+    own[i] = IA[i]*acc[i] + mc[i]*cc[i]*g*(crank[i] @ E1)
 """
 _TORQUE = """
 Jm = columns(J).T
@@ -604,6 +680,9 @@ own = columns(own)
 tau = own + inv(Jm).T @ (m*(a + g*E2))
 """
 _GAIN = """
+for i in outward:
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # G, the torque per acceleration
 E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
@@ -688,6 +767,13 @@ LINES = (
     N_("the velocity torques"),
     N_("the equation of motion"),
     N_("the joint's axis S"),
+    N_("the joint's axis, where it is at rest"),
+    N_("Rodrigues' rotation"),
+    N_("the joint's displacement"),
+    N_("the product of exponentials"),
+    N_("the force and moment through the joint"),
+    N_("the wrench in the axes of the recursion"),
+    N_("the wrench about the last link's origin"),
     N_("the transform X of twists"),
     N_("the link's spatial inertia"),
     N_("the twist V of the link"),
@@ -728,6 +814,7 @@ LINES = (
     N_("the row of J"),
     N_("the bias f(v) of the crank's acceleration"),
     N_("the crank's acceleration"),
+    N_("the crank's inertia about its base pin"),
     N_("the crank's own torque"),
     N_("the torque by virtual work"),
     N_("G, the torque per acceleration"),
@@ -736,5 +823,7 @@ LINES = (
     N_("the power"),
     N_("the left side A cos(theta) + B sin(theta)"),
     N_("the step"),
+    N_("the boundary term"),
+    N_("the variation with its boundary term"),
 )
 """What the lines of the derivations are, to be translated."""

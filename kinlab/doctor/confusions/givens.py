@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.action import DURATION, variation_with_free_ends
 from kinlab.check.quantities.serial import planar_jacobian, planar_pose
 from kinlab.engine.kinematics import jacobian
+from kinlab.engine.lagrange import momentum
 from kinlab.model.dh import link_transform
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -38,6 +40,12 @@ def of_table(robot: Robot, q: Array) -> dict[str, Any]:
         "q": [s * column for s, column in zip(signs, q.T, strict=True)],
         "hinge": [not s for s in slide],
     }
+    at_rest = [f[0] for f in as_placed(robot, np.zeros((1, robot.n)))[1]]
+    own = [np.linalg.inv(at_rest[0]) @ f for f in at_rest]
+    axes = own[:-1] if standard(robot) else own[1:]
+    for k, name in ((2, "z"), (3, "o")):
+        out[name] = [frame[None, :3, k] for frame in axes]
+    out |= {"home": own[-1][None], "one": np.eye(3)[None]}
     for column in ("theta", "d", "a", "alpha"):
         out[column] = [np.full(1, float(getattr(link, column))) for link in table.links]
     rows = {name: [] for name in ("Rz", "Tz", "Tx", "Rx")}  # type: ignore[var-annotated]
@@ -168,12 +176,25 @@ def of_recursion(
     }
 
 
-def tool(robot: Robot) -> Array:
+def _tool(robot: Robot) -> Array:
     """The tool in the last frame, (4, 4)."""
     if robot.table is not None:
         return np.asarray(robot.table.tool)
     placed: Array = robot.model.frames[robot.tool].placement.homogeneous
     return placed
+
+
+def of_load(robot: Robot, wrench: Array, placed: Placed) -> dict[str, Any]:
+    """A wrench at the tool, and the tool in the last link and in the base."""
+    end, last = _tool(robot), placed[1][-1][:, :3, :3]
+    return {
+        "fw": wrench[:, :3],
+        "nw": wrench[:, 3:],
+        "Rn": last,
+        "Rt": end[None, :3, :3],
+        "e": end[None, :3, 3],
+        "arm": np.einsum("nij,j->ni", last, end[:3, 3]),
+    }
 
 
 def of_arm(robot: Robot, q: Array, x: Stacks, placed: Placed) -> dict[str, Any]:
@@ -186,7 +207,7 @@ def of_arm(robot: Robot, q: Array, x: Stacks, placed: Placed) -> dict[str, Any]:
     # the neighbours of the first and of the last joint, as the textbooks' frames have them
     for k, frame in ((0, frames[0]), (n + 1, frames[-1])):
         z[k], o[k] = frame[:, :3, 2], frame[:, :3, 3]
-    pose = frames[-1] @ tool(robot)
+    pose = frames[-1] @ _tool(robot)
     turn, p = pose[:, :3, :3], pose[:, :3, 3]
     both, carried = np.zeros((len(q), 6, 6), q.dtype), np.zeros((len(q), 6, 6), q.dtype)
     both[:, :3, :3] = both[:, 3:, 3:] = turn
@@ -199,10 +220,15 @@ def of_arm(robot: Robot, q: Array, x: Stacks, placed: Placed) -> dict[str, Any]:
         "number": np.zeros(1),
         "zeros": np.zeros((1, n)),
         "nothing": np.zeros((1, n, n)),
+        "nil": np.zeros((1, 3, 3)),
+        "one": np.eye(3)[None],
         "g": np.array(robot.model.gravity.linear)[None],
         "hinge": [not s for s in slide],
         "z": z,
         "o": o,
+        **{
+            f"{name}_": {k: f[:, :3, c] for k, f in enumerate(at, 1)} for c, name in enumerate("xy")
+        },
         "last": frames[-1][:, :3, 3],
         "tool": p - frames[-1][:, :3, 3],
         "q": q,
@@ -228,9 +254,19 @@ def of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
 
 
-def of_loop(loop: Any, x: Stacks) -> dict[str, Any]:
+def of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """dL/dqd and dq at both ends of a path; what is left of the variation is the integral's."""
+    v, a, dq = x["v"], x["a"], x["dq"]
+    early = momentum(robot, q, v)
+    late = momentum(robot, q + v * DURATION + 0.5 * a * DURATION**2, v + a * DURATION)
+    whole = variation_with_free_ends(robot, q, v, a, dq)
+    inner = whole - np.sum(late * 3.0 * dq, axis=1) + np.sum(early * dq, axis=1)
+    return {"inner": inner, "late": late, "early": early, "later": 3.0 * dq, "earlier": dq}
+
+
+def of_loop(mechanism: Any, loop: Any, x: Stacks) -> dict[str, Any]:
     def each(values: Any) -> list[Array]:
-        return [np.full(1, float(value)) for value in values]
+        return [np.full(1, float(value)) for value in np.broadcast_to(values, 2)]
 
     r = x["xy"]
     out: dict[str, Any] = {
@@ -240,8 +276,11 @@ def of_loop(loop: Any, x: Stacks) -> dict[str, Any]:
         "l1": each(loop.l1),
         "l2": each(loop.l2),
         "s": each(S),
-        "IA": each(loop.arm),
-        "mc": each(loop.crank * loop.crank_com),
+        "Ic": each(loop.crank_inertia),
+        "mc": each(loop.crank),
+        "cc": each(loop.crank_com),
+        "Im": each(mechanism.rotor_inertia),
+        "j": each(mechanism.gear_ratio),
         "E1": E1[None],
         "E2": E2[None],
         "H": H[None],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
+from kinlab.doctor.confusions.words import together
 from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _FRAMES = {"jacobian": "base", "jacobian_tool": "tool", "jacobian_spatial": "spatial"}
 _STATICS = {"statics": "base", "statics_tool": "tool"}
@@ -74,6 +77,10 @@ def _arguments(case: Case) -> Iterator[Confusion]:
         yield _argument("degrees", _("takes q in degrees"), ("q",), radians)
         if len(motion) > 1:
             yield _argument("degrees", _("takes q and its rates in degrees"), motion, radians)
+            said = _("takes the rates in degrees")
+            yield _argument("degrees", said, motion[1:], radians, 1.05)
+            said = _("turns the rates into degrees first")
+            yield _argument("degrees", said, motion[1:], degrees, 1.2)
         yield _argument("degrees", _("turns q into degrees first"), ("q",), degrees, 1.2)
         yield _argument(
             "turning sense", _("counts every joint the other way"), motion, np.negative, 1.2
@@ -209,6 +216,10 @@ def _engines(case: Case) -> Iterator[Confusion]:
             "Mdot for C", _("uses Mdot v for C v"), otherwise.added(otherwise.mass_rate_extra), 1.2
         )
 
+    if name == "kinetic_gradient":
+        said = _("adds the entries up, each times its qd_i: one number for the whole vector")
+        yield _other("one number", said, otherwise.summed_with_rates, 1.1)
+
 
 def _answers(case: Case) -> Iterator[Confusion]:
     name = case.quantity.name
@@ -226,6 +237,7 @@ def _answers(case: Case) -> Iterator[Confusion]:
     yield _answer("degrees", _("answers in degrees"), np.rad2deg, 1.4)
     if not shape or shape == (1,):
         return
+    yield from _of_entries(case)
     rows = len(shape) == 2
     yield _answer("joint order", _("answers from tool to base"), lambda x: x[:, ::-1], 1.2)
     if len(shape) == 2:
@@ -238,6 +250,14 @@ def _answers(case: Case) -> Iterator[Confusion]:
                 _("has rows and columns from tool to base"),
                 lambda x: x[:, ::-1, ::-1],
                 1.1,
+            )
+        for j, k in combinations(range(shape[1]), 2):
+            yield _answer(
+                "columns swapped",
+                _("has columns {one} and {two} exchanged").format(one=j + 1, two=k + 1),
+                _columns_swapped(j, k),
+                1.5,
+                f"columns {j + 1} and {k + 1}",
             )
         for k in range(shape[1]):
             for factor, said in _FACTORS:
@@ -272,6 +292,46 @@ def _answers(case: Case) -> Iterator[Confusion]:
                 1.5,
                 f"{'rows' if rows else 'entries'} {j + 1} and {k + 1}",
             )
+
+
+def _of_entries(case: Case) -> Iterator[Confusion]:
+    """Where one entry of a matrix is off, or it and its mirror image: what may stand there."""
+    engine = np.asarray(case.answer(()), dtype=float)
+    if case.index or engine.ndim != 3 or engine.shape != case.hand.shape:
+        return
+    gap = np.max(np.abs(case.hand - engine), axis=0) / (np.max(np.abs(engine)) or 1.0)
+    places = [tuple(place) for place in np.argwhere(~(gap <= TOLERANCES.formula_agrees)).tolist()]
+    if not places or len(places) > 2 or (len(places) == 2 and places[0] != places[1][::-1]):
+        return
+    entry = together(f"({i + 1}, {j + 1})" for i, j in places)
+    for factor, kind in _FACTORS:
+        told = _(_ENTRY_SAID[kind]).format(number=entry)
+        yield _answer(f"entry {kind}", told, _scaled_places(factor, places), 1.05, f"entry {entry}")
+    for i, j in np.ndindex(*engine.shape[1:]):
+        if (i, j) not in places and np.any(engine[:, i, j]):
+            told = _("has entry {other} for entry {number}")
+            told = told.format(other=f"({i + 1}, {j + 1})", number=entry)
+            yield _answer("another entry", told, _put(i, j, places), 1.15, f"entry {entry}")
+
+
+def _scaled_places(factor: float, places: Any) -> Callable[[Array], Array]:
+    def apply(x: Array) -> Array:
+        out = x.copy()
+        for i, j in places:
+            out[:, i, j] *= factor
+        return out
+
+    return apply
+
+
+def _put(i: int, j: int, places: Any) -> Callable[[Array], Array]:
+    def apply(x: Array) -> Array:
+        out = x.copy()
+        for k, m in places:
+            out[:, k, m] = x[:, i, j]
+        return out
+
+    return apply
 
 
 _FACTORS = ((-1.0, "sign"), (2.0, "twice"), (0.5, "half"), (0.0, "zero"))
@@ -381,6 +441,11 @@ def _scaled_at(factor: float, place: tuple[Any, ...]) -> Callable[[Array], Array
         return out
 
     return apply
+
+
+def _columns_swapped(j: int, k: int) -> Callable[[Array], Array]:
+    rows = _swapped(j, k)
+    return lambda x: np.swapaxes(rows(np.swapaxes(x, 1, 2)), 1, 2)
 
 
 def _swapped(j: int, k: int) -> Callable[[Array], Array]:

@@ -26,6 +26,7 @@ from kinlab.doctor.confusions.words import (
 from kinlab.host.language import N_, _
 
 Make = Callable[..., Step]
+ROTATIONS = ("R", "R_", "Rn", "Rt")
 
 
 def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) -> Iterator[Step]:
@@ -33,7 +34,7 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
     one, two = (len(axes.get(id(x), ())) for x in (left, right))
     if isinstance(node.op, ast.MatMult):
         if one == 2 and isinstance(left, ast.Attribute | ast.Name | ast.Subscript):
-            if two == 1 and _turns(left):
+            if two == 1 and turns(left):
                 does = _("does not rotate {term} ({factor} is left out)").format(
                     term=told(right), factor=spelt(left)
                 )
@@ -57,9 +58,17 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
                     new=spelt(across(left)), old=spelt(left)
                 )
                 yield step("transposed", does, 1.17, (left, across(left)))
+        if one == 3 and two == 1:
+            yield from _summed_otherwise(node, step)
         if one == two == 2:
+            for factor, rest in ((left, right), (right, left)):
+                if not isinstance(factor, ast.BinOp):
+                    does = _("leaves the factor {factor} out of {term}").format(
+                        factor=spelt(factor), term=spelt(node)
+                    )
+                    yield step("missing factor", does, 1.19, (node, rest))
             same = isinstance(right, ast.Attribute) and spelt(right.value) == spelt(left)
-            if not _turns(left) and (same or not isinstance(right, ast.Attribute)):
+            if not turns(left) and (same or not isinstance(right, ast.Attribute)):
                 turned = ast.BinOp(right, ast.MatMult(), left)
                 does = _("has {new} for {old} (the product's order)").format(
                     new=spelt(turned), old=spelt(node)
@@ -73,7 +82,16 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
             yield from _sandwich(node, step)
     elif isinstance(node.op, ast.Mult | ast.Div):
         for factor, rest in ((left, right), (right, left)):
-            if isinstance(factor, ast.Name | ast.Subscript) and (
+            signed = isinstance(factor, ast.UnaryOp)
+            plain = factor.operand if isinstance(factor, ast.UnaryOp) else factor
+            if signed and isinstance(plain, ast.Name):
+                # the factor's sign is lost with it, or it is not
+                less = ast.UnaryOp(ast.USub(), rest)
+                does = _("leaves the factor {factor} out of {term}").format(
+                    factor=spelt(plain), term=spelt(node)
+                )
+                yield step("missing factor", does, 1.15, (node, less))
+            if isinstance(plain, ast.Name | ast.Subscript) and (
                 isinstance(node.op, ast.Mult) or factor is right
             ):
                 does = _("leaves the factor {factor} out of {term}").format(
@@ -95,6 +113,14 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
                 yield step("power", does, 1.1, (node, new))
 
 
+def _summed_otherwise(node: ast.BinOp, step: Make) -> Iterator[Step]:
+    """A sum over the last of three indices, with the vector's entry of another index in it."""
+    for name, index in (("times_j", "j"), ("times_i", "i")):
+        new = ast.Call(ast.Name(name), [node.left, node.right], [])
+        does = _("has qd_{index} for qd_k in the sum over k")
+        yield step("index", does.format(index=index), 1.1, (node, new))
+
+
 def _opened(
     node: ast.expr, inner: ast.expr, applied: Callable[[ast.expr], ast.expr], step: Make
 ) -> Iterator[Step]:
@@ -110,9 +136,9 @@ def _opened(
     yield step("parentheses", does, 1.1, (node, new))
 
 
-def _turns(node: ast.expr) -> bool:
+def turns(node: ast.expr) -> bool:
     """Whether an expression is a rotation."""
-    return name_of(node.value if isinstance(node, ast.Attribute) else node) in ("R", "R_")
+    return name_of(node.value if isinstance(node, ast.Attribute) else node) in ROTATIONS
 
 
 def _sandwich(node: ast.BinOp, step: Make) -> Iterator[Step]:
@@ -146,7 +172,7 @@ def at_call(node: ast.Call, step: Make) -> Iterator[Step]:
             "has the cross product's order exchanged: {new} for {old}, the opposite sign,"
         ).format(new=spelt(new), old=spelt(node))
         yield step("sign", does, 1.0, (node, new))
-        if isinstance(x[0], ast.BinOp) and isinstance(x[0].op, ast.MatMult) and _turns(x[0].left):
+        if isinstance(x[0], ast.BinOp) and isinstance(x[0].op, ast.MatMult) and turns(x[0].left):
             inner = ast.Call(node.func, [x[0].right, x[1]], [])
             late = ast.BinOp(x[0].left, ast.MatMult(), inner)
             does = _("has {new} for {old} (rotated after the cross product)").format(

@@ -159,3 +159,14 @@ def jacobian_itself(engine: Engine) -> Engine:
         return out
 
     return changed
+
+
+def summed_with_rates(engine: Engine) -> Engine:
+    """The entries added up, each times its velocity: one number for the whole vector."""
+
+    def changed(robot: Robot, x: Arguments) -> Array:
+        out = engine(robot, x)
+        power = np.einsum("ni,ni->n", out, x["v"])
+        return np.broadcast_to(power[:, None], out.shape)
+
+    return changed

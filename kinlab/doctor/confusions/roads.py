@@ -19,12 +19,13 @@ from kinlab.doctor.confusions.givens import (
     Stacks,
     as_placed,
     of_arm,
+    of_load,
     of_loop,
+    of_path,
     of_recursion,
     of_step,
     of_table,
     standard,
-    tool,
 )
 from kinlab.doctor.confusions.walk import Program, Step, Walk, program
 from kinlab.model.robot import Robot
@@ -79,18 +80,21 @@ def roads(case: Case) -> Iterator[Road]:
         yield _of_links(case, books.product_of_links(usual), _PRODUCTS[name])
         if name == "fk":
             yield _of_links(case, books.product_of_elements(usual), "pose")
+            yield _of_links(case, books.EXPONENTIALS, "pose")
     frame = _FRAMES.get(name)
     if frame is not None:
         text = books.COLUMNS + books.TWISTED[frame]
         if name.startswith("statics"):
             yield _of_arm(case, text + books.STATICS, "tau")
             for in_base in (False, True):
-                yield _passed_on(case, in_base)
+                yield _with_load(case, books.passed_on(usual, in_base), in_base, "tau")
         else:
             rows = [0, 1, 5] if name == "planar_jacobian" else None
             yield _of_arm(case, text, "Jb", rows)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
+    if name == "action_variation_free_ends":
+        yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
         yield _of_step(case, books.ISOTROPY)
     if name == "jacobian_dot":
@@ -101,6 +105,14 @@ def roads(case: Case) -> Iterator[Road]:
     yield from ways if name.startswith("inverse") else reversed(ways)
     if name in _OUTWARD and not usual:
         yield _recursion(case, _OUTWARD[name], False, "asked")
+    if name in ("static_wrenches", "joint_wrenches"):
+        still = name == "static_wrenches"
+        text = books.passed_on(usual, False) if still else books.newton_euler(usual, False)
+        yield _with_load(case, books.loaded(text) + books.THROUGH, False, "asked")
+    if name == "inverse_dynamics_loaded":
+        for in_base in (False, True):
+            text = books.loaded(books.newton_euler(usual, in_base))
+            yield _with_load(case, text, in_base, "tau")
     if name in _WITHIN:
         asked, rest = _WITHIN[name]
         yield _recursion(case, books.newton_euler(usual, False) + rest, False, asked)
@@ -117,6 +129,7 @@ def _recursions(case: Case) -> Iterator[Road]:
             yield _recursion(case, books.SPONG, False)
     if name == "mass_matrix":
         yield _recursion(case, books.composite(usual), False, "M", False)
+        yield _of_arm(case, books.COMPOSITE_IN_BASE, "M", pairs=False)
     if name in books.ENERGIES:
         for in_base in (False, True):
             text = books.energies(usual, in_base)
@@ -131,7 +144,7 @@ def _lagrange(case: Case) -> Iterator[Road]:
         yield _of_arm(case, books.MASSES + rest, asked, pairs=pairs)
 
 
-_PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T"}
+_PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T", "link_poses": "T"}
 _OUTWARD = {"link_velocities": books.VELOCITIES, "link_accelerations": books.ACCELERATIONS}
 _WITHIN = {
     "com_accelerations": ("dvc", ""),
@@ -175,11 +188,11 @@ def _of_links(case: Case, text: str, asked: str) -> Road:
     return Road(of, walked, robot.n)
 
 
-def _of_step(case: Case, text: str) -> Road:
+def _of_step(case: Case, text: str, given: Any = of_step) -> Road:
     of, robot = program(text), case.robot
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
-        walk = Walk(of, lambda q: of_step(robot, q, x), x["q"], ways, robot.n)
+        walk = Walk(of, lambda q: given(robot, q, x), x["q"], ways, robot.n)
         return walk.values("E"), walk
 
     return Road(of, walked, robot.n)
@@ -235,39 +248,29 @@ def _recursion(case: Case, text: str, in_base: bool, said: str = "tau", pairs: b
 
 def _solved(matrix: Array, right: Array) -> Array:
     """The solutions of (B, N, n, n) systems; NaN where there is none."""
-    some = np.isfinite(matrix).all(axis=(2, 3))[..., None, None]
+    some = np.asarray(np.isfinite(matrix).all(axis=(2, 3)))[..., None, None]
     safe = np.where(some, matrix, np.eye(matrix.shape[-1]))
-    some = some & (np.linalg.det(safe) != 0)[..., None, None]
+    regular = np.asarray(np.linalg.matrix_rank(safe) == matrix.shape[-1])
+    some = some & regular[..., None, None]
     safe = np.where(some, safe, np.eye(matrix.shape[-1]))
     return np.where(some[..., 0], np.linalg.solve(safe, right[..., None])[..., 0], np.nan)
 
 
-def _passed_on(case: Case, in_base: bool) -> Road:
-    """Statics from link to link."""
-    robot, of = case.robot, program(books.passed_on(standard(case.robot), in_base))
-    in_tool = case.quantity.name == "statics_tool"
+def _with_load(case: Case, text: str, in_base: bool, said: str) -> Road:
+    """Forces passed on from the tool, from link to link."""
+    robot = case.robot
+    of = program(books.held(case.quantity.name == "statics_tool", in_base) + text)
 
     def ask(ways: Ways, x: Stacks, where: Where) -> tuple[Array, Walk]:
-        still = {**x, "v": 0.0 * x["q"], "a": 0.0 * x["q"]}
+        moved = {"v": 0.0 * x["q"], "a": 0.0 * x["q"], **x}
 
         def give(q: Array) -> dict[str, Any]:
             placed = where(q)
-            found = of_recursion(robot, q, still, placed, in_base)
-            last, end = placed[1][-1][:, :3, :3], tool(robot)
-            turn = last @ end[:3, :3]
-            parts = [x["wrench"][:, :3], x["wrench"][:, 3:]]
-            if in_tool and in_base:
-                parts = [np.einsum("nij,nj->ni", turn, y) for y in parts]
-            elif not in_tool and not in_base:
-                parts = [np.einsum("nji,nj->ni", turn, y) for y in parts]
-            force, moment = parts
-            arm = np.broadcast_to(end[:3, 3], force.shape)
-            arm = np.einsum("nij,nj->ni", last, arm) if in_base else arm @ end[:3, :3]
-            moment = moment + np.cross(arm, force)  # about the last frame's origin
-            return {**found, "force": force, "moment": moment, "turn": end[None, :3, :3]}
+            found = of_recursion(robot, q, moved, placed, in_base)
+            return {**found, **of_load(robot, x["wrench"], placed)}
 
         walk = Walk(of, give, x["q"], ways, robot.n)
-        return walk.values("tau"), walk
+        return walk.values(said), walk
 
     return _road(of, ask, robot)
 
@@ -320,7 +323,7 @@ def _five_bar(case: Case) -> Iterator[Road]:
 
         def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
             some = next(iter(x.values()))
-            walk = Walk(of, lambda _: of_loop(loop, x), some, ways, 2)
+            walk = Walk(of, lambda _: of_loop(mechanism, loop, x), some, ways, 2)
             return walk.values(asked), walk
 
         return Road(of, walked, 2)

@@ -162,6 +162,7 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
                     cost=1.2,
                     place=f"joint {i + 1}",
                 )
+    yield from _at_far_end(robot)
     for kind, words, change, cost in _BODY_CHANGES:
         touched = [i for i in range(robot.n) if _changes(model.inertias[i + 1], change)]
         if len(touched) > 1:
@@ -170,6 +171,34 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
             extra = 0.2 if len(touched) > 1 else 0.0
             link = _("link {number}").format(number=i + 1)
             yield _inertial(kind, _(words).format(link=link), i, change, cost + extra)
+
+
+def _at_far_end(robot: Robot) -> Iterator[Confusion]:
+    """Centres of mass at the next joint, or at the tool: the link's length for its centre's."""
+    model = robot.model
+    ends = [np.array(model.jointPlacements[i + 1].translation) for i in range(1, robot.n)]
+    ends.append(np.array(model.frames[robot.tool].placement.translation))
+
+    def change(links: list[int]) -> Callable[[Any], None]:
+        def apply(changed: Any) -> None:
+            for i in links:
+                old = changed.inertias[i + 1]
+                changed.inertias[i + 1] = _body(old.mass, ends[i], old.inertia)
+
+        return apply
+
+    moved = [
+        i
+        for i in range(robot.n)
+        if not np.allclose(ends[i], model.inertias[i + 1].lever, atol=1e-12)
+    ]
+    said = _("puts the centre of mass of {link} at its far end (its length for its centre's)")
+    if len(moved) > 1:
+        told = said.format(link=_("every link"))
+        yield _model("centre", told, change(moved), 1.1)
+    for i in moved:
+        told = said.format(link=_("link {number}").format(number=i + 1))
+        yield _model("centre", told, change([i]), 1.25, f"link {i + 1}")
 
 
 def _about_joint(old: Any) -> tuple[float, Array, Array]:

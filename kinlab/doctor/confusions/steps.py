@@ -21,6 +21,7 @@ from kinlab.doctor.confusions.operations import (
     at_entries,
     at_operator,
     turned_again,
+    turns,
 )
 from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
 from kinlab.doctor.confusions.words import (
@@ -38,7 +39,7 @@ from kinlab.doctor.confusions.words import (
     told_other,
     which,
 )
-from kinlab.host.language import _, language
+from kinlab.host.language import N_, _, language
 
 _ALIKE = (
     "w dw",
@@ -75,6 +76,8 @@ _ALIKE = (
     "d3 d4",
     "a2 a3",
     "px py",
+    "late early",
+    "later earlier",
 )
 """Names that are easily taken for one another."""
 
@@ -122,7 +125,9 @@ def _steps(
             *_halves_exchanged(of),
             *found,
             *_updated(of, axes),
+            *_not_turned(of),
             *_short_loops(of, axes, n),
+            *_other_axes(of),
         )
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
@@ -157,6 +162,12 @@ def _of_line(
         return Step(kind, said, edits, cost)
 
     yield from _terms(whole, axes, line.about, step)
+    given = {
+        id(x)
+        for call in ast.walk(whole)
+        if isinstance(call, ast.Call) and name_of(call.func) in ("ikj", "jki")
+        for x in call.args
+    }
     for node in ast.walk(whole):
         if not isinstance(node, ast.expr) or id(node) not in axes:
             continue
@@ -167,6 +178,11 @@ def _of_line(
         elif isinstance(node, ast.Call):
             yield from at_call(node, step)
             yield from at_angle(node, step)
+        elif isinstance(node, ast.Name) and node.id == "D" and id(node) not in given:
+            for other in ("ikj", "jki"):
+                new = ast.Call(ast.Name(other), [again(node)], [])
+                does = _("has {new} for {old}").format(new=told(new), old="dM_ij/dq_k")
+                yield step("Christoffel", does, 1.1, (node, new))
         elif isinstance(node, ast.Attribute):
             does = _("has {new} for {old} (not transposed)").format(
                 new=spelt(node.value), old=spelt(node)
@@ -349,6 +365,32 @@ def _everywhere(of: Program) -> Iterator[Step]:
             yield Step("index", in_every.format(does=does), edits, 1.05)
 
 
+def _other_axes(of: Program) -> Iterator[Step]:
+    """Axis and origin of the frame before or behind, in every line; another axis of the frame."""
+    places: dict[str, list[ast.Subscript]] = {"z": [], "o": []}
+    for line in of.lines:
+        for node in ast.walk(_value(line)) if line.about else ():
+            if isinstance(node, ast.Subscript) and name_of(node) in places:
+                places[name_of(node)].append(node)
+    if not places["z"] or not places["o"]:
+        return
+    for shift in (-1, 1):
+        edits = []
+        for node in (*places["z"], *places["o"]):
+            index = _shifted(node.slice, shift)
+            if index is not None:
+                edits.append((node, ast.Subscript(node.value, index)))
+        words = (
+            N_("takes the axis z and the origin o of the frame before"),
+            N_("takes the axis z and the origin o of the next frame"),
+        )
+        yield Step("index", _(words[shift > 0]), tuple(edits), 1.04)
+    for axis in "xy":
+        edits = [(node, ast.Subscript(ast.Name(axis + "_"), node.slice)) for node in places["z"]]
+        does = _("takes the frame's axis {axis} for the joint's axis z").format(axis=axis)
+        yield Step("axis", does, tuple(edits), 1.12)
+
+
 def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
     """Loops that leave their first or last joint out: what they make stays zero there."""
     for loop in (x for statement in of.body for x in ast.walk(statement)):
@@ -369,6 +411,24 @@ def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> It
             does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
             said = does.format(number=joint, line=together(told_of[-2:]))
             yield Step("loop", said, tuple(edits), 1.12, joint)
+
+
+def _not_turned(of: Program) -> Iterator[Step]:
+    """A rotation left out wherever it stands."""
+    places: dict[str, list[ast.BinOp]] = {}
+    for line in of.lines:
+        for node in ast.walk(_value(line)) if line.about else ():
+            if (
+                isinstance(node, ast.BinOp)
+                and isinstance(node.op, ast.MatMult)
+                and turns(node.left)
+            ):
+                places.setdefault(spelt(node.left, True), []).append(node)
+    for factor, found in places.items():
+        if len(found) > 1:
+            does = _("leaves the rotation {factor} out in every line").format(factor=factor)
+            edits = tuple((node, node.right) for node in found)
+            yield Step("rotation left out", does, edits, 1.08)
 
 
 def _halves_exchanged(of: Program) -> Iterator[Step]:

@@ -316,11 +316,13 @@ class Walk:
         elif name == "blocks":
             rows = [np.concatenate(np.broadcast_arrays(*x[k : k + 2]), axis=-1) for k in (0, 2)]
             out = np.concatenate(np.broadcast_arrays(*rows), axis=-2)
+        elif name == "stacked":
+            out = np.concatenate(np.broadcast_arrays(*x), axis=-2)
         elif name == "motion":
             out = _product(_crossing(x[0]), x[1])
         elif name == "force":
             out = -_product(np.swapaxes(_crossing(x[0]), -1, -2), x[1])
-        elif name == "both":
+        elif name == "both_":
             out = x[0] * np.eye(x[0].shape[-1])
         elif name == "diagonal":
             out = x[0][..., None] * np.eye(x[0].shape[-1])
@@ -333,6 +335,13 @@ class Walk:
                 x[0] / np.mean(np.diagonal(x[0], axis1=-2, axis2=-1), axis=-1)[..., None, None]
             )
             out = np.sum((products - np.eye(x[0].shape[-1])) ** 2, axis=(-2, -1))
+        elif name == "times_j":
+            out = np.sum(x[0], axis=-1) * x[1][..., None, :]
+        elif name == "times_i":
+            out = np.sum(x[0], axis=-1) * x[1][..., None]
+        elif name == "pose":
+            out = np.zeros((*np.broadcast_shapes(x[0].shape[:2], x[1].shape[:2]), 4, 4), x[0].dtype)
+            out[..., :3, :3], out[..., :3, 3], out[..., 3, 3] = x[0], x[1], 1.0
         elif name == "ikj":
             out = np.swapaxes(x[0], -1, -2)
         elif name == "jki":

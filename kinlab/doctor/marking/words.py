@@ -117,6 +117,8 @@ OTHERS = (
     N_("supplementary angle"),
     N_("root"),
     N_("branches mixed"),
+    N_("singular matrix"),
+    N_("one number"),
 )
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 

@@ -64,9 +64,11 @@ def study(line: Line) -> None:
 def _name(line: Line, place: Place, name: str) -> None:
     meant = canonical(name) if name not in line.text.symbols else tree.sym(name)
     if line.turns(name) and name in line.text.symbols:
-        meant = canonical(line.text.symbols[name])
+        meant = _meaning(line, name)
     if meant.op in ("sin", "cos"):
         _wave(line, place, meant)
+        return
+    if meant.op != "sym":
         return
     joint = _MOTION.fullmatch(str(meant.value))
     if joint:
@@ -105,11 +107,13 @@ def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
 
 
 def _number(line: Line, place: Place) -> None:
+    decimal = "." in line.segment(place)
     idle = place.above is not None and is_product(place.above.node)
     for shown, size in _NUMBERS.items():
+        shown = "0.25" if decimal and size == 0.25 else shown
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
             line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
-    if "." not in line.segment(place):
+    if not decimal:
         return
     for word, value in line.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
         line.instead(place, word, value, "parameter", 1.2)
@@ -128,8 +132,14 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
     name = node.func.id if isinstance(node.func, ast.Name) else ""
     if name in ("sin", "cos", "tan"):
         inside = parse(ast.unparse(node.args[0]))
-        mapped = {w: canonical(line.text.symbols.get(w, w)) for w in tree.names(inside)}
+        mapped = {w: _meaning(line, w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+
+
+def _meaning(line: Line, word: str) -> Node:
+    """What a name stands for: q1 for th1, q1 + q2 for q12."""
+    inside = parse(line.text.symbols[word]) if word in line.text.symbols else canonical(word)
+    return tree.renamed(inside, {name: canonical(name) for name in tree.names(inside)})
 
 
 def _wave(line: Line, place: Place, wave: Node) -> None:
@@ -228,7 +238,9 @@ def _as_factor(line: Line, place: Place) -> None:
     extra = 0.3 if whole else 0.0
     body = wrapped if is_sum(node) else piece
     numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
+    decimal = re.search(r"(?<![\d.])0?\.5(?!\d)", line.source)
     for shown, size in _FACTORS.items():
+        shown = "0.5" if decimal and shown == "/2" else shown
         new = f"{body}{shown}" if shown[0] == "/" else f"{shown}*{body}"
         cost = (1.2 if size in (2.0, 0.5) else 1.6) + extra + numbered
         span = (end, end, shown) if shown[0] == "/" else (first, first, f"{shown}*")
@@ -285,9 +297,10 @@ def _as_term(line: Line, place: Place) -> None:
     if not chain or place.above is None:
         return
     inside = line.segment(place)
+    there = [_factors(term) for term in re.split(r"[-+]", inside)]
     for piece, value in line.pieces.items():
         for sign in ("+", "-"):
-            twice = re.search(rf"(?:^|[+-])\s*{re.escape(piece)}\s*(?:$|[+-])", inside)
+            twice = _factors(piece) in there
             cost = (1.12 if sign == "+" else 1.6) + 0.03 * piece.count("*") + 0.4 * bool(twice)
             pieces = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
             change = Change(
@@ -300,6 +313,11 @@ def _as_term(line: Line, place: Place) -> None:
                 pieces=pieces,
             )
             line.put(place, place.value + (value if sign == "+" else -value), change)
+
+
+def _factors(term: str) -> list[str]:
+    """The names of a product, whatever number stands in front of it."""
+    return sorted(re.findall(r"[A-Za-z_]\w*(?:\*\*\d)?", term))
 
 
 def _whole_terms(line: Line) -> None:

@@ -230,7 +230,7 @@ def _same_formula(changes: tuple[Change, ...]) -> bool:
 def rewritten(source: str, changes: tuple[Change, ...]) -> str | None:
     """The text with the changes in place; None where it is no formula any more."""
     text = source
-    for change in sorted(changes, key=lambda c: -c.start):
+    for change in sorted(changes, key=lambda c: (-c.start, -c.end)):
         text = text[: change.start] + change.new + text[change.end :]
     if any(change.new.startswith("-") for change in changes):
         text = _signs_in_front(text)

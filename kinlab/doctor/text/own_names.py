@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.written import Written, literal
@@ -14,6 +16,9 @@ from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
+
+_OF_LINK = re.compile(r"(?:alpha|w)_?[2-9]")
+"""A rate or an acceleration of a joint to some, of a link to others."""
 
 
 def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
@@ -75,6 +80,12 @@ def _resolved(
             continue
         meant = canonical(name)
         if not tree.names(meant) <= known:
+            if _OF_LINK.fullmatch(name):
+                joint = f"q{'dd' if name[0] == 'a' else 'd'}{name[-1]}"
+                raise ExpressionError(
+                    f"{place}: {name}: of joint {name[-1]}, or of link {name[-1]}? write {joint} "
+                    "or the sum of the joints', or explain it in [symbols]"
+                )
             choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
             raise ExpressionError(
                 f"{place}: {name[:40]!r} is unknown; {choices}; or give it a meaning in [symbols]"

@@ -1,0 +1,124 @@
+"""Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of a slide.
+
+A name that the writer explains nowhere is read so where the robot has no such name and nothing else
+can be meant. ``M12`` in another formula is the formula that the file gives it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from kinlab.formulas import tree
+from kinlab.formulas.text import FormulaFile, canonical, parse
+from kinlab.formulas.tree import Node
+from kinlab.model.dh import DHTable
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
+
+_INDEXED = re.compile(r"([A-Za-z]+)(\d*)")
+_MOTION = re.compile(r"q(d{0,2})\d+")
+_SEVERAL = re.compile(r"(q|qd|qdd|dq|ddq)([1-9]{2,})")
+_SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
+_FIRST = {"w1": "qd1", "alpha1": "qdd1"}
+"""Of the first link, which turns as its joint does; of others it may be the link or the joint."""
+
+
+def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
+    """The file with a meaning for each name that has one by habit.
+
+    Args:
+        file: the formulas.
+        robot: whose they are.
+    """
+    if robot.table is None:
+        return file
+    file = _with_entries(file)
+    words = set(vocabulary(robot.table).values)
+    nodes = (*file.formulas.values(), *file.symbols.values())
+    used = {name for node in nodes for name in tree.names(node)}
+    turning = {name for node in nodes for name in _in_functions(node)}
+    motion = {f"q{'d' * k}{i + 1}" for k in range(3) for i in range(robot.n)}
+    known = {name for name in used if tree.names(canonical(name)) <= motion}
+    angles = {name for name in known if _positions(canonical(name))}
+    slides = _of_slides(robot.table)
+    new: dict[str, str] = {}
+    for name in sorted(used - words - known - {*file.symbols}):
+        plain = name.replace("_", "")
+        found = slides.get(plain) or _by_letter(plain, words, used, motion if not angles else set())
+        if not found and plain in _FIRST and name not in turning:
+            found = _FIRST[plain]
+        found = found or _of_several(plain, robot.n)
+        if found:
+            new[name] = found
+    symbols = file.symbols | {name: parse(value) for name, value in new.items()}
+    return replace(file, symbols=symbols, symbol_texts=file.symbol_texts | new)
+
+
+def _of_several(plain: str, joints: int) -> str:
+    """q1 + q2 for q12, where no joint 12 is."""
+    found = _SEVERAL.fullmatch(plain)
+    if found is None or joints > 9 or found[2] not in "123456789" or int(found[2][-1]) > joints:
+        return ""
+    head = f"q{'d' * found[1].count('d')}"
+    return " + ".join(f"{head}{k}" for k in found[2])
+
+
+def _of_slides(table: DHTable) -> dict[str, str]:
+    """d3 and its rates for q3 where joint 3 slides."""
+    joints = [k for k, link in enumerate(table.links, 1) if link.joint == "prismatic"]
+    return {
+        way.format(k=k): f"q{'d' * n}{k}" for k in joints for n in range(3) for way in _SLIDES[n]
+    }
+
+
+def _by_letter(plain: str, words: set[str], used: set[str], angles: set[str]) -> str:
+    """The robot's name, or the angle, that a letter with an index is."""
+    alike = [word for word in words if word.lower() == plain.lower()]
+    if alike:
+        return alike[0] if len(alike) == 1 and alike[0] not in used else ""
+    found = _INDEXED.fullmatch(plain)
+    if found is None or not found[2]:
+        return ""
+    length, angle = f"l{found[2]}", f"q{found[2]}"
+    if found[1] == "a" and length in words - used:
+        return length
+    return angle if found[1] == "t" and angle in angles else ""
+
+
+def _positions(node: Node) -> bool:
+    return any((found := _MOTION.fullmatch(n)) and not found[1] for n in tree.names(node))
+
+
+def _in_functions(node: Node) -> set[str]:
+    """The names that stand in a function: an angle, and no rate."""
+    return {
+        name
+        for _path, one in tree.nodes(node)
+        if one.op in tree.FUNCTIONS
+        for name in tree.names(one)
+    }
+
+
+def _with_entries(file: FormulaFile) -> FormulaFile:
+    """The file with M12 in other formulas as what it is there; M21 = M12 is M12's own line."""
+    entries = {n for n, node in file.formulas.items() if node.op != "sym" or node.value == n}
+    free = {
+        name
+        for node in file.formulas.values()
+        for name in tree.names(node)
+        if name in entries - {*file.symbols} and canonical(name) == tree.sym(name)
+    }
+    same = {
+        n: str(node.value)
+        for n, node in file.formulas.items()
+        if node.op == "sym" and node.value in free
+    }
+    return replace(
+        file,
+        formulas=file.formulas | {n: file.formulas[other] for n, other in same.items()},
+        texts=file.texts | {n: file.texts[other] for n, other in same.items()},
+        as_typed=file.as_typed | {n: file.as_typed[other] for n, other in same.items()},
+        symbols=file.symbols | {n: file.formulas[n] for n in free},
+        symbol_texts=file.symbol_texts | {n: file.texts[n] for n in free},
+    )
