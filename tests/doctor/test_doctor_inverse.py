@@ -283,3 +283,19 @@ def test_joint_angles_as_text() -> None:
 def test_texts_that_are_no_solution_are_refused(formulas: dict[str, str], words: str) -> None:
     with pytest.raises(ExpressionError, match=words):
         judged("planar2r", D, **formulas)
+
+
+@pytest.mark.parametrize("beyond", [0.895, 0.8999])
+def test_what_is_wrong_only_near_the_limit_of_reach_is_seen(beyond: float) -> None:
+    right = elbow_arm_of()
+    limited = lambda x, y: np.add(right(x, y, 1.0), 0.1 * (np.hypot(x, y) > beyond))  # noqa: E731
+    assert not kl.diagnose("planar2r", XY, limited).agrees
+
+
+def test_rounded_answers_are_neither_right_nor_wrong_and_complex_ones_are_no_solution() -> None:
+    rounded = kl.diagnose("planar2r", XY, lambda x, y: np.round(elbow_arm_of()(x, y, 1.0), 4))
+    assert (rounded.agrees, rounded.form) == (False, "near")
+    off = lambda x, y: np.add(elbow_arm_of()(x, y, 1.0), 0.1j)  # noqa: E731
+    told = kl.diagnose("planar2r", XY, off)
+    assert not told.agrees
+    assert "right at 0 of 200 targets" in told.sentence

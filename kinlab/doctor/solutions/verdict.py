@@ -83,6 +83,7 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
         return Diagnosis(quantity, label, name, True, float(np.max(worst)), remarks=remarks)
     causes = _causes(found, engine)
     k = first_largest(worst)
+    near = not causes and float(worst[k]) <= TOLERANCES.nearly_agrees
     row = int(np.argmax(np.where(found.wrong[k], found.errors[k], -1.0)))
     return Diagnosis(
         quantity,
@@ -96,6 +97,7 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
         hand=reached(robot, task, found.q[k, row][None])[0],
         engine=engine[k],
         proved=() if causes else tuple(_counted(found)),
+        form="near" if near else "",
     )
 
 
