@@ -18,7 +18,7 @@ w[0] = zero
 v[0] = zero
 for i in outward:
     # the angular velocity w of the link
-    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    w[i] = R[i].T @ w[i-1] + (qd[i]*z[i] if hinge[i] else zero)
     # the velocity v of the link's origin
     v[i] = R[i].T @ (v[i-1] + cross(w[i-1], P[i]))
     # the velocity v of the link's origin
@@ -33,7 +33,7 @@ dw[0] = zero
 dv[0] = -g
 for i in outward:
     # the angular velocity w of the link
-    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    w[i] = R[i].T @ w[i-1] + (qd[i]*z[i] if hinge[i] else zero)
     # the angular acceleration omega_dot of the link
     dw[i] = (R[i].T @ dw[i-1] + cross(R[i].T @ w[i-1], qd[i]*z[i]) + qdd[i]*z[i]
              if hinge[i] else R[i].T @ dw[i-1])
@@ -261,7 +261,7 @@ pose = T[n] @ home @ tool
 
 RATES = """
 # the tool's point
-p = last + tool
+p = last + Rn @ tool
 w[0] = zero
 u[0] = zero
 for i in outward:
@@ -284,7 +284,7 @@ E = columns(J)
 
 COLUMNS = """
 # the tool's point
-p = last + tool
+p = last + Rn @ tool
 for i in outward:
     # the Jacobian's column
     J[i] = twist(cross(z[i], p - o[i]), z[i]) if hinge[i] else twist(z[i], zero)
@@ -327,6 +327,35 @@ for i in inward:
     # the joint torque
     tau[i] = nn[i] @ z[i] if hinge[i] else f[i] @ z[i]
 """
+
+TOOLWARD = """
+Ru[n+1] = one
+pu[n+1] = zero
+R[n+1] = Rt
+P[n+1] = e
+for i in inward:
+    # the tool's rotation, seen from the link
+    Ru[i] = R[i+1] @ Ru[i+1]
+    # the tool's place, seen from the link
+    pu[i] = P[i+1] + R[i+1] @ pu[i+1]
+    # the Jacobian's column
+    J[i] = (twist(Ru[i].T @ cross(z[i], pu[i]), Ru[i].T @ z[i]) if hinge[i]
+            else twist(Ru[i].T @ z[i], zero))
+E = columns(J)
+"""
+"""The Jacobian in tool axes from the tool inward (Paul's)."""
+
+
+def toolward(standard: bool) -> str:
+    """The tool Jacobian by the products of the link transforms behind each joint."""
+    if not standard:
+        return TOOLWARD
+    text = TOOLWARD.partition("for i")
+    head = "Ru[n+1] = Rt\npu[n+1] = e\n"
+    body = text[2].replace("R[i+1] @ Ru", "R[i] @ Ru")
+    body = body.replace("P[i+1] + R[i+1] @ pu[i+1]", "R[i] @ (P[i] + pu[i+1])")
+    return head + text[1] + body
+
 
 TWISTED = {
     "base": "",
@@ -688,7 +717,7 @@ _MOVING = """
     # the crank's acceleration
     acc[i] = J[i] @ a + fv[i]
     # the crank's inertia about its base pin
-    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+    IA[i] = Iz[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
     # the crank's own torque
     own[i] = IA[i]*acc[i] + mc[i]*cc[i]*g*(crank[i] @ E1)
 """
@@ -727,7 +756,7 @@ tau = own + inv(Jm).T @ (m*(a + g*E2) + pull)
 _GAIN = """
 for i in outward:
     # the crank's inertia about its base pin
-    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+    IA[i] = Iz[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # G, the torque per acceleration
 E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
@@ -837,6 +866,8 @@ LINES = (
     N_("the joint's displacement"),
     N_("the product of exponentials"),
     N_("the force and moment through the joint"),
+    N_("the tool's rotation, seen from the link"),
+    N_("the tool's place, seen from the link"),
     N_("the wrench in the axes of the recursion"),
     N_("the wrench about the last link's origin"),
     N_("the transform X of twists"),

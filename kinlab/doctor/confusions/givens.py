@@ -184,9 +184,10 @@ def _tool(robot: Robot) -> Array:
     return placed
 
 
-def of_load(robot: Robot, wrench: Array, placed: Placed) -> dict[str, Any]:
-    """A wrench at the tool, and the tool in the last link and in the base."""
+def of_load(robot: Robot, x: Stacks, placed: Placed) -> dict[str, Any]:
+    """The tool in the last link and in the base, and a wrench at it."""
     end, last = _tool(robot), placed[1][-1][:, :3, :3]
+    wrench = x.get("wrench", np.zeros((1, 6)))
     return {
         "fw": wrench[:, :3],
         "nw": wrench[:, 3:],
@@ -230,7 +231,8 @@ def of_arm(robot: Robot, q: Array, x: Stacks, placed: Placed) -> dict[str, Any]:
             f"{name}_": {k: f[:, :3, c] for k, f in enumerate(at, 1)} for c, name in enumerate("xy")
         },
         "last": frames[-1][:, :3, 3],
-        "tool": p - frames[-1][:, :3, 3],
+        "Rn": frames[-1][:, :3, :3],
+        "tool": _tool(robot)[None, :3, 3],
         "q": q,
         "Jt": jacobian(robot, np.real(q)),
         "both": both,
@@ -283,7 +285,7 @@ def of_loop(mechanism: Any, loop: Any, x: Stacks) -> dict[str, Any]:
         "l1": each(loop.l1),
         "l2": each(loop.l2),
         "s": each(S),
-        "Ic": each(loop.crank_inertia),
+        "Iz": each(loop.crank_inertia),
         "mc": each(loop.crank),
         "md": each(loop.rod),
         "cd": each(loop.rod_com),

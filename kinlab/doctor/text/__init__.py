@@ -20,6 +20,7 @@ module            what it holds
 ``mend``          One slip of the pen, two or three: the changes that make a line right, and the
                   line then
 ``names``         The names that may stand in a formula of an arm, and the angles made of them
+``numbers_off``   Several numbers of a text that are off, beside others that are only rounded
 ``own_names``     A file's formulas in the robot's names: the writer's own names and numbers, what
                   they mean
 ``pairs``         Pairs of effects that make up a difference, found without trying each with each
