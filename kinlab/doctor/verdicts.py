@@ -20,7 +20,7 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.text.forces import WRENCH
+from kinlab.doctor.text.claims import WRENCH
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
