@@ -241,6 +241,11 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
     noisy = error <= TOLERANCES.coefficient_digits and _takes_differences(case, most)
     if not noisy and not error <= TOLERANCES.slips_leave:
         return None
+    return of_digits(error)
+
+
+def of_digits(error: float) -> Excuse:
+    """The excuse of a function that is right to the digits of its constants."""
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
 
