@@ -122,6 +122,19 @@ def test_degrees_none_and_an_acos_without_a_value() -> None:
     assert "(the factor) in the cosine of q2" in kl.diagnose("planar2r", XY, by_math).sentence
 
 
+@pytest.mark.parametrize(
+    ("half_turn", "verdict"),
+    [(3.14159265, "agrees to its digits"), (3.1416, "nearly agrees, cause unknown")],
+)
+def test_a_rounded_constant_is_no_slip(half_turn: float, verdict: str) -> None:
+    def solve(x: float, y: float) -> tuple[float, float]:
+        inner = math.acos((0.41 - x * x - y * y) / 0.4)
+        lean = math.acos((x * x + y * y + 0.09) / math.hypot(x, y))
+        return math.atan2(y, x) - lean, half_turn - inner
+
+    assert kl.diagnose("planar2r", XY, solve, samples=60).verdict == verdict
+
+
 def test_beyond_reach_a_limited_cosine_answers_too() -> None:
     limited = elbow_arm_of(cosine=lambda r2, a, b: np.clip((r2 - a**2 - b**2) / (2 * a * b), -1, 1))
     found = kl.diagnose("planar2r", XY, limited, samples=60)
