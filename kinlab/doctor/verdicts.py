@@ -20,6 +20,7 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
+from kinlab.doctor.text.forces import WRENCH
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
@@ -172,6 +173,8 @@ def numbers_at(case: Case) -> dict[str, Array]:
         if argument in LETTERS:
             for i in range(case.robot.n):
                 at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+        if argument == "wrench":
+            at |= dict(zip(WRENCH, stack.T, strict=True))
     return at
 
 

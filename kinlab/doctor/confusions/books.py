@@ -18,7 +18,7 @@ w[0] = zero
 v[0] = zero
 for i in outward:
     # the angular velocity w of the link
-    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    w[i] = R[i].T @ w[i-1] + (qd[i]*z[i] if hinge[i] else zero)
     # the velocity v of the link's origin
     v[i] = R[i].T @ (v[i-1] + cross(w[i-1], P[i]))
     # the velocity v of the link's origin
@@ -33,7 +33,7 @@ dw[0] = zero
 dv[0] = -g
 for i in outward:
     # the angular velocity w of the link
-    w[i] = R[i].T @ w[i-1] + qd[i]*z[i] if hinge[i] else R[i].T @ w[i-1]
+    w[i] = R[i].T @ w[i-1] + (qd[i]*z[i] if hinge[i] else zero)
     # the angular acceleration omega_dot of the link
     dw[i] = (R[i].T @ dw[i-1] + cross(R[i].T @ w[i-1], qd[i]*z[i]) + qdd[i]*z[i]
              if hinge[i] else R[i].T @ dw[i-1])
@@ -261,7 +261,7 @@ pose = T[n] @ home @ tool
 
 RATES = """
 # the tool's point
-p = last + tool
+p = last + Rn @ tool
 w[0] = zero
 u[0] = zero
 for i in outward:
@@ -284,7 +284,7 @@ E = columns(J)
 
 COLUMNS = """
 # the tool's point
-p = last + tool
+p = last + Rn @ tool
 for i in outward:
     # the Jacobian's column
     J[i] = twist(cross(z[i], p - o[i]), z[i]) if hinge[i] else twist(z[i], zero)
@@ -327,6 +327,35 @@ for i in inward:
     # the joint torque
     tau[i] = nn[i] @ z[i] if hinge[i] else f[i] @ z[i]
 """
+
+TOOLWARD = """
+Ru[n+1] = one
+pu[n+1] = zero
+R[n+1] = Rt
+P[n+1] = e
+for i in inward:
+    # the tool's rotation, seen from the link
+    Ru[i] = R[i+1] @ Ru[i+1]
+    # the tool's place, seen from the link
+    pu[i] = P[i+1] + R[i+1] @ pu[i+1]
+    # the Jacobian's column
+    J[i] = (twist(Ru[i].T @ cross(z[i], pu[i]), Ru[i].T @ z[i]) if hinge[i]
+            else twist(Ru[i].T @ z[i], zero))
+E = columns(J)
+"""
+"""The Jacobian in tool axes from the tool inward (Paul's)."""
+
+
+def toolward(standard: bool) -> str:
+    """The tool Jacobian by the products of the link transforms behind each joint."""
+    if not standard:
+        return TOOLWARD
+    text = TOOLWARD.partition("for i")
+    head = "Ru[n+1] = Rt\npu[n+1] = e\n"
+    body = text[2].replace("R[i+1] @ Ru", "R[i] @ Ru")
+    body = body.replace("P[i+1] + R[i+1] @ pu[i+1]", "R[i] @ (P[i] + pu[i+1])")
+    return head + text[1] + body
+
 
 TWISTED = {
     "base": "",
@@ -618,6 +647,16 @@ _IN_BASE = """for i in outward:
     Ib[i] = R_[i] @ I[i] @ R_[i].T
 """
 
+CONDITIONS = """
+# the products of the Jacobian's rows
+E = conditions(J @ J.T)
+"""
+ISOTROPIC = {
+    "orthogonal_columns_cosine": "-l2/l1",
+    "equal_columns_cosine": "-l1/(2*l2)",
+}
+"""Where the columns of a planar 2R arm are orthogonal, and where equally long (note 000)."""
+
 ISOTROPY = """
 # the products of the Jacobian's rows
 E = defect(J @ J.T)
@@ -669,7 +708,7 @@ _MOVING = """
     # the crank's acceleration
     acc[i] = J[i] @ a + fv[i]
     # the crank's inertia about its base pin
-    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+    IA[i] = Iz[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
     # the crank's own torque
     own[i] = IA[i]*acc[i] + mc[i]*cc[i]*g*(crank[i] @ E1)
 """
@@ -679,22 +718,68 @@ own = columns(own)
 # the torque by virtual work
 tau = own + inv(Jm).T @ (m*(a + g*E2))
 """
+_RODS = """
+    # the crank's rate
+    rate[i] = J[i] @ v
+    # the rod's turn per motion of the tool
+    K[i] = (H.T @ rod[i] - l1[i]*(rod[i] @ crank[i])*J[i])/l2[i]
+    # the rod's rate
+    spin[i] = K[i] @ v
+    # the rod's angular acceleration
+    alpha[i] = ((H.T @ rod[i]) @ (a - l1[i]*acc[i]*(H.T @ crank[i]) + l1[i]*rate[i]**2*crank[i])
+                /l2[i])
+    # the acceleration of the rod's centre
+    ac[i] = (l1[i]*acc[i]*(H.T @ crank[i]) - l1[i]*rate[i]**2*crank[i]
+             + cd[i]*alpha[i]*(H.T @ rod[i]) - cd[i]*spin[i]**2*rod[i])
+    # the rod's inertia force, with its weight
+    F[i] = md[i]*(ac[i] + g*E2)
+    # the force on the tool that the rod asks for
+    Q[i] = (l1[i]*(F[i] @ (H.T @ crank[i]))*J[i] + cd[i]*(F[i] @ (H.T @ rod[i]))*K[i]
+            + Id[i]*alpha[i]*K[i])
+"""
+_HEAVY = """
+Jm = columns(J).T
+own = columns(own)
+pull = columns(Q) @ legs
+# the torque by virtual work
+tau = own + inv(Jm).T @ (m*(a + g*E2) + pull)
+"""
 _GAIN = """
 for i in outward:
     # the crank's inertia about its base pin
-    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+    IA[i] = Iz[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # G, the torque per acceleration
 E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
 """
 _LOOP = FIVE_BAR + _CRANKS + _BARS
 CLOSED = {
+    "fivebar_rod_length": (
+        "L",
+        """
+for i in outward:
+    # the length of the rod
+    L[i] = sqrt((s[i]*e + l1[i]*cos(theta[i]) - x)**2 + (l1[i]*sin(theta[i]) - y)**2)
+""",
+    ),
     "fivebar_projection": ("C", FIVE_BAR),
     "fivebar_cranks": ("crank", _LOOP),
     "fivebar_rods": ("rod", _LOOP),
     "fivebar_jacobian": ("J", _LOOP),
     "fivebar_turn": ("acc", _LOOP + _MOVING),
     "fivebar_torque_massless": ("tau", _LOOP + _MOVING + _TORQUE),
+    "fivebar_torque": ("tau", _LOOP + _MOVING + _RODS + _HEAVY),
+    "fivebar_load_inertia_massless": (
+        "E",
+        _LOOP
+        + """
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+Jm = columns(J).T
+# the load's inertia
+E = columns(IA) + m*norm(inv(Jm).T)**2
+""",
+    ),
     "fivebar_torque_per_acceleration": ("E", _LOOP + _GAIN),
     "fivebar_torque_per_acceleration_worst": (
         "E",
@@ -772,6 +857,8 @@ LINES = (
     N_("the joint's displacement"),
     N_("the product of exponentials"),
     N_("the force and moment through the joint"),
+    N_("the tool's rotation, seen from the link"),
+    N_("the tool's place, seen from the link"),
     N_("the wrench in the axes of the recursion"),
     N_("the wrench about the last link's origin"),
     N_("the transform X of twists"),
@@ -823,6 +910,16 @@ LINES = (
     N_("the power"),
     N_("the left side A cos(theta) + B sin(theta)"),
     N_("the step"),
+    N_("the length of the rod"),
+    N_("the crank's rate"),
+    N_("the rod's turn per motion of the tool"),
+    N_("the rod's rate"),
+    N_("the rod's angular acceleration"),
+    N_("the acceleration of the rod's centre"),
+    N_("the rod's inertia force, with its weight"),
+    N_("the force on the tool that the rod asks for"),
+    N_("the load's inertia"),
+    N_("the cosine of theta2"),
     N_("the boundary term"),
     N_("the variation with its boundary term"),
 )

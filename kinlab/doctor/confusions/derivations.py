@@ -23,6 +23,12 @@ _LIKELY = 1.215
 """Cost up to which a step is tried together with others."""
 _WAYS = 12_000
 """Combinations of steps that are tried, the likeliest first."""
+_HEAVY = 1_000
+"""Assignments of one walk above which a derivation is left to lighter ones where the links are
+placed otherwise."""
+_WORK = 1_200_000
+"""Assignments that all derivations of a formula together may cost in one attempt: counted, and no
+clock, so that the answer is the same on every machine."""
 _FEW = 80
 """Steps up to which all are joined, also those that change what is right."""
 _CHUNK = 5_000
@@ -66,13 +72,17 @@ def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     for singly in (False, True):
         found: list[Found] = []
         for road, shapes in ways:
-            if road.pairs or not singly:
+            if road.singly or not singly:
                 tried = steps(road.of, shapes, road.n, singly)
                 found += _tried(case, road, [(step,) for step in tried])
         near += found
         if any(one.error <= TOLERANCES.formula_agrees for one in found):
             return found
-    for road, shapes in _ready(case, through_links(case)):
+    through = _ready(case, through_links(case))
+    least = min((road.work for road, _shapes in through), default=0)
+    for road, shapes in through:
+        if road.work > max(_HEAVY, least):
+            continue
         found = [*_tried(case, road, [(step,) for step in steps(road.of, shapes, road.n, False)])]
         if any(one.error <= TOLERANCES.formula_agrees for one in found):
             return found
@@ -93,6 +103,8 @@ def one_for_each_kind(case: Case, ways: Ready, split: Apart | None) -> list[Foun
     found: list[Found] = []
     for road, shapes in ways:
         singles = steps(road.of, shapes, road.n, False)
+        if len(singles) * len(split.stacks["q"]) * road.work > _WORK:
+            continue
         values = _walked(road, [(), *((step,) for step in singles)], split.stacks, case)
         both = [way for way in joined(split, values, singles) if _compatible(way)]
         found += _tried(case, road, both)
@@ -112,33 +124,34 @@ def several_taken_otherwise(case: Case, ways: Ready, split: Apart | None) -> lis
             ready.append(
                 (road, *_apart(case, road, [s for s in every if s.cost <= _LIKELY], split))
             )
-    found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 2)]
+    share = _WORK // max(1, len(ready))
+    found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 2, share)]
     if not found and not _planar(case):
         # in the plane too many triples come to the same
-        found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 3)]
+        found = [f for road, kept, _ in ready for f in _joined(case, road, kept, 3, share)]
     if not found:
         for road, kept, every in ready:
             if len(kept) < len(every) <= _FEW:
-                found += _joined(case, road, every, 2)
+                found += _joined(case, road, every, 2, share)
                 if not found and not _planar(case):
-                    found += _joined(case, road, every, 3)
+                    found += _joined(case, road, every, 3, share)
     if not found and not _planar(case):
         for road, kept, _ in ready:
             one: Ways = [(step,) for step in kept]
-            pairs: Ways = [*combinations(_most(kept, 2), 2)]
+            pairs: Ways = [*combinations(_most(kept, 2, share // (_ADDED * road.work)), 2)]
             found += _adding_up(case, road, [*one, *filter(_compatible, pairs)])
     return found
 
 
-def _joined(case: Case, road: Road, tried: list[Step], count: int) -> Iterator[Found]:
-    """Ways of so many steps together, of as many of the likeliest as there is time for."""
-    ways: Ways = [*combinations(_most(tried, count), count)]
+def _joined(case: Case, road: Road, tried: list[Step], count: int, share: int) -> Iterator[Found]:
+    """Ways of so many steps together, of as many of the likeliest as so much work allows."""
+    ways: Ways = [*combinations(_most(tried, count, share // road.work), count)]
     yield from _tried(case, road, [way for way in ways if _compatible(way)])
 
 
-def _most(tried: list[Step], count: int) -> list[Step]:
+def _most(tried: list[Step], count: int, ways: int) -> list[Step]:
     kept = list(tried)
-    while comb(len(kept), count) > _WAYS:
+    while comb(len(kept), count) > min(_WAYS, ways):
         kept.pop()
     return kept
 

@@ -184,9 +184,10 @@ def _tool(robot: Robot) -> Array:
     return placed
 
 
-def of_load(robot: Robot, wrench: Array, placed: Placed) -> dict[str, Any]:
-    """A wrench at the tool, and the tool in the last link and in the base."""
+def of_load(robot: Robot, x: Stacks, placed: Placed) -> dict[str, Any]:
+    """The tool in the last link and in the base, and a wrench at it."""
     end, last = _tool(robot), placed[1][-1][:, :3, :3]
+    wrench = x.get("wrench", np.zeros((1, 6)))
     return {
         "fw": wrench[:, :3],
         "nw": wrench[:, 3:],
@@ -230,7 +231,8 @@ def of_arm(robot: Robot, q: Array, x: Stacks, placed: Placed) -> dict[str, Any]:
             f"{name}_": {k: f[:, :3, c] for k, f in enumerate(at, 1)} for c, name in enumerate("xy")
         },
         "last": frames[-1][:, :3, 3],
-        "tool": p - frames[-1][:, :3, 3],
+        "Rn": frames[-1][:, :3, :3],
+        "tool": _tool(robot)[None, :3, 3],
         "q": q,
         "Jt": jacobian(robot, np.real(q)),
         "both": both,
@@ -252,6 +254,13 @@ def of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     pose = planar_pose(robot, q)
     here = np.stack([pose[:, 0], pose[:, 1], np.sum(q, axis=1)], axis=1)
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
+
+
+def of_lengths(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """The lengths of a planar 2R arm, by its Jacobian's columns."""
+    del x
+    one, two = jacobian(robot, 0.0 * q)[:, :2].transpose(2, 0, 1)
+    return {"l1": np.linalg.norm(one - two, axis=1), "l2": np.linalg.norm(two, axis=1)}
 
 
 def of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
@@ -276,8 +285,12 @@ def of_loop(mechanism: Any, loop: Any, x: Stacks) -> dict[str, Any]:
         "l1": each(loop.l1),
         "l2": each(loop.l2),
         "s": each(S),
-        "Ic": each(loop.crank_inertia),
+        "Iz": each(loop.crank_inertia),
         "mc": each(loop.crank),
+        "md": each(loop.rod),
+        "cd": each(loop.rod_com),
+        "Id": each(loop.rod_inertia),
+        "legs": np.ones((1, 2)),
         "cc": each(loop.crank_com),
         "Im": each(mechanism.rotor_inertia),
         "j": each(mechanism.gear_ratio),

@@ -86,11 +86,10 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
             plain = factor.operand if isinstance(factor, ast.UnaryOp) else factor
             if signed and isinstance(plain, ast.Name):
                 # the factor's sign is lost with it, or it is not
-                less = ast.UnaryOp(ast.USub(), rest)
                 does = _("leaves the factor {factor} out of {term}").format(
                     factor=spelt(plain), term=spelt(node)
                 )
-                yield step("missing factor", does, 1.15, (node, less))
+                yield step("missing factor", does, 1.15, (node, ast.UnaryOp(ast.USub(), rest)))
             if isinstance(plain, ast.Name | ast.Subscript) and (
                 isinstance(node.op, ast.Mult) or factor is right
             ):
@@ -219,7 +218,7 @@ def at_call(node: ast.Call, step: Make) -> Iterator[Step]:
                     term=f"{spelt(part)} ({which})"
                 )
                 yield step("sign", does, 1.04, (part, minus(part)))
-    elif name == "defect" and isinstance(x[0], ast.BinOp):
+    elif name in ("defect", "conditions") and isinstance(x[0], ast.BinOp):
         swapped = ast.BinOp(x[0].right, ast.MatMult(), x[0].left)
         does = _("has {new} for {old} (the product's order)")
         does = does.format(new=spelt(swapped), old=spelt(x[0]))
@@ -256,12 +255,17 @@ def turned_again(node: ast.Subscript, step: Make) -> Iterator[Step]:
         yield step("rotated twice", does, 1.15, (node, new))
 
 
+def without_own(node: ast.IfExp) -> ast.IfExp:
+    """A choice by ``j <= k`` that has ``j < k``."""
+    assert isinstance(node.test, ast.Compare)
+    test = ast.Compare(node.test.left, [ast.Lt()], node.test.comparators)
+    return ast.IfExp(test, node.body, node.orelse)
+
+
 def at_choice(node: ast.IfExp, step: Make) -> Iterator[Step]:
     if isinstance(node.test, ast.Compare):
-        test = ast.Compare(node.test.left, [ast.Lt()], node.test.comparators)
-        less = ast.IfExp(test, node.body, node.orelse)
         does = _("leaves the link's own joint out (j < i for j <= i)")
-        yield step("own joint", does, 1.1, (node, less))
+        yield step("own joint", does, 1.1, (node, without_own(node)))
         return
     does = _("treats a slide (prismatic joint) as a hinge (revolute)")
     yield step("slide as hinge", does, 1.1, (node, node.body))

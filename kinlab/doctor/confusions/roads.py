@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -19,6 +20,7 @@ from kinlab.doctor.confusions.givens import (
     Stacks,
     as_placed,
     of_arm,
+    of_lengths,
     of_load,
     of_loop,
     of_path,
@@ -49,15 +51,18 @@ class Road:
         of: the derivation.
         walked: from ways and the case's arguments to the quantity, (B, N, ...), and the walk.
         n: joints, or legs.
-        pairs: whether two steps are tried.
+        pairs: whether two steps are tried. singly: whether steps at one joint are.
+        work: assignments that one way costs at one state.
         asked: the same with the links placed otherwise; None where nothing is asked of them.
     """
 
     of: Program
     walked: Walked
     n: int
+    work: int
     pairs: bool = True
     asked: Asked | None = None
+    singly: bool = True
 
 
 def roads(case: Case) -> Iterator[Road]:
@@ -87,16 +92,24 @@ def roads(case: Case) -> Iterator[Road]:
         if name.startswith("statics"):
             yield _of_arm(case, text + books.STATICS, "tau")
             for in_base in (False, True):
-                yield _with_load(case, books.passed_on(usual, in_base), in_base, "tau")
+                held = books.held(name == "statics_tool", in_base)
+                yield _with_load(case, held + books.passed_on(usual, in_base), in_base, "tau")
         else:
             rows = [0, 1, 5] if name == "planar_jacobian" else None
             yield _of_arm(case, text, "Jb", rows)
+            if frame == "tool":
+                yield _with_load(case, books.toolward(usual), False, "E", False)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
     if name == "action_variation_free_ends":
         yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
         yield _of_step(case, books.ISOTROPY)
+    if name == "isotropy_conditions":
+        yield _of_step(case, books.CONDITIONS)
+    if name in books.ISOTROPIC:
+        text = f"# the cosine of theta2\nE = {books.ISOTROPIC[name]}"
+        yield _of_step(case, text, of_lengths)
     if name == "jacobian_dot":
         yield _of_arm(case, books.RATES, "E")
         yield _of_arm(case, books.COLUMNS + books.RATE, "E")
@@ -108,10 +121,12 @@ def roads(case: Case) -> Iterator[Road]:
     if name in ("static_wrenches", "joint_wrenches"):
         still = name == "static_wrenches"
         text = books.passed_on(usual, False) if still else books.newton_euler(usual, False)
-        yield _with_load(case, books.loaded(text) + books.THROUGH, False, "asked")
+        yield _with_load(
+            case, books.held(False, False) + books.loaded(text) + books.THROUGH, False, "asked"
+        )
     if name == "inverse_dynamics_loaded":
         for in_base in (False, True):
-            text = books.loaded(books.newton_euler(usual, in_base))
+            text = books.held(False, in_base) + books.loaded(books.newton_euler(usual, in_base))
             yield _with_load(case, text, in_base, "tau")
     if name in _WITHIN:
         asked, rest = _WITHIN[name]
@@ -169,13 +184,15 @@ _RECURSIVE = (
 _HEAVY = ("inverse_dynamics", "gravity_torques", "forward_dynamics")
 
 
-def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True) -> Road:
-    """A derivation that asks where the links are."""
+def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True, walks: int = 1) -> Road:
+    """A derivation that asks where the links are, walked so many times for one answer."""
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         return asked(ways, x, lambda q: as_placed(robot, q))
 
-    return Road(of, walked, robot.n, pairs, asked)
+    slopes = any("slope(" in ast.unparse(line.statement) for line in of.lines)
+    work = walks * of.work(robot.n)
+    return Road(of, walked, robot.n, work, pairs, asked, pairs or not slopes)
 
 
 def _of_links(case: Case, text: str, asked: str) -> Road:
@@ -185,7 +202,7 @@ def _of_links(case: Case, text: str, asked: str) -> Road:
         walk = Walk(of, lambda q: of_table(robot, q), x["q"], ways, robot.n)
         return walk.values(asked), walk
 
-    return Road(of, walked, robot.n)
+    return Road(of, walked, robot.n, of.work(robot.n))
 
 
 def _of_step(case: Case, text: str, given: Any = of_step) -> Road:
@@ -195,7 +212,7 @@ def _of_step(case: Case, text: str, given: Any = of_step) -> Road:
         walk = Walk(of, lambda q: given(robot, q, x), x["q"], ways, robot.n)
         return walk.values("E"), walk
 
-    return Road(of, walked, robot.n)
+    return Road(of, walked, robot.n, of.work(robot.n))
 
 
 def _of_arm(case: Case, text: str, asked: str, rows: Any = None, pairs: bool = True) -> Road:
@@ -243,7 +260,7 @@ def _recursion(case: Case, text: str, in_base: bool, said: str = "tau", pairs: b
                 values = _solved(values, x["tau"] - every[:, :, n])
         return values, walk
 
-    return _road(of, ask, robot, pairs)
+    return _road(of, ask, robot, pairs, robot.n + 1 if units else 1)
 
 
 def _solved(matrix: Array, right: Array) -> Array:
@@ -256,10 +273,10 @@ def _solved(matrix: Array, right: Array) -> Array:
     return np.where(some[..., 0], np.linalg.solve(safe, right[..., None])[..., 0], np.nan)
 
 
-def _with_load(case: Case, text: str, in_base: bool, said: str) -> Road:
+def _with_load(case: Case, text: str, in_base: bool, said: str, pairs: bool = True) -> Road:
     """Forces passed on from the tool, from link to link."""
     robot = case.robot
-    of = program(books.held(case.quantity.name == "statics_tool", in_base) + text)
+    of = program(text)
 
     def ask(ways: Ways, x: Stacks, where: Where) -> tuple[Array, Walk]:
         moved = {"v": 0.0 * x["q"], "a": 0.0 * x["q"], **x}
@@ -267,12 +284,12 @@ def _with_load(case: Case, text: str, in_base: bool, said: str) -> Road:
         def give(q: Array) -> dict[str, Any]:
             placed = where(q)
             found = of_recursion(robot, q, moved, placed, in_base)
-            return {**found, **of_load(robot, x["wrench"], placed)}
+            return {**found, **of_load(robot, x, placed)}
 
         walk = Walk(of, give, x["q"], ways, robot.n)
         return walk.values(said), walk
 
-    return _road(of, ask, robot)
+    return _road(of, ask, robot, pairs)
 
 
 def through_links(case: Case) -> Iterator[Road]:
@@ -283,7 +300,7 @@ def through_links(case: Case) -> Iterator[Road]:
     of = program(books.product_of_links(standard(robot)))
     for road in roads(case):
         if road.asked is not None:
-            yield Road(of, _through(of, robot, road.asked), robot.n, False)
+            yield Road(of, _through(of, robot, road.asked), robot.n, road.work, False)
 
 
 def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
@@ -326,7 +343,7 @@ def _five_bar(case: Case) -> Iterator[Road]:
             walk = Walk(of, lambda _: of_loop(mechanism, loop, x), some, ways, 2)
             return walk.values(asked), walk
 
-        return Road(of, walked, 2)
+        return Road(of, walked, 2, of.work(2), pairs=name != "fivebar_torque")
 
     if asked:
         yield road(text, asked)

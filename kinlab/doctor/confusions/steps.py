@@ -13,7 +13,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles
+from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles, of_rods
 from kinlab.doctor.confusions.operations import (
     Make,
     at_call,
@@ -22,6 +22,7 @@ from kinlab.doctor.confusions.operations import (
     at_operator,
     turned_again,
     turns,
+    without_own,
 )
 from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
 from kinlab.doctor.confusions.words import (
@@ -118,14 +119,14 @@ def _steps(
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
-    found += [*exchanged(of), *of_angles(of)]
+    found += [*exchanged(of), *of_angles(of), *of_rods(of)]
     if not singly:
         return (
             *_everywhere(of),
             *_halves_exchanged(of),
             *found,
             *_updated(of, axes),
-            *_not_turned(of),
+            *_not_turned(of, axes),
             *_short_loops(of, axes, n),
             *_other_axes(of),
         )
@@ -277,14 +278,15 @@ def _branches(node: ast.expr) -> Iterator[ast.expr]:
 
 
 def _slides(of: Program) -> Iterator[Step]:
-    """A slide treated as a hinge in every line, and the other way."""
-    nodes = [
+    """A slide treated as a hinge in every line, and the other way; every link without its joint."""
+    every = [
         node
         for line in of.lines
         if line.about
         for node in ast.walk(line.statement)
-        if isinstance(node, ast.IfExp) and isinstance(node.test, ast.Subscript)
+        if isinstance(node, ast.IfExp)
     ]
+    nodes = [node for node in every if isinstance(node.test, ast.Subscript)]
     if len(nodes) > 1:
         yield Step(
             "slide as hinge",
@@ -298,6 +300,10 @@ def _slides(of: Program) -> Iterator[Step]:
             tuple((node, node.orelse) for node in nodes),
             1.15,
         )
+    bounded = [node for node in every if isinstance(node.test, ast.Compare)]
+    if len(bounded) > 1:
+        does = _("leaves the link's own joint out (j < i for j <= i)")
+        yield Step("own joint", does, tuple((x, without_own(x)) for x in bounded), 1.02)
 
 
 def _own_for_next(
@@ -407,22 +413,38 @@ def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> It
             edits.append((value, again(target) if sums else times(0, value)))
         if not told_of or not edits:
             continue
+        yield from _not_carried(loop, lines, n)
         for joint in (1, n):
             does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
             said = does.format(number=joint, line=together(told_of[-2:]))
             yield Step("loop", said, tuple(edits), 1.12, joint)
 
 
-def _not_turned(of: Program) -> Iterator[Step]:
+def _not_carried(loop: ast.For, lines: list[Assignment], n: int) -> Iterator[Step]:
+    """Inward loops that begin or end one link short: what comes from the next link is left out."""
+    carried = tuple(
+        (part, times(0, part))
+        for line in lines
+        for node in ast.walk(_value(line))
+        if isinstance(node, ast.expr) and is_sum(node)
+        for part in halves(node)
+        if not is_sum(part) and "i + 1" in ast.unparse(part)
+    )
+    if carried and ast.unparse(loop.iter) == "inward":
+        late = _("does not carry the last link's part inward: the loop begins one link too late")
+        early = _("carries nothing inward to the first link: the loop ends one link too early")
+        yield Step("loop", late, carried, 1.1, n - 1)
+        yield Step("loop", early, carried, 1.1, 1)
+
+
+def _not_turned(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[Step]:
     """A rotation left out wherever it stands."""
     places: dict[str, list[ast.BinOp]] = {}
     for line in of.lines:
         for node in ast.walk(_value(line)) if line.about else ():
-            if (
-                isinstance(node, ast.BinOp)
-                and isinstance(node.op, ast.MatMult)
-                and turns(node.left)
-            ):
+            if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)):
+                continue
+            if turns(node.left) and len(axes.get(id(node.right), ())) == 1:
                 places.setdefault(spelt(node.left, True), []).append(node)
     for factor, found in places.items():
         if len(found) > 1:

@@ -10,7 +10,7 @@ program's; only its own rows are worked out anew.
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
@@ -40,6 +40,22 @@ class Program:
 
     body: tuple[ast.stmt, ...]
     lines: tuple[Assignment, ...]
+
+    def work(self, n: int) -> int:
+        """Assignments that one walk with n joints makes, those for slopes included."""
+        return _assignments(self.body, n)
+
+
+def _assignments(body: Iterable[ast.stmt], n: int) -> int:
+    count = 0
+    for statement in body:
+        if isinstance(statement, ast.For):
+            count += n * _assignments(statement.body, n)
+        elif "slope(" in ast.unparse(statement):
+            count += 2 * n * count
+        else:
+            count += 1
+    return count
 
 
 @lru_cache(maxsize=64)
@@ -335,6 +351,8 @@ class Walk:
                 x[0] / np.mean(np.diagonal(x[0], axis1=-2, axis2=-1), axis=-1)[..., None, None]
             )
             out = np.sum((products - np.eye(x[0].shape[-1])) ** 2, axis=(-2, -1))
+        elif name == "conditions":
+            out = np.stack([x[0][..., 0, 0] - x[0][..., 1, 1], x[0][..., 0, 1]], axis=-1)
         elif name == "times_j":
             out = np.sum(x[0], axis=-1) * x[1][..., None, :]
         elif name == "times_i":

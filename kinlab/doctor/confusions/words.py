@@ -46,7 +46,8 @@ MEANT = {
     "arm": N_("the tool's offset"),
     "dtw": N_("the acceleration as a twist"),
     "Is": N_("the spatial inertia"),
-    "Ic": N_("the inertia about the centre"),
+    "Ic": N_("the inertia of the links behind"),
+    "Iz": N_("the inertia about the centre"),
     "dz": N_("the axis's rate"),
     "vc": N_("the velocity of the centre of mass"),
     "crank": N_("the crank's direction u"),
@@ -59,6 +60,10 @@ MEANT = {
     "o_": N_("the frame's origin"),
     "b": N_("the boundary term"),
     "inner": N_("the integral"),
+    "pull": N_("the rods' force on the tool"),
+    "md": N_("the rod's mass"),
+    "cd": N_("the distance of the rod's centre"),
+    "Id": N_("the rod's inertia"),
 }
 """What names stand for."""
 
@@ -102,11 +107,13 @@ _SPELT = {
     "early": "dL/dqd(t1)",
     "later": "dq(t2)",
     "earlier": "dq(t1)",
+    "pull": "f",
 }
 
 _CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
 
 KNOWN = {
+    "X^T Ic X": N_("the inertia of the links behind"),
     "w x (I w)": N_("the gyroscopic term"),
     "w x (w x P)": N_("the centripetal term of the link's origin"),
     "w x (w x P_C)": N_("the centripetal term of the centre of mass"),
@@ -120,6 +127,7 @@ KNOWN = {
     "I omega_dot": N_("the inertia tensor's moment"),
     "N": N_("the link's own moment"),
     "F": N_("the link's own force"),
+    "R tool": N_("the tool"),
     "P_C x F": N_("the moment of F"),
     "(P + P_C) x F": N_("the moment of F at the centre of mass"),
     "P x (R f)": N_("the lever arm of the next link's force"),

@@ -267,7 +267,7 @@ def _road(case: Case, text: str, numbers: Numbers) -> Road:
         walk = Walk(of, lambda _: named, next(iter(x.values())), ways, 0)
         return compared(robot, walk.values("q")), walk
 
-    return Road(of, walked, 0, pairs=robot.n <= _MOST_FOR_PAIRS)
+    return Road(of, walked, 0, of.work(0), pairs=robot.n <= _MOST_FOR_PAIRS)
 
 
 def _entries(robot: Robot, x: Stacks) -> Stacks:
