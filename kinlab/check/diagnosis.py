@@ -33,6 +33,7 @@ _GRADES = {
 }
 ENTRY_LETTERS = {
     "inverse_dynamics": "tau",
+    "statics": "tau",
     "gravity_torques": "g",
     "coriolis_torques": "c",
     "mass_matrix": "M",

@@ -11,8 +11,8 @@ from kinlab.host.language import _, speaking
 
 
 @dataclass(frozen=True)
-class Place:
-    """A stretch of a note.
+class Passage:
+    """A passage of a note.
 
     Attributes:
         note: its number.
@@ -32,8 +32,8 @@ class Place:
 
 
 @cache
-def places() -> tuple[Place, ...]:
-    """Every stretch of every note, in order; the ledger is ``kinlab/notes/lines.tsv``."""
+def places() -> tuple[Passage, ...]:
+    """Every passage of every note, in order; the ledger is ``kinlab/notes/lines.tsv``."""
     text = (resources.files("kinlab.notes") / "lines.tsv").read_text(encoding="utf-8")
     found = []
     for line in text.splitlines():
@@ -41,7 +41,7 @@ def places() -> tuple[Place, ...]:
             note, span, ids, _words, heading, formulas = line.split("\t")
             first, _dash, last = span.partition("-")
             found.append(
-                Place(
+                Passage(
                     note,
                     heading,
                     tuple(formulas.split("-")) if formulas != "-" else (),
@@ -79,14 +79,14 @@ def short_place(record: Formula) -> str:
     return text.format(numbers=numbers, lines=lines)
 
 
-def _mine(record: Formula) -> list[Place]:
+def _mine(record: Formula) -> list[Passage]:
     return [one for one in places() if record.note == one.note and record.id in one.ids]
 
 
-def _ranges(stretches: list[Place]) -> str:
-    """Lines as ``54–61, 68–77``; stretches that touch are one."""
+def _ranges(passages: list[Passage]) -> str:
+    """Lines as ``54–61, 68–77``; passages that touch are one."""
     joined: list[list[int]] = []
-    for one in stretches:
+    for one in passages:
         if joined and one.first == joined[-1][1] + 1:
             joined[-1][1] = one.last
         else:
@@ -94,10 +94,10 @@ def _ranges(stretches: list[Place]) -> str:
     return ", ".join(f"{a}" if a == b else f"{a}–{b}" for a, b in joined)
 
 
-def _numbers(stretches: list[Place]) -> str:
+def _numbers(passages: list[Passage]) -> str:
     """Numbers as ``1, 4–6`` or ``6.1–6.3``; those that follow each other are one range."""
     joined: list[list[str]] = []
-    for first, last in ((one.formulas[0], one.formulas[-1]) for one in stretches if one.formulas):
+    for first, last in ((one.formulas[0], one.formulas[-1]) for one in passages if one.formulas):
         if joined and _meets(joined[-1][1], first):
             joined[-1][1] = last
         else:

@@ -21,7 +21,7 @@ _ID = re.compile(r"[0-9]{3}\.[A-Za-z][A-Za-z0-9]*(\.[A-Za-z0-9]+)?")
 
 
 @dataclass(frozen=True)
-class Task:
+class PlannedRow:
     """One row to come.
 
     Attributes:
@@ -59,7 +59,7 @@ class Task:
             return failed_row(self.record, self.robot, samples, seed, str(problem))
 
 
-def tasks(arguments: Iterable[str], tool: str | None = None) -> list[Task]:
+def tasks(arguments: Iterable[str], tool: str | None = None) -> list[PlannedRow]:
     """The rows that the arguments ask for.
 
     Args:
@@ -85,7 +85,7 @@ def tasks(arguments: Iterable[str], tool: str | None = None) -> list[Task]:
 
 def read_tasks(
     arguments: Iterable[str], tool: str | None = None
-) -> tuple[list[Task], list[Unread]]:
+) -> tuple[list[PlannedRow], list[Unread]]:
     """As :func:`tasks`, for those who go on without what cannot be read.
 
     Returns:
@@ -102,7 +102,7 @@ def read_tasks(
         return [_one(record, name) for record, name in pairs] + [
             task for name in shipped() for task in _table(name)
         ], []
-    found: list[Task] = []
+    found: list[PlannedRow] = []
     unread: list[Unread] = []
     for text in wanted:
         try:
@@ -116,15 +116,15 @@ def read_tasks(
     return found, unread
 
 
-def _read_functions(path: str, found: list[Task], unread: list[Unread]) -> None:
+def _read_functions(path: str, found: list[PlannedRow], unread: list[Unread]) -> None:
     for record in _user_formulas(path):
         try:
-            found += [Task(record, name, name, path) for _, name in plan([record])]
+            found += [PlannedRow(record, name, name, path) for _, name in plan([record])]
         except KinlabError as problem:
             unread.append(Unread(f"{path}: {record.key}", problem))
 
 
-def _tasks_of(text: str, tool: str | None) -> list[Task]:
+def _tasks_of(text: str, tool: str | None) -> list[PlannedRow]:
     by_id = [f for f in catalogue() if text in (f.note, f.id, f.key)]
     if by_id:
         _refuse_tool(text, tool)
@@ -157,13 +157,13 @@ def _refuse_tool(text: str, tool: str | None) -> None:
         raise OptionError(f"check {text}: it is no robot; leave --tool {tool} out")
 
 
-def _one(record: Formula, name: str) -> Task:
-    return Task(record, name, name)
+def _one(record: Formula, name: str) -> PlannedRow:
+    return PlannedRow(record, name, name)
 
 
-def _table(name: str, tool: str | None = None) -> list[Task]:
+def _table(name: str, tool: str | None = None) -> list[PlannedRow]:
     robot = SERIAL.load(name) if tool is None else load(name, tool)
-    return [Task(record, robot, name) for record in checks_of(robot)]
+    return [PlannedRow(record, robot, name) for record in checks_of(robot)]
 
 
 def _user_formulas(path: str) -> list[Formula]:

@@ -21,7 +21,7 @@ from kinlab.host.processes import cores, end_with_parent
 
 if TYPE_CHECKING:
     from kinlab.check.catalogue import Row
-    from kinlab.check.targets import Task
+    from kinlab.check.targets import PlannedRow
 
 ENOUGH = 150
 """Rows from which further processes are worth their start."""
@@ -95,8 +95,8 @@ class Helpers:
 
 
 def run_together(
-    todo: Sequence[Task],
-    one: Callable[[Task], Any],
+    todo: Sequence[PlannedRow],
+    one: Callable[[PlannedRow], Any],
     samples: int,
     seed: int,
     helpers: Helpers | None = None,
@@ -149,7 +149,7 @@ def run_together(
     yield from here(own)
 
 
-def _row(task: Task, parts: tuple[Any, ...]) -> Row:
+def _row(task: PlannedRow, parts: tuple[Any, ...]) -> Row:
     from kinlab.check.catalogue import Row
 
     return Row(task.record, *parts)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from kinlab.check.catalogue import Row
     from kinlab.check.diagnosis import Diagnosis
-    from kinlab.check.targets import Task
+    from kinlab.check.targets import PlannedRow
     from kinlab.check.unread import Unread
 
 WHAT = Annotated[
@@ -113,7 +113,7 @@ def check(
         for file in report or ():
             check_report_path(file)
         found = _Found()
-        todo: Sequence[Task] = ()
+        todo: Sequence[PlannedRow] = ()
         rest = _formula_files(what or [], samples, seed, found)
         if tool is not None and found.judged:
             raise OptionError("--tool is of a robot that is named; a formula file names its own")
@@ -162,7 +162,7 @@ def _refuse(only: str | None, compact: bool, report: Sequence[Path], against: st
         raise OptionError("check --against: it judges tables; leave --only and --compact out")
 
 
-def _misprints(todo: Sequence[Task]) -> list[Task]:
+def _misprints(todo: Sequence[PlannedRow]) -> list[PlannedRow]:
     """Of the tasks, those of formulas with a misprint.
 
     Raises:
@@ -176,7 +176,7 @@ def _misprints(todo: Sequence[Task]) -> list[Task]:
     return left
 
 
-def _remarks(todo: Sequence[Task]) -> list[str]:
+def _remarks(todo: Sequence[PlannedRow]) -> list[str]:
     """What must be said of the robots that were named."""
     from kinlab.model.robot import Robot, remarks
 
@@ -236,14 +236,14 @@ def _place(unread: str, what: list[str]) -> int:
 
 
 def _run(
-    todo: Sequence[Task], samples: int, seed: int, helpers: Helpers | None, found: _Found
+    todo: Sequence[PlannedRow], samples: int, seed: int, helpers: Helpers | None, found: _Found
 ) -> None:
     """Runs the tasks; what they say stands in the order of the tasks."""
     from kinlab.check.catalogue import Row
     from kinlab.check.together import run_together
     from kinlab.check.unread import Unread
 
-    def one(task: Task) -> Row | Diagnosis | Unread:
+    def one(task: PlannedRow) -> Row | Diagnosis | Unread:
         tell(len(done), visible(task.label))
         try:
             return _one(task, samples, seed)
@@ -266,7 +266,7 @@ def _run(
             found.judged.append(answer)
 
 
-def _one(task: Task, samples: int, seed: int) -> Row | Diagnosis:
+def _one(task: PlannedRow, samples: int, seed: int) -> Row | Diagnosis:
     if not task.file:
         return task.run(samples, seed)
     from kinlab.doctor.report import of_task

@@ -129,6 +129,16 @@ def _coriolis_torques(a: SymbolicArm) -> Any:
     return _column(kinematics.product(a, dynamics.coriolis_grid(a), speeds))
 
 
+def _isotropy_conditions(a: SymbolicArm) -> Any:
+    one, two = _jacobian("base")(a)[:2]
+    both = list(zip(one, two, strict=True))
+    sums = (
+        sum((x * x - y * y for x, y in both), a.trig.ring.zero),
+        sum((x * y for x, y in both), a.trig.ring.zero),
+    )
+    return [a.trig.reduce(poly) for poly in sums]
+
+
 _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "fk": kinematics.tool_frame,
     "jacobian": _jacobian("base"),
@@ -156,6 +166,8 @@ _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "mass_rate_velocity": mass_rate_velocity,
     "christoffel": dynamics.christoffel_cube,
     "tip_speed_squared": tip_speed_squared,
+    "isotropy_conditions": _isotropy_conditions,
+    "dh_poses": lambda a: kinematics.link_frames(a)[1:],
 }
 
 LETTERS = {"q": "q", "v": "qd", "a": "qdd"}

@@ -12,15 +12,16 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.doctor.changes import Case
-from kinlab.doctor.derived import LETTERS
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.forces import named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.meanings import stands_for
 from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
 from kinlab.doctor.text.written import Written
+from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
@@ -93,7 +94,7 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
-    file = with_habits(file, robot)
+    file = with_habits(with_forces(file, robot), robot)
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
         return [one for found in done.values() for one in found]
@@ -116,7 +117,28 @@ def _by_quantity(
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles))
+        if plain == "statics" and not all(one.agrees for one in done[plain]):
+            done[plain] = _in_tool_axes(formulas, titles, robot, file, samples, seed) or done[plain]
     return done
+
+
+def _in_tool_axes(
+    formulas: dict[str, Written],
+    titles: dict[str, str],
+    robot: Robot,
+    file: FormulaFile,
+    samples: int,
+    seed: int,
+) -> list[Diagnosis]:
+    """The diagnoses where the wrench is in tool axes, which its names leave open; if all agree."""
+    there = {label.replace("statics", "statics_tool"): text for label, text in formulas.items()}
+    named = {label.replace("statics", "statics_tool"): name for label, name in titles.items()}
+    answers = _answers("statics_tool", there, named, robot, file, samples, seed)
+    found = list(_of_quantity("statics_tool", answers, named))
+    if not all(one.agrees for one in found):
+        return []
+    said = _("the wrench is read in tool axes")
+    return [replace(one, remarks=(*one.remarks, said)) for one in found]
 
 
 def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
@@ -183,7 +205,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
     """
-    file = with_habits(file, robot)
+    file = with_habits(with_forces(file, robot), robot)
     wanted, titles = _claims(file, robot)
     for plain, formulas in wanted.items():
         _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
@@ -197,7 +219,7 @@ def _claims(
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
         try:
-            name = quantity_of(entry, robot.table)
+            name = with_wrench(file, quantity_of(entry, robot.table))
             plain, index = split_name(name)
         except KinlabError as problem:
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None
@@ -224,6 +246,10 @@ def _answers(
     if case.quantity.read is not None:
         joints = joint_values(case, formulas, titles, file.path)
         return case, engine, list(joints), formulas, joints
+    if "wrench" in case.arguments:
+        named = {name for text in formulas.values() for name in tree.names(text.node)}
+        case = named_alone(case, named)
+        engine = case.answer(())
     shape = engine.shape[1:]
     labels = [f"{plain}[{','.join(map(str, k))}]" for k in np.ndindex(shape)] if shape else [plain]
     for label in formulas:
@@ -319,13 +345,7 @@ def _entry_of(label: str, titles: dict[str, str]) -> str:
 
 def _values(text: Written, case: Case, file: FormulaFile, entry: str) -> Array:
     """The values of an entry, by its text as it is written."""
-    count = len(next(iter(case.arguments.values())))
-    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
-    at = {name: np.full(count, value) for name, value in words.items()}
-    for argument, stack in case.arguments.items():
-        if argument in LETTERS:
-            for i in range(case.robot.n):
-                at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+    at = numbers_at(case)
     foreign = sorted(tree.names(text.node) - set(at)) or text.foreign(set(at))
     if foreign:
         raise ExpressionError(

@@ -15,7 +15,7 @@ from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entr
 from kinlab.check.quantities.registry import quantities
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
-from kinlab.check.targets import Task
+from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
@@ -169,7 +169,7 @@ def _of_sound(
         return [], [*bad, Unread(path, problem)]
 
 
-def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Diagnosis:
+def of_task(task: PlannedRow, samples: int = 200, seed: int = 0) -> Row | Diagnosis:
     """Runs one row, and looks for what is wrong where it is a user's formula that differs.
 
     Args:
@@ -198,7 +198,7 @@ def of_task(task: Task, samples: int = 200, seed: int = 0) -> Row | Diagnosis:
     )
 
 
-def _of_function(task: Task, samples: int, seed: int) -> Diagnosis:
+def _of_function(task: PlannedRow, samples: int, seed: int) -> Diagnosis:
     record = task.record
     plain, index = split_name(record.quantity)
     case, engine = prepare(task.robot, plain, index, max(samples, FEWEST), seed)

@@ -77,6 +77,7 @@ def edits(root: Node, names: Names) -> Iterator[Edit]:
             yield from _powers(path, node)
         if node.op == "mul":
             yield from _product(path, node)
+            yield from _opened(path, node)
         if not path or (parent == "add" and node.op != "add"):
             yield from _more_factors(path, node, names)
         if node.op == "add":
@@ -127,6 +128,9 @@ def _function(path: Path, node: Node, names: Names) -> Iterator[Edit]:
     other = {"sin": "cos", "cos": "sin", "tan": "sin"}[node.op]
     yield Edit(path, tree.call(other, argument), "sin/cos", 1.0)
     yield Edit(path, tree.mul(tree.num(-1), tree.call(other, argument)), "sin/cos", 1.7)
+    if argument.op == "add":
+        opened = tree.add(tree.call(node.op, argument.args[0]), *argument.args[1:])
+        yield Edit(path, opened, "parentheses", 1.05)
     for angle in names.angles:
         if angle != argument:
             yield Edit(path, tree.call(node.op, angle), "argument", 1.2)
@@ -141,6 +145,15 @@ def _powers(path: Path, node: Node) -> Iterator[Edit]:
         if value != old:
             near = abs(value - old) == 1 and value > 0
             yield Edit(path, tree.power(base, Fraction(value)), "power", 1.1 if near else 1.6)
+
+
+def _opened(path: Path, node: Node) -> Iterator[Edit]:
+    """Parentheses lost: ``l2*cos q1 + q2`` for ``l2*cos(q1 + q2)``."""
+    for k, factor in enumerate(node.args):
+        if factor.op in ("sin", "cos") and factor.args[0].op == "add":
+            first, *rest = factor.args[0].args
+            args = [*node.args[:k], tree.call(factor.op, first), *node.args[k + 1 :]]
+            yield Edit(path, tree.add(tree.mul(*args), *rest), "parentheses", 1.05)
 
 
 def _product(path: Path, node: Node) -> Iterator[Edit]:

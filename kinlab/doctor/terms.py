@@ -21,6 +21,7 @@ from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, brief
 from kinlab.doctor.text.mend import Mended, mended, together
 from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.numbers_off import beside_rounded
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -202,6 +203,12 @@ def in_text(
     found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
     found = found or _part_by_part(lines[0], right)
     found = found or next(filter(None, (mended(line) for line in lines)), [])
+    if not found and numbers:
+        apart = [
+            (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
+            for at in parts(right, own)
+        ]
+        written, found = beside_rounded(lines[-1], apart)
     return [_mended(written, one, here) for one in found]
 
 

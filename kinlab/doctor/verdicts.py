@@ -20,7 +20,8 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.text.stand_ins import FREE, STEPS
+from kinlab.doctor.text.forces import WRENCH
+from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
@@ -89,38 +90,18 @@ def holds_with_other_numbers(
         put = {k: name for k, name in zip(whole, choice, strict=True) if name is not None}
         if not decimal and not put:
             continue
-        if all(_free_fit(text, at, right(at), decimal, put) for at in rounds):
+        if all(_fits(text, at, right(at), decimal, put) for at in rounds):
             return True
     return False
 
 
-def _free_fit(
+def _fits(
     text: Written, at: dict[str, Array], target: Array, free: list[int], put: dict[int, str]
 ) -> bool:
     numbers = np.array([one.value for one in text.literals])
     for k, name in put.items():
         numbers[k] = float(at[name][0])
-    scale = float(np.max(np.abs(target))) or 1.0
-    for _step in range(2 * STEPS):
-        values = text.values(at, numbers)
-        rest = (target - values) / scale
-        if not np.isfinite(rest).all():
-            return False
-        if np.max(np.abs(rest)) <= TOLERANCES.formula_agrees:
-            return True
-        if not free:
-            return False
-        slopes = []
-        for k in free:
-            step = 1e-5 * max(1.0, abs(numbers[k]))
-            other = numbers.copy()
-            other[k] += step
-            slopes.append((text.values(at, other) - values) / (step * scale))
-        turned = np.array(slopes).T
-        if not np.isfinite(turned).all():
-            return False
-        numbers[free] += np.linalg.lstsq(turned, rest, rcond=1e-9)[0]
-    return False
+    return fitted(text, at, target, free, numbers) is not None
 
 
 # -------- Valid formulas that are not the engine's
@@ -192,6 +173,8 @@ def numbers_at(case: Case) -> dict[str, Array]:
         if argument in LETTERS:
             for i in range(case.robot.n):
                 at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+        if argument == "wrench":
+            at |= dict(zip(WRENCH, stack.T, strict=True))
     return at
 
 

@@ -14,7 +14,7 @@ import pinocchio as pin
 import pytest
 
 import kinlab as kl
-from kinlab.check.targets import Task, tasks
+from kinlab.check.targets import PlannedRow, tasks
 from kinlab.check.together import Helpers, run_together
 from kinlab.host.answers import answers_kept, once
 
@@ -84,7 +84,7 @@ def test_a_users_own_table_is_never_handed_over(tmp_path):
     assert not any(task.ships for task in mine)
     assert all(task.ships for task in shipped)
     other = kl.with_payload(kl.load("panda"), 1.0)
-    assert not any(Task(task.record, other, "panda").ships for task in shipped)
+    assert not any(PlannedRow(task.record, other, "panda").ships for task in shipped)
 
 
 def test_what_is_kept_is_a_copy_and_ends_with_the_block():

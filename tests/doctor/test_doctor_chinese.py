@@ -14,7 +14,7 @@ import sentences
 
 import kinlab as kl
 from kinlab.check.diagnosis import shown_entry
-from kinlab.doctor.confusions.books import LINES
+from kinlab.doctor.confusions.books import LINES as BOOKS
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.roads import roads
 from kinlab.doctor.confusions.steps import steps
@@ -23,10 +23,12 @@ from kinlab.doctor.marking.handout import handout
 from kinlab.doctor.marking.sheet import read_sheet, sheet_of
 from kinlab.doctor.marking.words import KINDS, OTHERS
 from kinlab.doctor.report import of_document
+from kinlab.doctor.solutions.closed_forms import LINES as CLOSED
 from kinlab.doctor.tables.report import page, text
 from kinlab.doctor.text.line import brief
 from kinlab.host.language import _, language, speaking
 
+LINES = (*BOOKS, *CLOSED)
 PUMA, PANDA = kl.load("puma560").table, kl.load("panda").table
 
 ENGLISH = re.compile(
@@ -186,7 +188,7 @@ LEFT_ENGLISH = {
         "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
     ),
     "steps.py": (
-        "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
+        "beta psi", "px py", "late early", "later earlier", "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
         "the acceleration of the centre of mass",
     ),
     "handout.py": ("student id",),

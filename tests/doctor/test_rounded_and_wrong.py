@@ -196,3 +196,36 @@ def test_a_sign_and_another_slip_at_the_same_letter():
     assert found.causes[0].shown == {"M12": "c2*m2*l1*l2 + m2*l2**2"}
     (found,) = judged(J12="c12*l2")
     assert found.causes[0].shown == {"J12": "-s12*l2"}
+
+
+@pytest.mark.parametrize(
+    ("robot", "formulas", "right"),
+    [
+        ("planar2r", {"V": "17.0*sin(q1) + 5.9*sin(q1+q2)"}, {"V": ("17.0", "17.1675")}),
+        (
+            "planar2r",
+            {"g1": "17.1*c1 + 5.89*c12", "g2": "5.9*c12"},
+            {"g1": ("17.1*", "17.1675*")},
+        ),
+        ("planar3r", {"M13": "0.02 + 0.05*c3 + 0.06*c23"}, {"M13": None}),
+        (
+            "planar2r",
+            {"tau2": "(0.24+0.3*c2)*qdd1 + 0.24*qdd2 + 0.3*c2*qd1**2 + 5.89*c12"},
+            {"tau2": ("0.3*c2*qd1", "0.3*s2*qd1")},
+        ),
+        (
+            "planar3r",
+            {"M22": "0.3*m2*l2**2 + 0.3*m3*l3**2 + m3*l2**2 + m3*l2*l3*c3"},
+            {"M22": ("0.3*m", "(1/3)*m")},
+        ),
+    ],
+)
+def test_numbers_off_beside_rounded_ones(robot, formulas, right):
+    (found,) = judged(robot, **formulas)
+    for entry, change in right.items():
+        corrected = found.causes[0].shown[entry]
+        if change is None:
+            assert corrected == "0.0208333333333 + 0.05*c3 + 0.0625*c23"
+        else:
+            assert corrected == formulas[entry].replace(*change)
+    assert set(found.causes[0].shown) == set(right)

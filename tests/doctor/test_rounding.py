@@ -191,3 +191,16 @@ def test_the_analysis_says_the_same(shake, name):
     for seed in SHAKEN:
         shake(seed, ["jacobian", "fk"], [edge, singular_set, axes, task_space], moved)
         assert analysis_verdicts(name) == plain
+
+
+def test_an_error_is_not_laid_into_another_number_by_rounding_of_differences():
+    """1.0032 for 1 beside 0.250: both multiply qdd1, whatever the seed of the states."""
+    terms = (
+        "1.000*I1*qdd1 + 1.0032*I2*qdd1 + 1.000*I2*qdd2 + 1.000*l1**2*m2*qdd1 + 0.250*l1**2*m1*qdd1"
+        " + 0.250*l2**2*m2*qdd1 + 0.250*l2**2*m2*qdd2 + 1.000*g*l1*m2*cos(q1)"
+        " + 0.500*g*l1*m1*cos(q1) + 0.500*g*l2*m2*cos(q1 + q2) + 1.000*l1*l2*m2*qdd1*cos(q2)"
+        " + 0.500*l1*l2*m2*qdd2*cos(q2) - 0.500*l1*l2*m2*qd2**2*sin(q2)"
+        " - 1.000*l1*l2*m2*qd1*qd2*sin(q2)"
+    )
+    judged = [kl.diagnose("planar2r_rods", "tau1", terms, 30, seed) for seed in (0, 1, 198)]
+    assert [one.agrees for one in judged] == [False] * 3

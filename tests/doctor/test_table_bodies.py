@@ -91,6 +91,17 @@ def test_a_kinematic_and_a_dynamic_slip_together():
     assert [(c.row, c.column) for c in found.causes] == [(3, "alpha"), (5, "mass")]
 
 
+def test_tables_that_are_tried_do_not_warn(recwarn):
+    """A length in millimetres, and a body left out: -690 m is tried as an angle, too."""
+    right = random_table(145059, 2, "standard")
+    mine = row(row(right, 2, a=1000 * right.links[1].a), 1, mass=0.0, com=(0, 0, 0),
+               inertia=np.zeros((3, 3)))  # fmt: skip
+    told = len(recwarn)
+    found = kl.diagnose_table(mine, right)
+    assert "row 2: a is in millimetres" in found.sentence
+    assert len(recwarn) == told
+
+
 @settings(max_examples=40, deadline=None)
 @given(
     st.integers(0, 2**32 - 1), st.integers(2, 6), st.sampled_from(["standard", "modified"]),

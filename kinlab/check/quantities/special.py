@@ -76,6 +76,13 @@ def isotropy_defect(robot: Robot, q: Any) -> Any:
     return np.sum((squares / squares.mean(axis=1, keepdims=True) - 1.0) ** 2, axis=1)
 
 
+def isotropy_conditions(robot: Robot, q: Any) -> Array:
+    """|row 1|² - |row 2|² and row 1 · row 2 of the rows vx, vy: both 0 where J J^T = a I."""
+    one, two = np.moveaxis(kinematics.jacobian(robot, q)[:, :2], 1, 0)
+    longer = np.linalg.norm(one, axis=1) ** 2 - np.linalg.norm(two, axis=1) ** 2
+    return np.stack([longer, np.einsum("ai,ai->a", one, two)], axis=-1)
+
+
 def orthogonal_columns_cosine(robot: Robot, q: Any) -> Any:
     """cos theta2 in (0, pi) where the two columns of vx, vy become orthogonal, by bisection."""
     return _root(robot, q, lambda j: np.einsum("ai,ai->a", j[..., 0], j[..., 1]))
@@ -220,6 +227,12 @@ QUANTITIES = (
     ),
     SERIAL.quantity(
         "isotropy_defect", "q", isotropy_defect, "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy"
+    ),
+    SERIAL.quantity(
+        "isotropy_conditions",
+        "q",
+        isotropy_conditions,
+        "|vx row|² - |vy row|² and their product, 0 where J is isotropic, (2,)",
     ),
     _planar_2r("orthogonal_columns_cosine", "q", orthogonal_columns_cosine, "cos theta2, a number"),
     _planar_2r("equal_columns_cosine", "q", equal_columns_cosine, "cos theta2, a number"),

@@ -148,6 +148,36 @@ def of_angles(of: Program) -> Iterator[Step]:
             yield Step("sign", does, tuple((x, minus(x)) for x in found), 1.06)
 
 
+def of_rods(of: Program) -> Iterator[Step]:
+    """A rod's data otherwise in every line: the centre at an end, the inertia about an end."""
+    others = {
+        "cd": (
+            ("0", _("takes the rods' centres at the elbows"), 1.08),
+            ("l2[i]", _("takes the rods' centres at their far ends"), 1.08),
+            ("l2[i]/2", _("takes the rods' centres in their middles"), 1.08),
+        ),
+        "Id": (
+            ("0*Id[i]", _("leaves the rods' inertia out"), 1.05),
+            (
+                "Id[i] + md[i]*cd[i]**2",
+                _("takes the rods' inertia about the elbows, not about their centres"),
+                1.05,
+            ),
+        ),
+        "md": (("0*md[i]", _("leaves the rods' mass out"), 1.05),),
+    }
+    for name, ways in others.items():
+        found = [
+            node
+            for line in of.lines
+            for node in ast.walk(_assigned(line).value)
+            if isinstance(node, ast.Subscript) and name_of(node) == name
+        ]
+        for text, does, cost in ways if found else ():
+            new = ast.parse(text, mode="eval").body
+            yield Step("inertia point", does, tuple((x, again(new)) for x in found), cost)
+
+
 def _assigned(line: Assignment) -> ast.Assign:
     assert isinstance(line.statement, ast.Assign)
     return line.statement

@@ -647,6 +647,16 @@ _IN_BASE = """for i in outward:
     Ib[i] = R_[i] @ I[i] @ R_[i].T
 """
 
+CONDITIONS = """
+# the products of the Jacobian's rows
+E = conditions(J @ J.T)
+"""
+ISOTROPIC = {
+    "orthogonal_columns_cosine": "-l2/l1",
+    "equal_columns_cosine": "-l1/(2*l2)",
+}
+"""Where the columns of a planar 2R arm are orthogonal, and where equally long (note 000)."""
+
 ISOTROPY = """
 # the products of the Jacobian's rows
 E = defect(J @ J.T)
@@ -708,6 +718,32 @@ own = columns(own)
 # the torque by virtual work
 tau = own + inv(Jm).T @ (m*(a + g*E2))
 """
+_RODS = """
+    # the crank's rate
+    rate[i] = J[i] @ v
+    # the rod's turn per motion of the tool
+    K[i] = (H.T @ rod[i] - l1[i]*(rod[i] @ crank[i])*J[i])/l2[i]
+    # the rod's rate
+    spin[i] = K[i] @ v
+    # the rod's angular acceleration
+    alpha[i] = ((H.T @ rod[i]) @ (a - l1[i]*acc[i]*(H.T @ crank[i]) + l1[i]*rate[i]**2*crank[i])
+                /l2[i])
+    # the acceleration of the rod's centre
+    ac[i] = (l1[i]*acc[i]*(H.T @ crank[i]) - l1[i]*rate[i]**2*crank[i]
+             + cd[i]*alpha[i]*(H.T @ rod[i]) - cd[i]*spin[i]**2*rod[i])
+    # the rod's inertia force, with its weight
+    F[i] = md[i]*(ac[i] + g*E2)
+    # the force on the tool that the rod asks for
+    Q[i] = (l1[i]*(F[i] @ (H.T @ crank[i]))*J[i] + cd[i]*(F[i] @ (H.T @ rod[i]))*K[i]
+            + Id[i]*alpha[i]*K[i])
+"""
+_HEAVY = """
+Jm = columns(J).T
+own = columns(own)
+pull = columns(Q) @ legs
+# the torque by virtual work
+tau = own + inv(Jm).T @ (m*(a + g*E2) + pull)
+"""
 _GAIN = """
 for i in outward:
     # the crank's inertia about its base pin
@@ -718,12 +754,32 @@ E = diagonal(columns(IA)) @ Jm + m*inv(Jm).T
 """
 _LOOP = FIVE_BAR + _CRANKS + _BARS
 CLOSED = {
+    "fivebar_rod_length": (
+        "L",
+        """
+for i in outward:
+    # the length of the rod
+    L[i] = sqrt((s[i]*e + l1[i]*cos(theta[i]) - x)**2 + (l1[i]*sin(theta[i]) - y)**2)
+""",
+    ),
     "fivebar_projection": ("C", FIVE_BAR),
     "fivebar_cranks": ("crank", _LOOP),
     "fivebar_rods": ("rod", _LOOP),
     "fivebar_jacobian": ("J", _LOOP),
     "fivebar_turn": ("acc", _LOOP + _MOVING),
     "fivebar_torque_massless": ("tau", _LOOP + _MOVING + _TORQUE),
+    "fivebar_torque": ("tau", _LOOP + _MOVING + _RODS + _HEAVY),
+    "fivebar_load_inertia_massless": (
+        "E",
+        _LOOP
+        + """
+    # the crank's inertia about its base pin
+    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+Jm = columns(J).T
+# the load's inertia
+E = columns(IA) + m*norm(inv(Jm).T)**2
+""",
+    ),
     "fivebar_torque_per_acceleration": ("E", _LOOP + _GAIN),
     "fivebar_torque_per_acceleration_worst": (
         "E",
@@ -854,6 +910,16 @@ LINES = (
     N_("the power"),
     N_("the left side A cos(theta) + B sin(theta)"),
     N_("the step"),
+    N_("the length of the rod"),
+    N_("the crank's rate"),
+    N_("the rod's turn per motion of the tool"),
+    N_("the rod's rate"),
+    N_("the rod's angular acceleration"),
+    N_("the acceleration of the rod's centre"),
+    N_("the rod's inertia force, with its weight"),
+    N_("the force on the tool that the rod asks for"),
+    N_("the load's inertia"),
+    N_("the cosine of theta2"),
     N_("the boundary term"),
     N_("the variation with its boundary term"),
 )

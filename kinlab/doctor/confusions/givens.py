@@ -256,6 +256,13 @@ def of_step(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     return {**rest, "q": q, "x": here, "J": planar_jacobian(robot, q)}
 
 
+def of_lengths(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
+    """The lengths of a planar 2R arm, by its Jacobian's columns."""
+    del x
+    one, two = jacobian(robot, 0.0 * q)[:, :2].transpose(2, 0, 1)
+    return {"l1": np.linalg.norm(one - two, axis=1), "l2": np.linalg.norm(two, axis=1)}
+
+
 def of_path(robot: Robot, q: Array, x: Stacks) -> dict[str, Any]:
     """dL/dqd and dq at both ends of a path; what is left of the variation is the integral's."""
     v, a, dq = x["v"], x["a"], x["dq"]
@@ -280,6 +287,10 @@ def of_loop(mechanism: Any, loop: Any, x: Stacks) -> dict[str, Any]:
         "s": each(S),
         "Iz": each(loop.crank_inertia),
         "mc": each(loop.crank),
+        "md": each(loop.rod),
+        "cd": each(loop.rod_com),
+        "Id": each(loop.rod_inertia),
+        "legs": np.ones((1, 2)),
         "cc": each(loop.crank_com),
         "Im": each(mechanism.rotor_inertia),
         "j": each(mechanism.gear_ratio),

@@ -218,7 +218,7 @@ def at_call(node: ast.Call, step: Make) -> Iterator[Step]:
                     term=f"{spelt(part)} ({which})"
                 )
                 yield step("sign", does, 1.04, (part, minus(part)))
-    elif name == "defect" and isinstance(x[0], ast.BinOp):
+    elif name in ("defect", "conditions") and isinstance(x[0], ast.BinOp):
         swapped = ast.BinOp(x[0].right, ast.MatMult(), x[0].left)
         does = _("has {new} for {old} (the product's order)")
         does = does.format(new=spelt(swapped), old=spelt(x[0]))

@@ -20,6 +20,7 @@ from kinlab.doctor.confusions.givens import (
     Stacks,
     as_placed,
     of_arm,
+    of_lengths,
     of_load,
     of_loop,
     of_path,
@@ -104,6 +105,11 @@ def roads(case: Case) -> Iterator[Road]:
         yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
         yield _of_step(case, books.ISOTROPY)
+    if name == "isotropy_conditions":
+        yield _of_step(case, books.CONDITIONS)
+    if name in books.ISOTROPIC:
+        text = f"# the cosine of theta2\nE = {books.ISOTROPIC[name]}"
+        yield _of_step(case, text, of_lengths)
     if name == "jacobian_dot":
         yield _of_arm(case, books.RATES, "E")
         yield _of_arm(case, books.COLUMNS + books.RATE, "E")
@@ -337,7 +343,7 @@ def _five_bar(case: Case) -> Iterator[Road]:
             walk = Walk(of, lambda _: of_loop(mechanism, loop, x), some, ways, 2)
             return walk.values(asked), walk
 
-        return Road(of, walked, 2, of.work(2))
+        return Road(of, walked, 2, of.work(2), pairs=name != "fivebar_torque")
 
     if asked:
         yield road(text, asked)

@@ -13,7 +13,7 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles
+from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles, of_rods
 from kinlab.doctor.confusions.operations import (
     Make,
     at_call,
@@ -119,7 +119,7 @@ def _steps(
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
     found += _slides(of)
-    found += [*exchanged(of), *of_angles(of)]
+    found += [*exchanged(of), *of_angles(of), *of_rods(of)]
     if not singly:
         return (
             *_everywhere(of),

@@ -351,6 +351,8 @@ class Walk:
                 x[0] / np.mean(np.diagonal(x[0], axis1=-2, axis2=-1), axis=-1)[..., None, None]
             )
             out = np.sum((products - np.eye(x[0].shape[-1])) ** 2, axis=(-2, -1))
+        elif name == "conditions":
+            out = np.stack([x[0][..., 0, 0] - x[0][..., 1, 1], x[0][..., 0, 1]], axis=-1)
         elif name == "times_j":
             out = np.sum(x[0], axis=-1) * x[1][..., None, :]
         elif name == "times_i":

@@ -60,6 +60,10 @@ MEANT = {
     "o_": N_("the frame's origin"),
     "b": N_("the boundary term"),
     "inner": N_("the integral"),
+    "pull": N_("the rods' force on the tool"),
+    "md": N_("the rod's mass"),
+    "cd": N_("the distance of the rod's centre"),
+    "Id": N_("the rod's inertia"),
 }
 """What names stand for."""
 
@@ -103,6 +107,7 @@ _SPELT = {
     "early": "dL/dqd(t1)",
     "later": "dq(t2)",
     "earlier": "dq(t1)",
+    "pull": "f",
 }
 
 _CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}

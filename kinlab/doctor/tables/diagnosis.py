@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +26,7 @@ from kinlab.doctor.tables.reference.against import (
 from kinlab.doctor.tables.result import TableDiagnosis, joined
 from kinlab.doctor.tables.search import explain
 from kinlab.doctor.tables.words import SIX, Cause, listed
-from kinlab.errors import InertiaError, OptionError, StructureError, TableError
+from kinlab.errors import InertiaError, KinlabWarning, OptionError, StructureError, TableError
 from kinlab.host.language import N_, _, ngettext
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
@@ -241,7 +242,9 @@ def _with_bodies(
     """
     options = []
     for place, one in enumerate(found[:24]):
-        repaired = one.chain.apply(table)
+        with warnings.catch_warnings():  # nobody wrote the tables that are tried
+            warnings.simplefilter("ignore", KinlabWarning)
+            repaired = one.chain.apply(table)
         dynamic: list[Cause] = []
         if bodies and reference.bodies is not None and repaired.n == reference.n:
             repaired, dynamic = table_bodies.differences(repaired, reference.bodies)

@@ -7,6 +7,8 @@ module            what it holds
                   place
 ``claims``        What the names in a file of formulas claim to be: tau1, g2, M12, C11, J11, x, T,
                   V
+``forces``        Torques as text that name the tool's force and moment: tau1 = -fx*(l1*s1 + ...)
+                  is statics
 ``habits``        Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of
                   a slide
 ``joints``        Joint positions as text: q1 = atan2(y, x) - ..., q2 = acos(...), each from the
@@ -18,6 +20,7 @@ module            what it holds
 ``mend``          One slip of the pen, two or three: the changes that make a line right, and the
                   line then
 ``names``         The names that may stand in a formula of an arm, and the angles made of them
+``numbers_off``   Several numbers of a text that are off, beside others that are only rounded
 ``own_names``     A file's formulas in the robot's names: the writer's own names and numbers, what
                   they mean
 ``pairs``         Pairs of effects that make up a difference, found without trying each with each

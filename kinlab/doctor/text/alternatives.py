@@ -122,9 +122,12 @@ def _number(line: Line, place: Place) -> None:
         size = float(np.sum(moved * moved))
         right = place.value + np.sum(moved * (line.target - line.root.value)) / (size or 1.0)
         shown = np.format_float_positional(float(right[0]), 12, fractional=False, trim="-")
-        if not shown.startswith("-") and not (idle and shown == "1"):
-            held = line.meanings.holds(float(line.segment(place)))
-            doubt = 0.5 * held + 0.3 * (not line.meanings.holds(float(right[0])))
+        held = line.meanings.holds(float(line.segment(place)))
+        means = line.meanings.holds(float(right[0]))
+        # an error of all numbers that are written so would be laid into this one
+        sure = means or len(_alike(line, line.segment(place))) < 2
+        if sure and not shown.startswith("-") and not (idle and shown == "1"):
+            doubt = 0.5 * held + 0.3 * (not means)
             line.instead(place, shown, right, "coefficient", 1.15 + doubt)
 
 
@@ -370,10 +373,36 @@ def _throughout(line: Line) -> None:
             N_("sin and cos are exchanged throughout"),
             {},
         )
+    _same_numbers(line)
     weight = line.spelling.get("g", "g")
     if words.count(weight) > 1:
         told = N_("gravity has the opposite sign: every g should be -g")
         _global(line, ((weight, f"(-{weight})"),), "gravity sign", 1.5, told, {})
+
+
+def _alike(line: Line, digits: str) -> list[int]:
+    """Which of the numbers are written so."""
+    spans = line.text.spans
+    return [k for k, one in enumerate(line.text.literals[: len(spans)]) if one.text == digits]
+
+
+def _same_numbers(line: Line) -> None:
+    """One number for another in the whole text: 0.3 for 1/3."""
+    decimals = dict.fromkeys(one.text for one in line.text.literals if "." in one.text)
+    for old in decimals:
+        places = _alike(line, old)
+        if len(places) < 2:
+            continue
+        for shown, size in _NUMBERS.items():
+            numbers = np.array([one.value for one in line.text.literals])
+            numbers[places] = size
+            new = line.source
+            for start, end in (line.text.spans[k] for k in reversed(places)):
+                new = f"{new[:start]}{shown}{new[end:]}"
+            told, pieces = N_("{old} should be {new} throughout"), {"old": old, "new": shown}
+            swap = ((old, shown),)
+            change = Change(0, len(line.source), new, "factor", 1.3, told, swap, pieces)
+            line.put(line.root, line.text.values(line.at, numbers), change)
 
 
 def _global(

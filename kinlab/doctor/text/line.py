@@ -149,7 +149,10 @@ class Line:
         """Names of numbers that may stand in the text, with their values."""
         found: dict[str, Array] = {}
         for name in self.text.symbols:
-            if name.isidentifier() and not keyword.iskeyword(name) and not self.turns(name):
+            digits = name in self.text.numbers and not self.text.symbols[name].isidentifier()
+            if digits or not name.isidentifier() or keyword.iskeyword(name):
+                continue
+            if not self.turns(name):
                 found[name] = self._named(name)
         mine = set(self.spelling)
         for name in self.names.parameters:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from kinlab.doctor.derived import LETTERS
+from kinlab.doctor.text.forces import WRENCH
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.written import Written, literal
 from kinlab.errors import ExpressionError, near
@@ -29,7 +30,7 @@ def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> N
     """
     words = vocabulary(robot.table).values if robot.table is not None else {}
     known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
-    known |= {*given_names(entry, robot.table)}
+    known |= {*given_names(entry, robot.table), *WRENCH}
     place = f"{file.path}: {entry}"
     _refuse_large(text, file, place, {}, ())
     return _resolved(text, file, words, known, place)

@@ -61,6 +61,46 @@ def stand_ins(
     return None
 
 
+def fitted(
+    text: Written,
+    at: Mapping[str, Array],
+    target: Array,
+    free: list[int],
+    start: Array | None = None,
+) -> Array | None:
+    """All literals' numbers where some are free to be anything, or None where none will do.
+
+    Args:
+        text: the formula.
+        at: values of the names, (N,) each.
+        target: the values wanted, (N,).
+        free: the literals that may be anything.
+        start: the numbers at first; what is written where it is None.
+    """
+    numbers = np.array([one.value for one in text.literals]) if start is None else start
+    scale = float(np.max(np.abs(target))) or 1.0
+    for _step in range(2 * STEPS):
+        values = text.values(at, numbers)
+        rest = (target - values) / scale
+        if not np.isfinite(rest).all():
+            return None
+        if np.max(np.abs(rest)) <= TOLERANCES.formula_agrees:
+            return numbers
+        if not free:
+            return None
+        slopes = []
+        for k in free:
+            step = 1e-5 * max(1.0, abs(numbers[k]))
+            other = numbers.copy()
+            other[k] += step
+            slopes.append((text.values(at, other) - values) / (step * scale))
+        turned = np.array(slopes).T
+        if not np.isfinite(turned).all():
+            return None
+        numbers[free] += np.linalg.lstsq(turned, rest, rcond=1e-9)[0]
+    return None
+
+
 @dataclass(eq=False)
 class _Search:
     """Looks for numbers that explain a text's difference."""
@@ -123,15 +163,16 @@ class _Search:
                 out[members] += size * part
             return out
 
-        for _step in range(STEPS):
+        steps = np.diag([_step(literals[members[0]]) for members in free] / reach)
+        for _turn in range(STEPS):
             values = self.text.values(self.at, numbers(moved))
             rest = (self.target - values) / self.scale
             if not np.isfinite(rest).all():
                 return None
             slopes = [
-                (self.text.values(self.at, numbers(moved + 1e-3 * step)) - values)
-                / (1e-3 * self.scale)
-                for step in np.eye(len(free))
+                (self.text.values(self.at, numbers(moved + step)) - values)
+                / (float(np.max(step)) * self.scale)
+                for step in steps
             ]
             turned = np.array(slopes).reshape(len(free), -1).T
             if not np.isfinite(turned).all():
@@ -180,25 +221,38 @@ class _Search:
             for k, one in enumerate(literals)
             if one.half > 0 and not self.meanings.holds(float(numbers[k]))
         ]
-        if bare and not (alone and self._told_apart(bare, numbers)):
+        if bare and not (alone and told_apart(self.text, self.at, numbers, bare)):
             return None
         return changed
 
-    def _told_apart(self, bare: list[int], numbers: Array) -> bool:
-        """Whether no error of one number could be another's: not of one term or one coefficient."""
-        if len(bare) < 2:
-            return True
-        here = self.text.values(self.at, numbers)
-        columns = []
-        for k in bare:
-            moved = numbers.copy()
-            moved[k] += 1e-3 * self.text.literals[k].reach
-            column = (self.text.values(self.at, moved) - here) / self.scale
-            size = float(np.linalg.norm(column))
-            if size == 0.0 or not np.isfinite(size):
-                return False
-            columns.append(column / size)
-        return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(bare))
+
+def told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: list[int]) -> bool:
+    """Whether no error of one number could be another's: not of one term or one coefficient.
+
+    Args:
+        text: the formula.
+        at: values of the names.
+        numbers: what the literals stand for.
+        free: the literals that are asked about.
+    """
+    if len(free) < 2:
+        return True
+    here = text.values(at, numbers)
+    columns = []
+    for k in free:
+        moved = numbers.copy()
+        moved[k] += _step(text.literals[k])
+        column = text.values(at, moved) - here
+        size = float(np.linalg.norm(column))
+        if size == 0.0 or not np.isfinite(size):
+            return False
+        columns.append(column / size)
+    return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(free))
+
+
+def _step(one: Literal) -> float:
+    """A change of a number far above the rounding of what it is multiplied with."""
+    return 1e-3 * max(abs(one.value), one.reach)
 
 
 def rounding_remarks(changed: list[tuple[Literal, float]], at: Mapping[str, Array]) -> list[str]:

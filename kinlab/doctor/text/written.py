@@ -131,6 +131,12 @@ class Written:
         return tuple(found)
 
     @cached_property
+    def spans(self) -> list[tuple[int, int]]:
+        """Where the numbers of the text itself stand, which are the first of :attr:`literals`."""
+        inside = (constant for constant, _exact in _constants(self._trees[""]))
+        return [(one.col_offset, one.end_col_offset or 0) for one in inside]
+
+    @cached_property
     def _used(self) -> list[str]:
         """The symbols with numbers of their own that the text reaches, the text itself first."""
         found, waiting = [""], [""]

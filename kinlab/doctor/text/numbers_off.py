@@ -1,0 +1,107 @@
+"""Several numbers of a text that are off, beside others that are only rounded.
+
+Where the numbers of a text can be told apart by its values, they are solved for together: those
+that are what was written, rounded, stay as they are; the others are put right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.text.line import Change, Line
+from kinlab.doctor.text.mend import Mended, mended, together
+from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins, told_apart
+from kinlab.doctor.text.written import Written
+from kinlab.host.language import N_
+
+_MOST = 3
+"""Numbers that are off above which a list of them is no diagnosis."""
+_LIKE = 3.0
+"""Times that a number may be off and still be the same number mistaken."""
+
+
+Part = tuple[Mapping[str, Array], Array]
+"""States at which a formula is one of its parts alone, and the values wanted there."""
+
+
+def beside_rounded(line: Line, parts: Sequence[Part]) -> tuple[Written, list[Mended]]:
+    """Numbers that are off, or slips, beside numbers that are right when rounded.
+
+    Args:
+        line: the formula at the robot's own numbers.
+        parts: its parts, where it has several.
+
+    Returns:
+        The text with exact values for the rounded numbers, and its repairs.
+    """
+    text, found = _put_right(line)
+    if found:
+        return text, found
+    text = _with_right_parts(line.text, parts)
+    return text, [] if text is line.text else mended(_again(line, text), 2)
+
+
+def _again(line: Line, text: Written) -> Line:
+    return replace(line, text=text, places=[], changes=[], rows=[])
+
+
+def _put_right(line: Line) -> tuple[Written, list[Mended]]:
+    """The numbers that are off, each as it should be; empty where they are not sure."""
+    text, meanings = line.text, line.meanings
+    free = [
+        k
+        for k, (one, _span) in enumerate(zip(text.literals, text.spans, strict=False))
+        if one.half and not one.whole and meanings.parameter(one.value) is None
+    ]
+    solved = fitted(text, line.at, line.target, free) if 1 < len(free) <= FREE else None
+    if solved is None or not told_apart(text, line.at, solved, free):
+        return text, []
+    exact = {
+        k: float(solved[k]) for k in free if meanings.credible(text.literals[k], float(solved[k]))
+    }
+    off = [k for k in free if k not in exact]
+    written = [text.literals[k].value for k in off]
+    ratio = solved[off] / written
+    if not 1 <= len(off) <= _MOST or np.any(ratio < 1 / _LIKE) or np.any(ratio > _LIKE):
+        return text, []
+    named = _with_exact(text, exact)
+    changes = []
+    for one, value in zip(off, solved[off], strict=True):
+        start, end = named.spans[one - sum(k < one for k in exact)]
+        shown = np.format_float_positional(float(value), 12, fractional=False, trim="-")
+        pieces = {"old": text.literals[one].text, "new": shown}
+        told = N_("{old} should be {new}")
+        changes.append(Change(start, end, shown, "coefficient", 1.15, told, pieces=pieces))
+    return named, together(_again(line, named), tuple(changes))
+
+
+def _with_exact(text: Written, exact: Mapping[int, float]) -> Written:
+    """The text with names for numbers that are rounded: written as they were, and exact in value.
+
+    What they stand for is given by their place among the literals.
+    """
+    line, symbols, numbers = text.text, dict(text.symbols), dict(text.numbers)
+    for k in sorted(exact, reverse=True):
+        (start, end), name = text.spans[k], f"exact_{k}_{len(numbers)}"
+        symbols[name], numbers[name] = repr(exact[k]), line[start:end]
+        line = line[:start] + name + line[end:]
+    return replace(text, text=line, symbols=symbols, numbers=numbers)
+
+
+def _with_right_parts(text: Written, parts: Sequence[Part]) -> Written:
+    """The text with the numbers of those parts exact that are right when rounded."""
+    exact: dict[int, float] = {}
+    for at, target in parts:
+        scale = np.full_like(target, np.max(np.abs(target)))
+        for one, value in stand_ins(text, at, target, scale) or ():
+            alike = [
+                k
+                for k, (other, _span) in enumerate(zip(text.literals, text.spans, strict=False))
+                if other is one
+            ]
+            exact.update(dict.fromkeys(alike, value))
+    return _with_exact(text, exact) if exact else text
