@@ -323,6 +323,8 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
         return case, odd
+    if not written and (digits := verdicts.by_differences(case, engine)) is not None:
+        return case, digits
     for said_of_all in rounding.roundings(case, engine, not written):
         return case, Excuse("rounded", said_of_all)
     if not written:
