@@ -102,13 +102,13 @@ class Tolerances:
 
     # -------- Formulas
 
-    target_singular: float = 1e-3
-    """Least over largest singular value of a task's Jacobian below which a target is singular: an
-    inverse kinematics keeps 1e-16/1e-3 there, far below what formulas must agree to."""
-
     same_branch: float = 1e-6
     """Difference of cosines and sines below which two solutions of one target are one: an acos or
     a root that is 0 keeps half the digits, 1e-8; branches are 1e-3 apart where targets lie."""
+
+    near_singular: float = 1e-3
+    """Least over largest singular value of a target's pose that is near a singular one, such as
+    the limit of reach, and not in it: joint positions keep 1e-13 there."""
 
     formula_agrees: float = 1e-9
     """Largest relative error at which a hand formula and the engine are the same formula. Two

@@ -195,7 +195,7 @@ def _sample(
         ratio = values[:, -1] / values[:, 0]
         clear = ratio > _CLEAR
         kept = np.concatenate([kept, q[clear]])
-        some = (ratio > TOLERANCES.target_singular) & ~clear
+        some = (ratio > TOLERANCES.near_singular) & ~clear
         close, how_close = np.concatenate([close, q[some]]), np.append(how_close, ratio[some])
         if len(kept) >= count and len(close) >= near:
             break
