@@ -169,7 +169,7 @@ def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
             answers = np.asarray(found.case.again(far), dtype=float)
     except (KinlabError, ValueError, TypeError):
         return
-    if np.isfinite(answers).any():
+    if np.isfinite(answers).all(axis=-1).any():
         yield _("beyond reach it answers as well: ask first whether |cos| <= 1")
 
 
