@@ -156,7 +156,7 @@ def _explained(
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
-    listed = all({*c.kinds} == {"coefficient"} and len(c.kinds) > 1 for c in causes)
+    listed = all({*c.kinds} == {"coefficient"} for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
         causes = [*_singly(case, changed)] or rough or causes
@@ -202,12 +202,13 @@ def _texts_again(
 
 
 def _without_value(case: Case, engine: Array) -> Cause | None:
-    """A formula that is no number at some states, and right at all the others."""
+    """A formula that is no number at some states, and right at all the others; or zero at all."""
     count = len(case.hand)
     whole_: Any = np.asarray(np.isfinite(case.hand).reshape(count, -1).all(axis=1))
     missing = int(np.sum(~whole_))
     if not missing:
-        return None
+        said = _("the formula gives zero at every state")
+        return None if np.any(case.hand) else Cause(said, ("zero",), ("",), 0.0, 1.0)
     if missing == count:
         said = _("the formula gives no number at any state")
         return Cause(said, ("no value",), ("",), 0.0, 1.0)
@@ -322,6 +323,8 @@ def _excuse(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
         return case, odd
+    if not written and (digits := verdicts.by_differences(case, engine)) is not None:
+        return case, digits
     for said_of_all in rounding.roundings(case, engine, not written):
         return case, Excuse("rounded", said_of_all)
     if not written:

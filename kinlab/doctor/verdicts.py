@@ -20,7 +20,7 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.text.forces import WRENCH
+from kinlab.doctor.text.claims import WRENCH
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
@@ -228,6 +228,21 @@ def _kept(
     return found
 
 
+def by_differences(case: Case, engine: Array) -> Excuse | None:
+    """A function with the noise of differences, nearer the engine than any slip leaves it."""
+    error, size = _own_error(case, engine)
+    near = error <= TOLERANCES.slips_leave and _takes_differences(case, size)
+    return of_digits(error) if near else None
+
+
+def _own_error(case: Case, engine: Array) -> tuple[float, float]:
+    """The largest error relative to its entry's own largest value, and the largest value."""
+    gap, own = (np.max(np.abs(x), axis=0) for x in (case.hand - engine, engine))
+    most = float(np.max(own))
+    error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
+    return error, most
+
+
 def to_digits(case: Case, engine: Array) -> Excuse | None:
     """A function that nothing explains, and whose differences from the engine are its rounding.
 
@@ -235,12 +250,15 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
     (one per cent of a small inertia is no digit of a large arm's mass matrix, but it is one per
     cent of the entry where it stands alone); or the function has the noise of differences.
     """
-    gap, own = (np.max(np.abs(x), axis=0) for x in (case.hand - engine, engine))
-    most = float(np.max(own))
-    error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
+    error, most = _own_error(case, engine)
     noisy = error <= TOLERANCES.coefficient_digits and _takes_differences(case, most)
     if not noisy and not error <= TOLERANCES.slips_leave:
         return None
+    return of_digits(error)
+
+
+def of_digits(error: float) -> Excuse:
+    """The excuse of a function that is right to the digits of its constants."""
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
 

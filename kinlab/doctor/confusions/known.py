@@ -308,7 +308,8 @@ def _of_entries(case: Case) -> Iterator[Confusion]:
         told = _(_ENTRY_SAID[kind]).format(number=entry)
         yield _answer(f"entry {kind}", told, _scaled_places(factor, places), 1.05, f"entry {entry}")
     for i, j in np.ndindex(*engine.shape[1:]):
-        if (i, j) not in places and np.any(engine[:, i, j]):
+        size = float(np.max(np.abs(engine[:, i, j])))
+        if (i, j) not in places and size > TOLERANCES.no_effect * float(np.max(np.abs(engine))):
             told = _("has entry {other} for entry {number}")
             told = told.format(other=f"({i + 1}, {j + 1})", number=entry)
             yield _answer("another entry", told, _put(i, j, places), 1.15, f"entry {entry}")

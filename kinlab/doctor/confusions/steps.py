@@ -228,6 +228,9 @@ def _terms(
         if not is_sum(node) and (id(node) not in tops or isinstance(node, ast.List)):
             continue
         parts = list(summands(node))
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub) and len(parts) == 2:
+            does = _("has {new} for {old}").format(new=spelt(node.right), old=spelt(node))
+            yield step("missing term", does, 1.08, (node, node.right))
         for part in parts:
             term = told(part)
             if len(parts) > 1 or isinstance(part, ast.UnaryOp):
@@ -265,7 +268,10 @@ def _that_of(what: str, part: ast.expr) -> str:
     of_centre = what == "the acceleration of the centre of mass"
     if of_centre and name_of(part) == "dv":
         return _("takes the acceleration of the link's origin for that of the centre of mass")
-    return _("takes {new} for {old}").format(new=meant(part), old=_(what))
+    new = meant(part)
+    if isinstance(part, ast.Subscript) and "+ 1" in ast.unparse(part.slice):
+        new = _("{what} of the next link").format(what=new)
+    return _("takes {new} for {old}").format(new=new, old=_(what))
 
 
 def _branches(node: ast.expr) -> Iterator[ast.expr]:

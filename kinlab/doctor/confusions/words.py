@@ -128,6 +128,8 @@ KNOWN = {
     "N": N_("the link's own moment"),
     "F": N_("the link's own force"),
     "R tool": N_("the tool"),
+    "R^T n": N_("the wrench's moment"),
+    "R^T f": N_("the wrench's force"),
     "P_C x F": N_("the moment of F"),
     "(P + P_C) x F": N_("the moment of F at the centre of mass"),
     "P x (R f)": N_("the lever arm of the next link's force"),
