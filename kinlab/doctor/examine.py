@@ -88,6 +88,9 @@ def examine(
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
     case, excuse = _excuse(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
+    if same and excuse is None:
+        values, errors = case.hand, relative_errors(case.hand, engine)
+        worst = float(np.max(errors))
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
     split: Apart | None = None
