@@ -25,6 +25,7 @@ from kinlab.doctor.confusions.derivations import (
     one_for_each_kind,
     ready,
     several_taken_otherwise,
+    taken_at_one_joint,
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
@@ -47,6 +48,8 @@ _NAMED = 8
 """Causes that are kept."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
+_FETCHED = 1.35
+"""Cost above which what explains a formula does not keep from looking at single joints."""
 _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
@@ -148,9 +151,11 @@ def _explained(
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        derived = taken_otherwise(loose, ways) if ways else []
-        every = [*_singly(loose, tried), *map(_as_steps, derived)]
+        every = [*_singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
+        if ways and all(cause.cost > _FETCHED for cause in exact):
+            every += map(_as_steps, taken_at_one_joint(loose, ways))
+            exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= _RIVALS):
