@@ -20,7 +20,7 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.text.forces import WRENCH
+from kinlab.doctor.text.claims import WRENCH
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
@@ -232,7 +232,7 @@ def by_differences(case: Case, engine: Array) -> Excuse | None:
     """A function with the noise of differences, nearer the engine than any slip leaves it."""
     error, size = _own_error(case, engine)
     near = error <= TOLERANCES.slips_leave and _takes_differences(case, size)
-    return _digits_of(error) if near else None
+    return of_digits(error) if near else None
 
 
 def _own_error(case: Case, engine: Array) -> tuple[float, float]:
@@ -254,10 +254,11 @@ def to_digits(case: Case, engine: Array) -> Excuse | None:
     noisy = error <= TOLERANCES.coefficient_digits and _takes_differences(case, most)
     if not noisy and not error <= TOLERANCES.slips_leave:
         return None
-    return _digits_of(error)
+    return of_digits(error)
 
 
-def _digits_of(error: float) -> Excuse:
+def of_digits(error: float) -> Excuse:
+    """The excuse of a function that is right to the digits of its constants."""
     said = _("it agrees to {digits} digits: finite differences, or rounded constants?")
     return Excuse("digits", (said.format(digits=_digits(error)),))
 

@@ -193,14 +193,14 @@ def parse(text: str, place: str = "expression") -> Node:
     """
     if len(text) > _LENGTH:
         raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
-    text = tidied(text)
+    given, text = text, tidied(text)
     _refuse_deep(text, place)
     try:
         parsed = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError) as problem:
         where = f" near column {problem.offset}" if isinstance(problem, SyntaxError) else ""
         raise ExpressionError(
-            f"{place}: no arithmetic{where}: {_short(text)}{_remedy(text)}"
+            f"{place}: no arithmetic{where}: {_short(given)}{_remedy(text)}"
         ) from None
     except (RecursionError, MemoryError):
         raise ExpressionError(f"{place}: nested too deep") from None

@@ -39,3 +39,12 @@ def test_what_is_no_formula_is_refused():
         kl.diagnose("planar2r", "tau2", "m2 l2 +")
     with pytest.raises(KinlabError, match="cannot be called"):
         kl.diagnose("planar2r", "tau2", 3.0)
+
+
+def test_the_printed_gradient_of_the_energy_as_text():
+    """Note 002 sums qd_j over the vector dT/dq; Mq and T of the arm, by hand."""
+    right = ["0", "-m2*l1*l2*s2*qd1*(qd1 + qd2)"]
+    printed = f"qd2*({right[1]})"
+    assert kl.diagnose("planar2r", "kinetic_gradient", f"[{', '.join(right)}]").agrees
+    found = kl.diagnose("planar2r", "kinetic_gradient", f"[{printed}, {printed}]")
+    assert found.causes[0].kinds == ("one number",)

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.confusions.roads import roads
+from kinlab.doctor.examine import prepare
 
 ARM = kl.load("spatial3r")
 LINKS = ARM.table.links
@@ -162,3 +164,16 @@ def test_christoffels_terms() -> None:
     assert "Christoffel" in " ".join((*found.causes[0].kinds, found.sentence))
     assert "finite differences" in found.sentence
     assert 1e-9 < found.causes[0].error_after < 1e-6
+
+
+@pytest.mark.parametrize(
+    "name", ["jacobian", "inverse_dynamics", "gravity_torques", "link_velocities", "statics"]
+)
+def test_the_derivations_hold_of_an_arm_without_a_table(name: str) -> None:
+    """An arm from a URDF file, with joints about axes of their own: Pinocchio's answer each time."""
+    case, engine = prepare(kl.load("kinova"), name, (), 10, 0)
+    ways = [road.walked([()], case.arguments)[0][0] for road in roads(case)]
+    assert ways
+    size = np.max(np.abs(engine))
+    for answer in ways:
+        assert np.max(np.abs(answer - engine)) <= 1e-9 * size

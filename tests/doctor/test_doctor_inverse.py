@@ -122,6 +122,19 @@ def test_degrees_none_and_an_acos_without_a_value() -> None:
     assert "(the factor) in the cosine of q2" in kl.diagnose("planar2r", XY, by_math).sentence
 
 
+@pytest.mark.parametrize(
+    ("half_turn", "verdict"),
+    [(3.14159265, "agrees to its digits"), (3.1416, "nearly agrees, cause unknown")],
+)
+def test_a_rounded_constant_is_no_slip(half_turn: float, verdict: str) -> None:
+    def solve(x: float, y: float) -> tuple[float, float]:
+        inner = math.acos((0.41 - x * x - y * y) / 0.4)
+        lean = math.acos((x * x + y * y + 0.09) / math.hypot(x, y))
+        return math.atan2(y, x) - lean, half_turn - inner
+
+    assert kl.diagnose("planar2r", XY, solve, samples=60).verdict == verdict
+
+
 def test_beyond_reach_a_limited_cosine_answers_too() -> None:
     limited = elbow_arm_of(cosine=lambda r2, a, b: np.clip((r2 - a**2 - b**2) / (2 * a * b), -1, 1))
     found = kl.diagnose("planar2r", XY, limited, samples=60)
@@ -283,3 +296,19 @@ def test_joint_angles_as_text() -> None:
 def test_texts_that_are_no_solution_are_refused(formulas: dict[str, str], words: str) -> None:
     with pytest.raises(ExpressionError, match=words):
         judged("planar2r", D, **formulas)
+
+
+@pytest.mark.parametrize("beyond", [0.895, 0.8999])
+def test_what_is_wrong_only_near_the_limit_of_reach_is_seen(beyond: float) -> None:
+    right = elbow_arm_of()
+    limited = lambda x, y: np.add(right(x, y, 1.0), 0.1 * (np.hypot(x, y) > beyond))  # noqa: E731
+    assert not kl.diagnose("planar2r", XY, limited).agrees
+
+
+def test_rounded_answers_are_neither_right_nor_wrong_and_complex_ones_are_no_solution() -> None:
+    rounded = kl.diagnose("planar2r", XY, lambda x, y: np.round(elbow_arm_of()(x, y, 1.0), 4))
+    assert (rounded.agrees, rounded.form) == (False, "near")
+    off = lambda x, y: np.add(elbow_arm_of()(x, y, 1.0), 0.1j)  # noqa: E731
+    told = kl.diagnose("planar2r", XY, off)
+    assert not told.agrees
+    assert "right at 0 of 200 targets" in told.sentence

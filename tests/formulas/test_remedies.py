@@ -22,3 +22,8 @@ def test_no_arithmetic(text, remedy):
         parse(text, "x")
     said = str(caught.value)
     assert said.endswith(remedy) if remedy else ";" not in said
+
+
+def test_a_power_is_quoted_as_it_was_typed():
+    with pytest.raises(ExpressionError, match=r"m1\*\(l1\^2; a bracket is not closed"):
+        parse("m1*(l1^2", "x")

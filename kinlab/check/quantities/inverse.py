@@ -23,7 +23,11 @@ from kinlab.formulas.record import AnswerShapeError
 from kinlab.model.robot import Robot
 
 _CLEAR = 0.05
-"""Least over largest singular value of the task's Jacobian in a drawn pose."""
+"""Least over largest singular value of the task's Jacobian, where a pose is far from singular."""
+_NEAR = 1e-3
+"""The same where a pose is near a singular one, such as the limit of reach, and not in it."""
+_NEAR_ONES = 4
+"""One target of so many is near a singular pose: there formulas clamp, and lose a branch."""
 _TRIES = 50
 _MOST = 16
 """Solutions of one target that are looked at: no arm of six hinges has more."""
@@ -138,7 +142,7 @@ def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
         rows = np.full((_MOST, robot.n), np.nan)
         try:
             answer = function(*state)
-            found = np.asarray([] if answer is None else answer, dtype=float)
+            found = _real(np.asarray([] if answer is None else answer))
         except (ArithmeticError, ValueError) as problem:
             if isinstance(problem, ValueError) and not _DOMAIN.search(str(problem)):
                 raise
@@ -151,6 +155,13 @@ def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
         return rows
 
     return padded
+
+
+def _real(answer: Array) -> Array:
+    """Numbers of an answer; NaN for those that are complex, as a root of cmath's may be."""
+    if np.iscomplexobj(answer):
+        answer = np.where(np.isreal(answer), answer.real, np.nan)
+    return np.asarray(answer, dtype=float)
 
 
 def _furthest(task: Task, robot: Robot, answers: Any, engine: Array) -> Array:
@@ -172,16 +183,29 @@ def _furthest(task: Task, robot: Robot, answers: Any, engine: Array) -> Array:
 def _sample(
     task: Task, robot: Robot, arguments: Any, count: int, rng: np.random.Generator
 ) -> tuple[Array, ...]:
-    """Reachable targets: where Pinocchio finds the tool at random positions, none singular."""
+    """Reachable targets: where Pinocchio finds the tool at random positions, none singular.
+
+    The last quarter are near a singular pose, from closest to it on.
+    """
     del arguments
-    kept = np.empty((0, robot.n))
+    near = count // _NEAR_ONES
+    kept, close, how_close = np.empty((0, robot.n)), np.empty((0, robot.n)), np.empty(0)
     for _ in range(_TRIES):
-        q = positions(robot, count, rng)
+        q = positions(robot, 2 * count, rng)
         values = np.linalg.svd(task.jacobian(robot, q), compute_uv=False)
-        kept = np.concatenate([kept, q[values[:, -1] > _CLEAR * values[:, 0]]])
-        if len(kept) >= count:
-            return task.given(kinematics.fk(robot, kept[:count]))
-    raise StructureError(f"{robot.name}: singular everywhere in {task.arguments}; give another arm")
+        ratio = values[:, -1] / values[:, 0]
+        clear = ratio > _CLEAR
+        kept = np.concatenate([kept, q[clear]])
+        some = (ratio > _NEAR) & ~clear
+        close, how_close = np.concatenate([close, q[some]]), np.append(how_close, ratio[some])
+        if len(kept) >= count and len(close) >= near:
+            break
+    if len(kept) < count:
+        told = f"{robot.name}: singular everywhere in {task.arguments}; give another arm"
+        raise StructureError(told)
+    closest = close[np.argsort(how_close, kind="stable")[:near]]
+    chosen = np.concatenate([kept[: count - len(closest)], closest])
+    return task.given(kinematics.fk(robot, chosen))
 
 
 def _engine(task: Task, robot: Robot, *given: Any) -> Array:

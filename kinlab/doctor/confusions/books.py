@@ -647,6 +647,15 @@ _IN_BASE = """for i in outward:
     Ib[i] = R_[i] @ I[i] @ R_[i].T
 """
 
+ANGULAR = """
+for i in outward:
+    # the rotation from the link to the last one
+    Rn[i] = R_[n].T @ R_[i]
+    # the Jacobian's column
+    J[i] = Rn[i] @ z[i] if hinge[i] else zero
+# the Jacobian in the last link's axes
+asked = columns(J)
+"""
 CONDITIONS = """
 # the products of the Jacobian's rows
 E = conditions(J @ J.T)
@@ -910,6 +919,8 @@ LINES = (
     N_("the power"),
     N_("the left side A cos(theta) + B sin(theta)"),
     N_("the step"),
+    N_("the rotation from the link to the last one"),
+    N_("the Jacobian in the last link's axes"),
     N_("the length of the rod"),
     N_("the crank's rate"),
     N_("the rod's turn per motion of the tool"),

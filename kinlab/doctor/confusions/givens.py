@@ -119,7 +119,7 @@ def _links(robot: Robot, q: Array) -> list[Array]:
         else:
             k_ = np.cross(np.eye(3), axis)
             sine, versine = np.sin(x)[..., None], (1 - np.cos(x))[..., None]
-            move[:, :3, :3] = np.eye(3) + sine * -k_ + versine * (k_ @ k_)
+            move[:, :3, :3] = np.eye(3) + sine * k_ + versine * (k_ @ k_)
         found.append(robot.model.jointPlacements[k + 1].homogeneous @ move)
     return found
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -116,8 +116,10 @@ def roads(case: Case) -> Iterator[Road]:
     ways = [*_recursions(case), *_lagrange(case)]
     # torques by the recursion first; their parts as people derive them alone
     yield from ways if name.startswith("inverse") else reversed(ways)
-    if name in _OUTWARD and not usual:
-        yield _recursion(case, _OUTWARD[name], False, "asked")
+    if name in _OUTWARD:
+        # of the links in their joints' frames, as the engine has them, whatever the table's are
+        placed = replace(case, robot=replace(robot, table=None)) if usual else case
+        yield _recursion(placed, _OUTWARD[name], False, "asked")
     if name in ("static_wrenches", "joint_wrenches"):
         still = name == "static_wrenches"
         text = books.passed_on(usual, False) if still else books.newton_euler(usual, False)
@@ -160,7 +162,11 @@ def _lagrange(case: Case) -> Iterator[Road]:
 
 
 _PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T", "link_poses": "T"}
-_OUTWARD = {"link_velocities": books.VELOCITIES, "link_accelerations": books.ACCELERATIONS}
+_OUTWARD = {
+    "link_velocities": books.VELOCITIES,
+    "link_accelerations": books.ACCELERATIONS,
+    "angular_jacobian_last": books.ANGULAR,
+}
 _WITHIN = {
     "com_accelerations": ("dvc", ""),
     "inertial_wrenches": ("asked", books.WRENCHES),

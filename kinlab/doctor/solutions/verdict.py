@@ -17,6 +17,7 @@ from kinlab.arrays import Array, first_largest
 from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.inverse import TASKS, Task, as_solutions, reached
+from kinlab.doctor import verdicts
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.derivations import (
     Found,
@@ -82,6 +83,10 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
         remarks = (*_branches_told(found), *_answers_beyond(found, task))
         return Diagnosis(quantity, label, name, True, float(np.max(worst)), remarks=remarks)
     causes = _causes(found, engine)
+    furthest = float(np.max(worst))
+    if not causes and furthest <= TOLERANCES.slips_leave:
+        told = verdicts.of_digits(furthest).remarks
+        return Diagnosis(quantity, label, name, True, furthest, form="digits", remarks=told)
     k = first_largest(worst)
     row = int(np.argmax(np.where(found.wrong[k], found.errors[k], -1.0)))
     return Diagnosis(
@@ -95,6 +100,7 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
         worst_state={n: stack[k] for n, stack in case.arguments.items()},
         hand=reached(robot, task, found.q[k, row][None])[0],
         engine=engine[k],
+        form="near" if not causes and furthest <= TOLERANCES.nearly_agrees else "",
         proved=() if causes else tuple(_counted(found)),
     )
 

@@ -7,8 +7,6 @@ module            what it holds
                   place
 ``claims``        What the names in a file of formulas claim to be: tau1, g2, M12, C11, J11, x, T,
                   V
-``forces``        Torques as text that name the tool's force and moment: tau1 = -fx*(l1*s1 + ...)
-                  is statics
 ``habits``        Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of
                   a slide
 ``joints``        Joint positions as text: q1 = atan2(y, x) - ..., q2 = acos(...), each from the

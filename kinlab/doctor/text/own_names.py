@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from kinlab.doctor.derived import LETTERS
-from kinlab.doctor.text.forces import WRENCH
+from kinlab.doctor.text.claims import WRENCH
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.written import Written, literal
 from kinlab.errors import ExpressionError, near
