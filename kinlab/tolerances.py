@@ -106,6 +106,10 @@ class Tolerances:
     """Difference of cosines and sines below which two solutions of one target are one: an acos or
     a root that is 0 keeps half the digits, 1e-8; branches are 0.05 apart where targets lie."""
 
+    near_singular: float = 1e-3
+    """Least over largest singular value of a target's pose that is near a singular one, such as
+    the limit of reach, and not in it: joint positions keep 1e-13 there."""
+
     formula_agrees: float = 1e-9
     """Largest relative error at which a hand formula and the engine are the same formula. Two
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by

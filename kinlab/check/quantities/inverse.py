@@ -21,11 +21,10 @@ from kinlab.engine import kinematics
 from kinlab.errors import StructureError
 from kinlab.formulas.record import AnswerShapeError
 from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
 
 _CLEAR = 0.05
 """Least over largest singular value of the task's Jacobian, where a pose is far from singular."""
-_NEAR = 1e-3
-"""The same where a pose is near a singular one, such as the limit of reach, and not in it."""
 _NEAR_ONES = 4
 """One target of so many is near a singular pose: there formulas clamp, and lose a branch."""
 _TRIES = 50
@@ -196,7 +195,7 @@ def _sample(
         ratio = values[:, -1] / values[:, 0]
         clear = ratio > _CLEAR
         kept = np.concatenate([kept, q[clear]])
-        some = (ratio > _NEAR) & ~clear
+        some = (ratio > TOLERANCES.near_singular) & ~clear
         close, how_close = np.concatenate([close, q[some]]), np.append(how_close, ratio[some])
         if len(kept) >= count and len(close) >= near:
             break
