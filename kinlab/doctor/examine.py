@@ -213,7 +213,7 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     missing = int(np.sum(~whole_))
     if not missing:
         said = _("the formula gives zero at every state")
-        return None if np.any(case.hand) else Cause(said, ("zero",), ("",), 0.0, 1.0)
+        return None if np.any(case.hand) else Cause(said, ("no value",), ("",), 0.0, 1.0)
     if missing == count:
         said = _("the formula gives no number at any state")
         return Cause(said, ("no value",), ("",), 0.0, 1.0)
@@ -496,7 +496,8 @@ def _slips(
         found = _of_entry(case, entry, text)
         # all repairs of a text give one formula: the likeliest is told
         per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
-        if sum(not found for found in per_entry) >= _PATIENCE:
+        told = sum(len(found[0].kinds) for found in per_entry if found)
+        if sum(not found for found in per_entry) >= _PATIENCE or (not written and told > _FLOOD):
             break
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
