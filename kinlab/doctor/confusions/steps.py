@@ -400,7 +400,7 @@ def _other_axes(of: Program) -> Iterator[Step]:
     for axis in "xy":
         edits = [(node, ast.Subscript(ast.Name(axis + "_"), node.slice)) for node in places["z"]]
         does = _("takes the frame's axis {axis} for the joint's axis z").format(axis=axis)
-        yield Step("axis", does, tuple(edits), 1.12)
+        yield Step("another quantity", does, tuple(edits), 1.12)
 
 
 def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
