@@ -146,9 +146,11 @@ _INERTIA = """
     Is[i] = blocks(m[i]*one, -(m[i]*skew(c[i])), m[i]*skew(c[i]),
                    I[i] - m[i]*skew(c[i]) @ skew(c[i]))
 """
-_SPATIAL_FORCES = """
+_SPATIAL_TWIST = """
     # the twist V of the link
     tw[i] = X[i] @ tw[i-1] + qd[i]*S[i]
+"""
+_SPATIAL_FORCES = """
     # the acceleration of the link as a twist
     dtw[i] = X[i] @ dtw[i-1] + qdd[i]*S[i] + motion(tw[i], qd[i]*S[i])
     # the link's own force and moment
@@ -185,7 +187,7 @@ M = M + diagonal(rotors)
 
 def spatial(standard: bool) -> str:
     """The recursion with spatial vectors, the linear part first (Featherstone's)."""
-    return _spatial(standard) + _SPATIAL_FORCES
+    return _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_FORCES
 
 
 def composite(standard: bool) -> str:
@@ -236,16 +238,16 @@ _OWN_MOMENTUM = """
     N[i] = I[i] @ w[i]
 """
 _MOMENTA = {
-    "the force f of the link": "the momentum of the link and those behind",
-    "the moment n of the link": "the angular momentum of the link and those behind",
-    "the joint torque": "the momentum",
-    "the moment about the base's origin": "the angular momentum about the base's origin",
-    "qdd": "qd",
-    r"F\b(?=\[)": "hl",
-    r"N\b(?=\[)": "ha",
-    r"f\b(?=\[)": "bl",
-    r"nn\b(?=\[)": "ba",
-    r"no\b(?=\[)": "hb",
+    "# the force f of the link\n": "# the momentum of the link and those behind\n",
+    "# the moment n of the link\n": "# the angular momentum of the link and those behind\n",
+    "# the joint torque\n": "# the momentum\n",
+    "# the moment about the base's origin\n": "# the angular momentum about the base's origin\n",
+    r"\bqdd\b": "qd",
+    r"\bF\b(?=\[)": "hl",
+    r"\bN\b(?=\[)": "ha",
+    r"\bf\b(?=\[)": "bl",
+    r"\bnn\b(?=\[)": "ba",
+    r"\bno\b(?=\[)": "hb",
 }
 """What a recursion of forces is called where it is one of momenta."""
 _ABOUT_ORIGIN = """
@@ -282,11 +284,9 @@ def momenta(standard: bool) -> Iterator[tuple[str, bool]]:
         (True, _based(moved + _OWN_MOMENTUM) + _ABOUT_ORIGIN),
     ):
         for old, new in _MOMENTA.items():
-            text = re.sub(rf"\b{old}", new, text)
+            text = re.sub(old, new, text)
         yield text, in_base
-    rest = _SPATIAL_FORCES.partition("    # the acceleration")[0]
-    head = _spatial(standard).replace("dtw[0] = twist(-g, zero)", "dtw[0] = none")
-    yield head + rest + _SPATIAL_MOMENTA, False
+    yield _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_MOMENTA, False
 
 
 _SPATIAL_MOMENTA = """
@@ -310,8 +310,7 @@ _SPATIAL_ENERGY = """
 
 def spatial_energies(standard: bool) -> str:
     """The kinetic energy by the links' spatial inertias."""
-    rest = _SPATIAL_FORCES.partition("    # the acceleration")[0]
-    return "E = number" + _spatial(standard) + rest + _SPATIAL_ENERGY
+    return "E = number" + _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_ENERGY
 
 
 def lagrangian(standard: bool) -> str:
