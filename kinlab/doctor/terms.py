@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, brief
 from kinlab.doctor.text.mend import Mended, mended, together
 from kinlab.doctor.text.names import Names
-from kinlab.doctor.text.numbers_off import beside_rounded
+from kinlab.doctor.text.numbers_off import as_meant, beside_rounded
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -192,23 +192,37 @@ def in_text(
     # names that are not there may be there as their numbers: whole ones too
     left_out = (tree.names(right) & set(names.parameters)) - tree.names(written.node)
     held = [float(derived.arm.values[name]) for name in left_out]
+    bare = tree.names(written.node).isdisjoint(names.parameters)
     numbers = any(
-        not one.exponent and ("." in one.text or one.value in held) for one in written.literals
+        not one.exponent and ("." in one.text or one.value in held or (bare and one.half > 0))
+        for one in written.literals
     )
-    lines = []
-    for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
-        target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        lines.append(Line(written, names, at, np.array(target), forms, numeric=at is own))
-    tried = [(line, 1) for line in lines if numbers and left_out] + [(line, 2) for line in lines]
-    found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
-    found = found or _part_by_part(lines[0], right)
-    found = found or next(filter(None, (mended(line) for line in lines)), [])
-    if not found and numbers:
-        apart = [
-            (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
-            for at in parts(right, own)
-        ]
-        written, found = beside_rounded(lines[-1], apart)
+    plain, lines = [], []
+    for text in dict.fromkeys((as_meant(written, right, own) if numbers else written, written)):
+        for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
+            target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
+            line = Line(text, names, at, np.array(target), forms, numeric=at is own)
+            lines.append(line)
+            plain += [line] if text is written else []
+    if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
+        lines = plain  # nothing else is wrong: the digits are too few
+    tried = [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
+    tried += [(line, 2) for line in lines]
+    ways: Iterator[tuple[Line, list[Mended]]] = chain(
+        ((line, mended(line, most)) for line, most in tried),
+        ((line, _part_by_part(line, right)) for line in lines if not line.numeric),
+        ((line, mended(line)) for line in lines),
+    )
+    for line, found in ways:
+        if found:
+            return [_mended(line.text, one, here) for one in found]
+    if not numbers:
+        return []
+    apart = [
+        (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
+        for at in parts(right, own)
+    ]
+    written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
 
 
