@@ -18,9 +18,8 @@ from kinlab.doctor import regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
-from kinlab.doctor.text.line import Line, brief
+from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.names import Names
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
@@ -414,10 +413,21 @@ def _told_function(label: str, form: Node, edit: Edit) -> str:
     return said.format(
         entry=shown_entry(label),
         old=brief(str(old)),
-        new=brief(str(edit.new)),
+        new=brief(str(_unsigned(edit.new))),
         term=brief(term),
         kind=_(kind),
     )
+
+
+def _unsigned(node: Node) -> Node:
+    """A product without a sign in front of a sum that begins with one: a - b for -(-a + b)."""
+    if node.op != "mul" or node.args[0].op != "num" or node.args[0].value >= 0:
+        return node
+    for k, factor in enumerate(node.args):
+        if factor.op == "add" and str(factor).startswith("-"):
+            turned = tree.add(*(tree.mul(tree.num(-1), term) for term in factor.args))
+            return tree.mul(tree.num(-1), *node.args[:k], turned, *node.args[k + 1 :])
+    return node
 
 
 def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
