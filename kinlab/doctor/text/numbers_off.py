@@ -25,6 +25,8 @@ from kinlab.tolerances import TOLERANCES
 
 _MOST = 3
 """Numbers that are off above which a list of them is no diagnosis."""
+_ADDED = 6
+"""Terms in front of one joint function of which some are added."""
 _LIKE = 3.0
 """Times that a number may be off and still be the same number mistaken."""
 
@@ -96,20 +98,29 @@ def _positive(node: Node, own: Mapping[str, Array]) -> tuple[Node, float]:
     return (tree.mul(tree.num(-1), node), -value) if value < 0 else (node, value)
 
 
-def _coefficients(right: Node) -> tuple[list[Node], list[Node]]:
-    """What stands in front of the joint functions of a formula, and the products within that."""
+def _coefficients(right: Node) -> tuple[list[Node], ...]:
+    """What stands in front of the joint functions of a formula, parts of that, and their products.
+
+    Sums of the terms in front come before products within one term: 0.438 is (m1 + m2) l1²/2.
+    """
     fronts: dict[Node, list[Node]] = {}
-    parts: list[Node] = []
+    within: list[Node] = []
     for term in right.args if right.op == "add" else (right,):
         factors = term.args if term.op == "mul" else (term,)
         moving = [f for f in factors if any(name[0] == "q" for name in tree.names(f))]
         still = [f for f in factors if f not in moving]
         fronts.setdefault(tree.mul(tree.num(1), *moving), []).append(tree.mul(tree.num(1), *still))
         for count in range(1, len(still)):
-            parts += [tree.mul(tree.num(1), *some) for some in combinations(still, count)]
-    sums = [tree.add(*terms) for terms in fronts.values() if len(terms) > 1]
+            within += [tree.mul(tree.num(1), *some) for some in combinations(still, count)]
+    whole = [tree.add(*terms) for terms in fronts.values()]
     single = [term for terms in fronts.values() for term in terms]
-    return list(dict.fromkeys([*single, *sums])), list(dict.fromkeys(parts))
+    some = [
+        tree.add(*part)
+        for terms in fronts.values()
+        for count in range(2, len(terms))
+        for part in combinations(terms[:_ADDED], count)
+    ]
+    return tuple(list(dict.fromkeys(circle)) for circle in ([*single, *whole], some, within))
 
 
 def _again(line: Line, text: Written) -> Line:
