@@ -25,6 +25,7 @@ from kinlab.doctor.text.line import (
     is_term,
     words_in,
 )
+from kinlab.doctor.text.meanings import CLOSE
 from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
@@ -128,6 +129,11 @@ def _number(line: Line, place: Place) -> None:
             doubt = 0.5 * held + 0.3 * (not means)
             value = np.full(line.count, right)
             line.instead(place, shown, value, "coefficient", 1.15 + doubt)
+    if line.numeric and line.only_numbers:
+        for size in line.fronts:  # nearly a coefficient: 17 for 17.1675, beside another slip
+            if 0 < abs(size - place.value[0]) <= CLOSE * size:
+                shown = np.format_float_positional(size, 12, fractional=False, trim="-")
+                line.instead(place, shown, np.full(line.count, size), "coefficient", 1.2)
 
 
 def _fitting(line: Line, place: Place) -> float:

@@ -8,13 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import combinations
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import Change, Line
-from kinlab.doctor.text.meanings import Meanings
+from kinlab.doctor.text.meanings import Meanings, coefficients
 from kinlab.doctor.text.mend import Mended, mended, together
 from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins, told_apart
 from kinlab.doctor.text.written import Literal, Written
@@ -25,8 +24,6 @@ from kinlab.tolerances import TOLERANCES
 
 _MOST = 3
 """Numbers that are off above which a list of them is no diagnosis."""
-_ADDED = 6
-"""Terms in front of one joint function of which some are added."""
 _LIKE = 3.0
 """Times that a number may be off and still be the same number mistaken."""
 
@@ -65,7 +62,7 @@ def as_meant(text: Written, right: Node, own: Mapping[str, Array]) -> Written:
     """
     meanings = Meanings.at(own)
     meant: dict[int, str] = {}
-    circles = [[_positive(one, own) for one in circle] for circle in _coefficients(right)]
+    circles = [[_positive(one, own) for one in circle] for circle in coefficients(right)]
     for k, (one, _span) in enumerate(zip(text.literals, text.spans, strict=False)):
         if one.half and meanings.parameter(one.value) is None:
             found = _meant(one, circles, meanings)
@@ -96,31 +93,6 @@ def _positive(node: Node, own: Mapping[str, Array]) -> tuple[Node, float]:
     """A product of the robot's numbers without its sign, and its value."""
     value = float(np.ravel(tree.evaluate(node, dict(own)))[0])
     return (tree.mul(tree.num(-1), node), -value) if value < 0 else (node, value)
-
-
-def _coefficients(right: Node) -> tuple[list[Node], ...]:
-    """What stands in front of the joint functions of a formula, parts of that, and their products.
-
-    Sums of the terms in front come before products within one term: 0.438 is (m1 + m2) l1²/2.
-    """
-    fronts: dict[Node, list[Node]] = {}
-    within: list[Node] = []
-    for term in right.args if right.op == "add" else (right,):
-        factors = term.args if term.op == "mul" else (term,)
-        moving = [f for f in factors if any(name[0] == "q" for name in tree.names(f))]
-        still = [f for f in factors if f not in moving]
-        fronts.setdefault(tree.mul(tree.num(1), *moving), []).append(tree.mul(tree.num(1), *still))
-        for count in range(1, len(still)):
-            within += [tree.mul(tree.num(1), *some) for some in combinations(still, count)]
-    whole = [tree.add(*terms) for terms in fronts.values()]
-    single = [term for terms in fronts.values() for term in terms]
-    some = [
-        tree.add(*part)
-        for terms in fronts.values()
-        for count in range(2, len(terms))
-        for part in combinations(terms[:_ADDED], count)
-    ]
-    return tuple(list(dict.fromkeys(circle)) for circle in ([*single, *whole], some, within))
 
 
 def _again(line: Line, text: Written) -> Line:
