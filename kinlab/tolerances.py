@@ -104,7 +104,7 @@ class Tolerances:
 
     same_branch: float = 1e-6
     """Difference of cosines and sines below which two solutions of one target are one: an acos or
-    a root that is 0 keeps half the digits, 1e-8; branches are 0.05 apart where targets lie."""
+    a root that is 0 keeps half the digits, 1e-8; branches are 1e-3 apart where targets lie."""
 
     near_singular: float = 1e-3
     """Least over largest singular value of a target's pose that is near a singular one, such as

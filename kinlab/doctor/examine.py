@@ -25,6 +25,7 @@ from kinlab.doctor.confusions.derivations import (
     one_for_each_kind,
     ready,
     several_taken_otherwise,
+    taken_at_one_joint,
     taken_otherwise,
 )
 from kinlab.doctor.confusions.known import readings
@@ -47,6 +48,8 @@ _NAMED = 8
 """Causes that are kept."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
+_FETCHED = 1.35
+"""Cost above which what explains a formula does not keep from looking at single joints."""
 _RIVALS = 2
 """Entries that differ up to which slips are looked for beside a reading that explains them."""
 _PATIENCE = 2
@@ -88,6 +91,9 @@ def examine(
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
     case, excuse = _excuse(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
+    if same and excuse is None:
+        values, errors = case.hand, relative_errors(case.hand, engine)
+        worst = float(np.max(errors))
     causes: list[Cause] = []
     partial: tuple[str, ...] = ()
     split: Apart | None = None
@@ -148,9 +154,11 @@ def _explained(
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        derived = taken_otherwise(loose, ways) if ways else []
-        every = [*_singly(loose, tried), *map(_as_steps, derived)]
+        every = [*_singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
+        if ways and all(cause.cost > _FETCHED for cause in exact):
+            every += map(_as_steps, taken_at_one_joint(loose, ways))
+            exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= _RIVALS):
@@ -208,7 +216,7 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     missing = int(np.sum(~whole_))
     if not missing:
         said = _("the formula gives zero at every state")
-        return None if np.any(case.hand) else Cause(said, ("zero",), ("",), 0.0, 1.0)
+        return None if np.any(case.hand) else Cause(said, ("no value",), ("",), 0.0, 1.0)
     if missing == count:
         said = _("the formula gives no number at any state")
         return Cause(said, ("no value",), ("",), 0.0, 1.0)
@@ -491,7 +499,8 @@ def _slips(
         found = _of_entry(case, entry, text)
         # all repairs of a text give one formula: the likeliest is told
         per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
-        if sum(not found for found in per_entry) >= _PATIENCE:
+        told = sum(len(found[0].kinds) for found in per_entry if found)
+        if sum(not found for found in per_entry) >= _PATIENCE or (not written and told > _FLOOD):
             break
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)

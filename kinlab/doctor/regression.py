@@ -15,7 +15,7 @@ from itertools import combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, largest_first
-from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.line import Names
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.tolerances import TOLERANCES

@@ -18,7 +18,7 @@ from fractions import Fraction
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.names import Names
+from kinlab.doctor.text.line import Names
 from kinlab.doctor.text.pairs import pairs_adding_up, pairs_in_product
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node, Path

@@ -18,9 +18,8 @@ from kinlab.doctor import regression, search
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
-from kinlab.doctor.text.line import Line, brief
+from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.names import Names
 from kinlab.doctor.text.numbers_off import beside_rounded
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree

@@ -192,7 +192,7 @@ LEFT_ENGLISH = {
         "the acceleration of the centre of mass",
     ),
     "handout.py": ("student id",),
-    "own_answer.py": ("the sheet's",),
+    "judge.py": ("the sheet's",), "own_answer.py": ("the sheet's",),
     "submission.py": ("student id", "left side"),
     "child.py": ("processor time", "files read", "files written", "open files", "core dumps"),
     "body_slips.py": ("other end",),

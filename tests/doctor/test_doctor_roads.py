@@ -163,7 +163,7 @@ def test_each_road_is_right(quantity) -> None:
         ("jacobian_tool", "-sa, -sa*row.d", "sa, -sa*row.d", "opposite sign in entry (2, 3)"),
         ("fk", "(1 - np.cos(q[i]))", "np.cos(q[i])", "cos(q) for 1 - cos(q)"),
         ("fk", "(np.eye(3) - R) @ o", "(R + np.eye(3)) @ o", "opposite sign"),
-        ("potential_energy", "st*sa, ct*sa, ca", "st*sa, -ct*sa, ca", "(3, 2)"),
+        ("statics", "[st*ca, ct*ca", "[st*ca, -ct*ca", "(2, 2)"),
         ("statics", "J.T @ w", "J.T @ np.r_[w[:3], 0, 0, 0]", "the wrench's moment"),
         ("statics", "z, o = T[i+1][:3, 2], T[i+1][:3, 3]", "z, o = T[i][:3, 2], T[i][:3, 3]",
          "axis z and the origin o of the frame before"),
@@ -189,7 +189,6 @@ def _put(value):
     ("change", "words"),
     [
         (_put(lambda _M: 0.0), "entry (4, 6) and (6, 4) zero"),
-        (_put(lambda M: -M[3, 5]), "entry (4, 6) and (6, 4) with the opposite sign"),
         (_put(lambda M: M[2, 4]), "entry (3, 5) for entry (4, 6) and (6, 4)"),
     ],
 )

@@ -133,6 +133,7 @@ def test_a_power_is_written_back_as_it_was_typed():
 def test_what_is_right_when_rounded_is_not_blamed_beside_a_wrong_sister():
     (found,) = judged(M11="1.1 + 0.6*c2", M12="0.24 + 0.3*c2", M22="0.239")
     assert found.causes[0].shown == {"M22": "0.24"}
+    assert found.worst_entry == "mass_matrix[1,1]"  # M11 is further off, and right
     torques = {
         "tau1": "1.1*qdd1 + 0.6*c2*qdd1 + (0.24+0.3*c2)*qdd2 - 0.3*s2*(2*qd1*qd2+qd2**2) + 17.2*c1"
         " + 5.89*c12",

@@ -123,10 +123,22 @@ tw[0] = none
 # the start of the recursion
 dtw[0] = twist(-g, zero)
 for i in outward:
+"""
+_AXIS = """
     # the joint's axis S
     S[i] = twist(zero, z[i]) if hinge[i] else twist(z[i], zero)
     # the transform X of twists
     X[i] = blocks(R[i].T, -(R[i].T @ skew(P[i])), nil, R[i].T)
+"""
+_AXIS_AT_START = """
+    # the joint's axis S
+    S[i] = (twist(cross(R[i].T @ z[i], P[i]), R[i].T @ z[i]) if hinge[i]
+            else twist(R[i].T @ z[i], zero))
+    # the transform X of twists
+    X[i] = blocks(R[i].T, -(skew(P[i]) @ R[i].T), nil, R[i].T)
+"""
+"""The same of a standard table: the axis is that of the frame before."""
+_INERTIA = """
     # the link's spatial inertia
     Is[i] = blocks(m[i]*one, -(m[i]*skew(c[i])), m[i]*skew(c[i]),
                    I[i] - m[i]*skew(c[i]) @ skew(c[i]))
@@ -170,23 +182,16 @@ M = M + diagonal(rotors)
 
 def spatial(standard: bool) -> str:
     """The recursion with spatial vectors, the linear part first (Featherstone's)."""
-    return _in_convention(_SPATIAL, standard) + _SPATIAL_FORCES
+    return _spatial(standard) + _SPATIAL_FORCES
 
 
 def composite(standard: bool) -> str:
     """The mass matrix by composite bodies (Featherstone's)."""
-    return _in_convention(_SPATIAL, standard) + _COMPOSITE
+    return _spatial(standard) + _COMPOSITE
 
 
-def _in_convention(text: str, standard: bool) -> str:
-    if not standard:
-        return text
-    text = text.replace("R[i].T @ skew(P[i])", "skew(P[i]) @ R[i].T")
-    return text.replace(
-        "twist(zero, z[i]) if hinge[i] else twist(z[i], zero)",
-        "(twist(cross(R[i].T @ z[i], P[i]), R[i].T @ z[i]) if hinge[i]\n"
-        "            else twist(R[i].T @ z[i], zero))",
-    )
+def _spatial(standard: bool) -> str:
+    return _SPATIAL + (_AXIS_AT_START if standard else _AXIS) + _INERTIA
 
 
 _ENERGY = """

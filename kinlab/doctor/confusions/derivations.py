@@ -67,27 +67,29 @@ def _ready(case: Case, tried: Iterable[Road]) -> Ready:
 
 
 def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
-    """What explains the hand formula by one step; nothing where none does."""
-    near: list[Found] = []
-    for singly in (False, True):
-        found: list[Found] = []
-        for road, shapes in ways:
-            if road.singly or not singly:
-                tried = steps(road.of, shapes, road.n, singly)
-                found += _tried(case, road, [(step,) for step in tried])
-        near += found
-        if any(one.error <= TOLERANCES.formula_agrees for one in found):
-            return found
+    """What explains the hand formula by one step, at all joints."""
+    return [found for road, shapes in ways for found in _by_one(case, road, shapes, False)]
+
+
+def taken_at_one_joint(case: Case, ways: Ready) -> list[Found]:
+    """What explains the hand formula by one step at one joint, or by one in the links' matrices."""
+    found = [x for road, shapes in ways if road.singly for x in _by_one(case, road, shapes, True)]
+    if any(one.error <= TOLERANCES.formula_agrees for one in found):
+        return found
     through = _ready(case, through_links(case))
     least = min((road.work for road, _shapes in through), default=0)
     for road, shapes in through:
-        if road.work > max(_HEAVY, least):
-            continue
-        found = [*_tried(case, road, [(step,) for step in steps(road.of, shapes, road.n, False)])]
-        if any(one.error <= TOLERANCES.formula_agrees for one in found):
-            return found
-        near += found
-    return near
+        if road.work <= max(_HEAVY, least):
+            more = [*_by_one(case, road, shapes, False)]
+            if any(one.error <= TOLERANCES.formula_agrees for one in more):
+                return more
+            found += more
+    return found
+
+
+def _by_one(case: Case, road: Road, shapes: Shapes, singly: bool) -> Iterator[Found]:
+    tried = steps(road.of, shapes, road.n, singly)
+    yield from _tried(case, road, [(step,) for step in tried])
 
 
 def with_these(known: list[Found], case: Case) -> list[Found]:

@@ -253,7 +253,7 @@ def _answers(case: Case) -> Iterator[Confusion]:
             )
         for j, k in combinations(range(shape[1]), 2):
             yield _answer(
-                "columns swapped",
+                "rows swapped",
                 _("has columns {one} and {two} exchanged").format(one=j + 1, two=k + 1),
                 _columns_swapped(j, k),
                 1.5,
@@ -306,13 +306,13 @@ def _of_entries(case: Case) -> Iterator[Confusion]:
     entry = together(f"({i + 1}, {j + 1})" for i, j in places)
     for factor, kind in _FACTORS:
         told = _(_ENTRY_SAID[kind]).format(number=entry)
-        yield _answer(f"entry {kind}", told, _scaled_places(factor, places), 1.05, f"entry {entry}")
+        yield _answer(f"row {kind}", told, _scaled_places(factor, places), 1.05, f"entry {entry}")
     for i, j in np.ndindex(*engine.shape[1:]):
         size = float(np.max(np.abs(engine[:, i, j])))
         if (i, j) not in places and size > TOLERANCES.no_effect * float(np.max(np.abs(engine))):
             told = _("has entry {other} for entry {number}")
             told = told.format(other=f"({i + 1}, {j + 1})", number=entry)
-            yield _answer("another entry", told, _put(i, j, places), 1.15, f"entry {entry}")
+            yield _answer("another quantity", told, _put(i, j, places), 1.15, f"entry {entry}")
 
 
 def _scaled_places(factor: float, places: Any) -> Callable[[Array], Array]:

@@ -129,6 +129,7 @@ def _steps(
             *_not_turned(of, axes),
             *_short_loops(of, axes, n),
             *_other_axes(of),
+            *_other_links(of),
         )
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
@@ -400,7 +401,31 @@ def _other_axes(of: Program) -> Iterator[Step]:
     for axis in "xy":
         edits = [(node, ast.Subscript(ast.Name(axis + "_"), node.slice)) for node in places["z"]]
         does = _("takes the frame's axis {axis} for the joint's axis z").format(axis=axis)
-        yield Step("axis", does, tuple(edits), 1.12)
+        yield Step("another quantity", does, tuple(edits), 1.12)
+
+
+def _other_links(of: Program) -> Iterator[Step]:
+    """Rotation and place of the link before or behind, in every line where they stand together."""
+    places: dict[str, list[ast.Subscript]] = {}
+    for line in of.lines:
+        for node in ast.walk(_value(line)) if line.about else ():
+            if isinstance(node, ast.Subscript) and name_of(node) in ("R", "P"):
+                places.setdefault(ast.unparse(node.slice), []).append(node)
+    words = {
+        ("R", -1): N_("takes the rotation R of the link before in every line"),
+        ("R", 1): N_("takes the rotation R of the next link in every line"),
+        ("P R", -1): N_(
+            "takes the rotation R and the lever arm P of the link before in every line"
+        ),
+        ("P R", 1): N_("takes the rotation R and the lever arm P of the next link in every line"),
+    }
+    for found in places.values():
+        for (names, shift), does in words.items():
+            chosen = [node for node in found if name_of(node) in names.split()]
+            index = _shifted(found[0].slice, shift)
+            if index is not None and {name_of(node) for node in chosen} == set(names.split()):
+                edits = tuple((node, ast.Subscript(node.value, index)) for node in chosen)
+                yield Step("index", _(does), edits, 1.06)
 
 
 def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:

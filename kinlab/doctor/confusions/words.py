@@ -74,6 +74,7 @@ _SPELT = {
     "sa": "sin(alpha)",
     "tw": "V",
     "Rn": "R",
+    "home": "T_0",
     "Rt": "R",
     "pc": "p_C",
     "fw": "f",

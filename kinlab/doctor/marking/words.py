@@ -63,6 +63,8 @@ KINDS: dict[str, str] = {
     N_("inertia frame"): N_("an inertia tensor is taken in another frame"),
     N_("inertia left out"): N_("an inertia tensor is left out"),
     N_("inertia point"): N_("an inertia is about another point"),
+    N_("parallel-axis term"): N_("the parallel-axis term is left out"),
+    N_("loop"): N_("a loop is one link too short"),
     N_("gyroscopic term"): N_("the gyroscopic term is left out"),
     N_("rotor inertia"): N_("the rotors' inertia is left out"),
     N_("mass"): N_("a mass is counted otherwise"),

@@ -210,7 +210,7 @@ def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
             answers = np.asarray(found.case.again(far), dtype=float)
     except (KinlabError, ValueError, TypeError):
         return
-    if np.isfinite(answers).any():
+    if np.isfinite(answers).all(axis=-1).any():
         yield _("beyond reach it answers as well: ask first whether |cos| <= 1")
 
 
@@ -232,7 +232,7 @@ def _causes(found: Solutions, engine: Array) -> list[Cause]:
         return [silent]
     whole = list(_by_reading(found, engine)) or list(_by_offset(found, engine))
     whole = whole or list(_by_mixing(found))
-    if whole:
+    if whole and whole[0].cost <= 1.0:
         return whole
     searches: tuple[Callable[[Case], list[Found]], ...] = (
         lambda case: taken_otherwise(case, ready(case)),
@@ -241,8 +241,8 @@ def _causes(found: Solutions, engine: Array) -> list[Cause]:
     for search in searches:
         for limited in (False, True):
             causes = _by_derivation(found, search, limited)
-            if causes:
-                return causes
+            if causes or whole:
+                return [*causes, *whole]
     return []
 
 
@@ -267,10 +267,12 @@ _READINGS: tuple[tuple[str, str, Callable[[Array, Any], Array]], ...] = (
         N_("gives every angle from the base"),
         lambda q, slide: np.diff(q, axis=-1, prepend=0.0),
     ),
-    ("turning sense", N_("counts every joint the other way"), lambda q, slide: -q),
     ("joint order", N_("gives the joints from tool to base"), lambda q, slide: q[..., ::-1]),
+    ("turning sense", N_("counts every joint the other way"), lambda q, slide: -q),
 )
 """What undoes a reading of all joints."""
+_FAR_FETCHED = {"turning sense": 1.2}
+"""What such a reading costs, where one step of the closed form is likelier."""
 
 
 def _by_reading(found: Solutions, engine: Array) -> Iterator[Cause]:
@@ -281,7 +283,8 @@ def _by_reading(found: Solutions, engine: Array) -> Iterator[Cause]:
         other = _solutions(found.case, undone(found.q, slide), engine)
         if not other.wrong.any() and other.right.any(axis=1).all():
             told = _("the formula {does}").format(does=_(does))
-            yield Cause(told, (kind,), ("",), float(np.max(_worst(other))), 1.0)
+            cost = _FAR_FETCHED.get(kind, 1.0)
+            yield Cause(told, (kind,), ("",), float(np.max(_worst(other))), cost)
 
 
 _OFFSETS = (("pi", np.pi), ("pi/2", np.pi / 2), ("-pi/2", -np.pi / 2))

@@ -11,13 +11,12 @@ module            what it holds
                   a slide
 ``joints``        Joint positions as text: q1 = atan2(y, x) - ..., q2 = acos(...), each from the
                   target's numbers
-``line``          One formula as a line: its places, their values, and what a change does to the
-                  whole
+``line``          One formula as a line: the names in it, its places, their values, and what a
+                  change does to the whole
 ``meanings``      What a number in a formula may stand for: the robot's own, products and sums of
                   these, constants
 ``mend``          One slip of the pen, two or three: the changes that make a line right, and the
                   line then
-``names``         The names that may stand in a formula of an arm, and the angles made of them
 ``numbers_off``   Several numbers of a text that are off, beside others that are only rounded
 ``own_names``     A file's formulas in the robot's names: the writer's own names and numbers, what
                   they mean

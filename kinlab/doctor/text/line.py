@@ -1,4 +1,4 @@
-"""One formula as a line: its places, their values, and what a change does to the whole.
+"""One formula as a line: the names in it, its places, and what a change does to the whole.
 
 The parameters are random numbers, so that a length of 0.5 is no ½. What a change does to the value
 of its place is climbed up to the whole, all changes of a place at once.
@@ -12,14 +12,13 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations_with_replacement
+from itertools import combinations, combinations_with_replacement
 from typing import Any, TypeGuard
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.meanings import Meanings
-from kinlab.doctor.text.names import Names
 from kinlab.doctor.text.written import Written, operands
 from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, joint_spelling, respelled
@@ -27,6 +26,38 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 
 _NAMED = ("parameter", "missing factor", "extra factor", "power")
+
+
+@dataclass(frozen=True)
+class Names:
+    """The names that may stand in a formula.
+
+    Attributes:
+        parameters: l1, m1, g, ...
+        n: number of joints.
+        letters: which of q, qd, qdd the quantity depends on.
+    """
+
+    parameters: tuple[str, ...]
+    n: int
+    letters: tuple[str, ...]
+
+    @property
+    def angles(self) -> tuple[Node, ...]:
+        """Sums of neighbouring joint positions, differences of two, and doubled ones.
+
+        Joints that slide are among them: a wrong index may point at one.
+        """
+        joints = [tree.sym(f"q{i + 1}") for i in range(self.n)]
+        sums = [
+            tree.add(*joints[i:j])
+            for i in range(len(joints))
+            for j in range(i + 1, len(joints) + 1)
+        ]
+        differences = [tree.add(a, tree.mul(tree.num(-1), b)) for a, b in combinations(joints, 2)]
+        gaps = [tree.add(a, b) for a, b in combinations(joints, 2)]
+        twice = [tree.mul(tree.num(2), a) for a in joints]
+        return tuple(dict.fromkeys([*sums, *gaps, *differences, *twice]))
 
 
 @dataclass(frozen=True, eq=False)
