@@ -105,12 +105,6 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
     )
 
 
-def right_at(case: Case, hand: Any, engine: Array) -> bool:
-    """Whether every answer is right, and there is one at every target."""
-    found = _solutions(case, as_solutions(case.robot, hand), engine)
-    return not found.wrong.any() and bool(found.right.any(axis=1).all())
-
-
 def _solutions(case: Case, q: Array, engine: Array) -> Solutions:
     """Rows without any number at any target are no solutions at all."""
     kept = np.isfinite(q).all(axis=2).any(axis=0)
