@@ -13,11 +13,10 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
 from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.solutions.verdict import right_at
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
-from kinlab.doctor.text.joints import joint_values, joints_in_full
+from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.meanings import stands_for
 from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
 from kinlab.doctor.text.written import Written
@@ -117,32 +116,9 @@ def _by_quantity(
     for plain, formulas in wanted.items():
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles))
-        if answers[0].quantity.read is not None and not all(one.agrees for one in done[plain]):
-            full = _rounded_joints(plain, answers, titles, file.path)
-            before = [one.error_before for one in done[plain]]
-            done[plain] = [replace(one, error_before=before[0]) for one in full] or done[plain]
         if plain == "statics" and not all(one.agrees for one in done[plain]):
             done[plain] = _in_tool_axes(formulas, titles, robot, file, samples, seed) or done[plain]
     return done
-
-
-def _rounded_joints(
-    plain: str, answers: Answers, titles: dict[str, str], path: str
-) -> list[Diagnosis]:
-    """The diagnoses where joints are right once the rounded numbers in their texts are in full."""
-    case, engine, _joints, formulas, _before = answers
-    labels = [f"{plain}[{k}]" for k in range(case.robot.n)]
-    few = case.few(_FEWEST)
-    for texts, notes in joints_in_full(case, formulas):
-        first = joint_values(few, texts, titles, path)
-        hand = np.stack([first[label] for label in labels], axis=-1)
-        if not right_at(few, hand, engine[:_FEWEST]):
-            continue
-        full = joint_values(case, texts, titles, path)
-        found = list(_of_quantity(plain, (case, engine, labels, texts, full), titles))
-        if all(one.agrees and not one.form for one in found):
-            return [replace(x, form="rounded", remarks=(*notes, *x.remarks)) for x in found]
-    return []
 
 
 def _in_tool_axes(

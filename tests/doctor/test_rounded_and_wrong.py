@@ -260,29 +260,3 @@ def test_one_slip_beside_a_product_of_the_robots_numbers_rounded(robot, entry, t
     assert found.grade == "wrong"
     assert len(first.kinds) == 1
     assert first.shown == {entry: right}
-
-
-@pytest.mark.parametrize(
-    ("robot", "cosine", "angle", "notes"),
-    [
-        ("planar2r", "(l1^2+l2^2-x^2-y^2)/(2*l1*l2)", "3.1416-acos", ["3.1416 stands for pi"]),
-        (
-            "scara",
-            "(x^2+y^2-0.181)/0.179",
-            "acos",
-            ["0.181 stands for 0.18125", "0.179 stands for 0.17875"],
-        ),
-    ],
-)
-def test_joint_positions_with_rounded_numbers(robot, cosine, angle, notes):
-    l1, l2 = ("l1", "l2") if robot == "planar2r" else ("0.325", "0.275")
-    rest = {} if robot == "planar2r" else {"q3": "0.387-z", "q4": "q1+q2-phi"}
-    first = f"atan2(y,x)-atan2({l2}*sin(q2),{l1}+{l2}*cos(q2))"
-    (right,) = judged(robot, q1=first, q2=f"{angle}({cosine})", **rest)
-    assert right.agrees and right.form == "rounded"
-    assert list(right.remarks[: len(notes)]) == notes
-    assert right.error_before > 1e-7
-    (wrong,) = judged(robot, q1=first.replace(")-", ")+"), q2=f"{angle}({cosine})", **rest)
-    assert not wrong.agrees
-    (off,) = judged(robot, q1=first, q2=f"{angle}({cosine})*1.01", **rest)
-    assert not off.agrees

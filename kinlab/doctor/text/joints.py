@@ -7,17 +7,13 @@ One may stand on another (``s2`` is the sine of the ``q2`` that another line giv
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from dataclasses import replace
-from itertools import islice, product
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.inverse import TASKS
 from kinlab.doctor.changes import Case
-from kinlab.doctor.text.meanings import Meanings, stands_for
-from kinlab.doctor.text.written import Literal, Written
+from kinlab.doctor.text.written import Written
 from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
 from kinlab.formulas.record import SIDES
@@ -26,10 +22,6 @@ from kinlab.symbolic.vocabulary import is_planar, vocabulary
 
 _JOINT = re.compile(r"(?:q|theta|th|d)_?([1-9])")
 _POSE = (*(f"r{i}{j}" for i in "123" for j in "123"), "px", "py", "pz")
-
-_NUMBER = re.compile(r"(?<![\w.])\d*\.?\d+(?:[eE][+-]?\d+)?(?![\w.])")
-_TRIED = 400
-"""Sets of numbers tried for the joints' rounded ones."""
 
 
 def joint_claimed(entry: str, table: DHTable | None) -> str:
@@ -85,16 +77,7 @@ def _row(
     sides: dict[str, float],
     path: str,
 ) -> dict[str, Array]:
-    count = len(next(iter(case.arguments.values())))
-    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
-    at = {word: np.full(count, value) for word, value in (words | sides).items()}
-    for argument, stack in case.arguments.items():
-        if argument != "pose":
-            at[argument] = stack
-            continue
-        for i, j in np.ndindex(3, 3):
-            at[f"r{i + 1}{j + 1}"] = stack[:, i, j]
-        at |= {f"p{axis}": stack[:, i, 3] for i, axis in enumerate("xyz")}
+    at = named_values(case, sides)
     found: dict[str, Array] = {}
     while len(found) < len(labels):
         ready = [
@@ -115,39 +98,16 @@ def _row(
     return found
 
 
-def joints_in_full(
-    case: Case, formulas: dict[str, Written]
-) -> Iterator[tuple[dict[str, Written], list[str]]]:
-    """The joints' texts with their rounded numbers in full, in each way, and what they stand for.
-
-    Lengths, products and sums of these, and constants; equal digits stand for the same.
-    """
+def named_values(case: Case, sides: dict[str, float]) -> dict[str, Array]:
+    """What a joint's text may stand on but the other joints: (N,) by name."""
+    count = len(next(iter(case.arguments.values())))
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
-    meanings = Meanings({name: value for name, value in words.items() if name[0] not in "mIgc"})
-    rounded: dict[str, Literal] = {}
-    for text in formulas.values():
-        for one in text.literals:
-            if one.half and not one.whole and meanings.parameter(one.value) is None:
-                rounded.setdefault(one.text, one)
-    near = [[one.value, *meanings.around(one)] for one in rounded.values()]
-    choices = [
-        [x for x in values if x == one.value or meanings.credible(one, x)]
-        for one, values in zip(rounded.values(), near, strict=True)
-    ]
-    for way in islice(product(*choices), 1, _TRIED):
-        moved = {
-            one.text: x for one, x in zip(rounded.values(), way, strict=True) if x != one.value
-        }
-        texts = {label: _in_full(text, moved) for label, text in formulas.items()}
-        yield texts, [stands_for(digits, meanings.named(x)) for digits, x in moved.items()]
-
-
-def _in_full(text: Written, moved: dict[str, float]) -> Written:
-    def full(line: str) -> str:
-        return _NUMBER.sub(lambda m: repr(moved[m[0]]) if m[0] in moved else m[0], line)
-
-    return replace(
-        text,
-        text=full(text.text),
-        symbols={name: full(meaning) for name, meaning in text.symbols.items()},
-    )
+    at = {word: np.full(count, value) for word, value in (words | sides).items()}
+    for argument, stack in case.arguments.items():
+        if argument != "pose":
+            at[argument] = stack
+            continue
+        for i, j in np.ndindex(3, 3):
+            at[f"r{i + 1}{j + 1}"] = stack[:, i, j]
+        at |= {f"p{axis}": stack[:, i, 3] for i, axis in enumerate("xyz")}
+    return at
