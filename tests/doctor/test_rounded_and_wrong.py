@@ -260,3 +260,9 @@ def test_one_slip_beside_a_product_of_the_robots_numbers_rounded(robot, entry, t
     assert found.grade == "wrong"
     assert len(first.kinds) == 1
     assert first.shown == {entry: right}
+
+
+def test_a_number_nearly_a_coefficient_beside_a_slip():
+    (found,) = judged(g1="17*c1 - 5.9*c12")
+    assert found.causes[0].shown == {"g1": "17.1675*c1 + 5.9*c12"}
+    assert set(found.causes[0].kinds) == {"coefficient", "sign"}
