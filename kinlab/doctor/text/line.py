@@ -132,6 +132,16 @@ class Line:
         self.root = self._place(ast.parse(self.source, mode="eval").body, None, 0)
         self.scale = float(np.max(np.abs(self.target))) or float(np.max(np.abs(self.root.value)))
 
+    @property
+    def wrong_by(self) -> float:
+        """The largest difference from the values it should have."""
+        return float(np.max(np.abs(self.target - self.root.value)))
+
+    @property
+    def only_numbers(self) -> bool:
+        """Whether none of the robot's numbers stands in it by its name."""
+        return tree.names(self.text.node).isdisjoint(self.names.parameters)
+
     @cached_property
     def terms(self) -> list[Node]:
         """The derived formula's terms, which may be missing."""
