@@ -362,7 +362,7 @@ def test_only_the_line_that_is_wrong_is_accused(first: str, second: str, said: s
 
 
 def test_numbers_alone_give_no_cause_by_their_values() -> None:
-    found = judged("planar2r", {}, q1=FIRST, q2="2*acos((x^2 + y^2 - 0.4)/0.4)")
+    found = judged("planar2r", {}, q1=FIRST, q2="acos((x^2 + y^2 - 0.16)/0.5)")
     assert (found.agrees, found.causes) == (False, ())
 
 
