@@ -131,11 +131,104 @@ CODE = {
 }
 
 
+LINKWISE = """
+def parts(q):
+    T = frames(q)
+    return ([t[:3, 2] for t in T[1:]], [t[:3, 3] for t in T[1:]],
+            [(T[i+1] @ np.r_[com[i], 1])[:3] for i in range(n)], [t[:3, :3] for t in T[1:]])
+
+def body(k, q):
+    z, o, p, R = parts(q)
+    J = np.zeros((6, n))
+    for j in range(k + 1):
+        J[:, j] = np.r_[np.cross(z[j], p[k] - o[j]), z[j]]
+    return J
+
+def mass_matrix(q):
+    R, M = parts(q)[3], np.zeros((n, n))
+    for k in range(n):
+        J = body(k, q)
+        M += m[k]*J[:3].T @ J[:3] + J[3:].T @ R[k] @ I[k] @ R[k].T @ J[3:]
+    return M
+
+def momentum(q, qd):
+    z, o, p, R = parts(q)
+    out = np.zeros(n)
+    for j in range(n):
+        for k in range(j, n):
+            v, w = np.split(body(k, q) @ qd, 2)
+            out[j] += m[k]*np.cross(z[j], p[k] - o[j]) @ v + z[j] @ R[k] @ I[k] @ R[k].T @ w
+    return out
+
+def link_kinetic_energies(q, qd):
+    R, out = parts(q)[3], np.zeros(n)
+    for k in range(n):
+        v, w = np.split(body(k, q) @ qd, 2)
+        out[k] = 0.5*m[k]*v @ v + 0.5*w @ R[k] @ I[k] @ R[k].T @ w
+    return out
+
+def composite_mass(q):
+    z, o, p, R = parts(q)
+    S = [np.r_[np.cross(o[i], z[i]), z[i]] for i in range(n)]
+    M, C = np.zeros((n, n)), np.zeros((6, 6))
+    for k in range(n - 1, -1, -1):
+        a = R[k] @ I[k] @ R[k].T + m[k]*(p[k] @ p[k]*np.eye(3) - np.outer(p[k], p[k]))
+        C += np.block([[m[k]*np.eye(3), -m[k]*skew(p[k])], [m[k]*skew(p[k]), a]])
+        for j in range(k + 1):
+            M[j, k] = M[k, j] = S[j] @ C @ S[k]
+    return M
+
+def static_wrenches(q, w):
+    T, out = frames(q), []
+    for i in range(1, n + 1):
+        R, r = T[i][:3, :3], (T[n] @ tool)[:3, 3] - T[i][:3, 3]
+        out.append(np.r_[R.T @ w[:3], R.T @ (w[3:] + np.cross(r, w[:3]))])
+    return np.array(out)
+
+def angular_jacobian_last(q):
+    J, R = np.zeros((3, n)), np.eye(3)
+    for i in range(n - 1, -1, -1):
+        J[:, i] = R.T @ [0, 0, 1]
+        R = link(i, q)[:3, :3] @ R
+    return J
+"""
+LINK_SLIPS = [
+    ("mass_matrix", "mass_matrix", "p[k] - o[j]", "p[k] - o[0]", "adds up all links"),
+    ("mass_matrix", "mass_matrix", "range(k + 1)", "range(n)", "every joint a column"),
+    ("mass_matrix", "mass_matrix", "J[:3].T", "(J[:3]*[[1], [0], [1]]).T", "the y components"),
+    ("mass_matrix", "composite_mass", "- np.outer", "+ np.outer", "parallel-axis term"),
+    ("mass_matrix", "composite_mass", " - np.outer(p[k], p[k])", "", "parallel-axis term"),
+    ("momentum", "momentum", "range(j, n)", "[j]", "carries nothing inward"),
+    ("link_kinetic_energies", "link_kinetic_energies", "out[k] = 0", "out[k] = out[k-1] + 0",
+     "each entry has those before"),
+    ("static_wrenches", "static_wrenches", "R.T @", "1.0 *", "answers in base axes"),
+    ("angular_jacobian_last", "angular_jacobian_last", "R.T @ [", "(link(i, q)[:3, :3] @ R).T @ [",
+     "of the frame before"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("quantity", "name", "old", "new", "words"), LINK_SLIPS)
+def test_a_slip_over_the_links_is_named(quantity, name, old, new, words) -> None:
+    assert old in LINKWISE
+    right, wrong = (
+        function_of(quantity, f"{_FRAMES}{code}\nf = {name}")
+        for code in (LINKWISE, LINKWISE.replace(old, new))
+    )
+    assert right.agrees
+    assert not wrong.agrees
+    assert any(words in cause.sentence for cause in wrong.causes), wrong
+    assert wrong.causes[0].error_after <= 1e-9
+
+
 def function(quantity, *changes):
     code = _FRAMES + CODE[quantity]
     for old, new in changes:
         assert old in code
         code = code.replace(old, new)
+    return function_of(quantity, code)
+
+
+def function_of(quantity, code):
     names = {"np": np, "n": 3, "LINKS": LINKS, "m": [row.mass for row in LINKS],
              "com": [np.array(row.com) for row in LINKS],
              "I": [np.array(row.inertia) for row in LINKS],

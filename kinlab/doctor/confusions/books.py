@@ -11,6 +11,9 @@ a line says what it is; a line without one is plumbing, which nobody gets wrong.
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+
 from kinlab.host.language import N_
 
 VELOCITIES = """
@@ -222,6 +225,108 @@ def energies(standard: bool, in_base: bool) -> str:
     moved = _MOVED if standard else VELOCITIES.partition("    asked[i]")[0]
     text = "E = number" + moved + _ENERGY
     return _based(text) if in_base else text
+
+
+_OWN_MOMENTUM = """
+    # the velocity of the centre of mass
+    vc[i] = v[i] + cross(w[i], c[i])
+    # the link's own momentum
+    F[i] = m[i]*vc[i]
+    # the link's own angular momentum
+    N[i] = I[i] @ w[i]
+"""
+_MOMENTA = {
+    "the force f of the link": "the momentum of the link and those behind",
+    "the moment n of the link": "the angular momentum of the link and those behind",
+    "the joint torque": "the momentum",
+    "the moment about the base's origin": "the angular momentum about the base's origin",
+    "qdd": "qd",
+    r"F\b(?=\[)": "hl",
+    r"N\b(?=\[)": "ha",
+    r"f\b(?=\[)": "bl",
+    r"nn\b(?=\[)": "ba",
+    r"no\b(?=\[)": "hb",
+}
+"""What a recursion of forces is called where it is one of momenta."""
+_ABOUT_ORIGIN = """
+    # the moment about the base's origin
+    no[i] = N[i] + cross(o_[i] + cb[i], F[i])
+f[n+1] = zero
+nn[n+1] = zero
+for i in inward:
+    # the force f of the link
+    f[i] = f[i+1] + F[i]
+    # the moment n of the link
+    nn[i] = nn[i+1] + no[i]
+    # the joint torque
+    tau[i] = ((nn[i] - cross(o[i], f[i])) @ z[i] if hinge[i] else f[i] @ z[i]) + Ia[i]*qdd[i]
+"""
+
+
+def about_origin(standard: bool) -> str:
+    """Newton-Euler in base axes with all moments about the base's origin."""
+    text = (SICILIANO if standard else CRAIG).partition("f[n+1]")[0]
+    return _based(text) + _ABOUT_ORIGIN
+
+
+def momenta(standard: bool) -> Iterator[tuple[str, bool]]:
+    """The momentum by the links' own: each derivation, and whether it is in base axes.
+
+    In link axes, in the base's, about the base's origin, and with spatial vectors.
+    """
+    moved = _MOVED if standard else VELOCITIES.partition("    asked[i]")[0]
+    rest = "".join((SICILIANO if standard else CRAIG).partition("f[n+1]")[1:])
+    for in_base, text in (
+        (False, moved + _OWN_MOMENTUM + rest),
+        (True, _based(moved + _OWN_MOMENTUM + rest)),
+        (True, _based(moved + _OWN_MOMENTUM) + _ABOUT_ORIGIN),
+    ):
+        for old, new in _MOMENTA.items():
+            text = re.sub(rf"\b{old}", new, text)
+        yield text, in_base
+    rest = _SPATIAL_FORCES.partition("    # the acceleration")[0]
+    head = _spatial(standard).replace("dtw[0] = twist(-g, zero)", "dtw[0] = none")
+    yield head + rest + _SPATIAL_MOMENTA, False
+
+
+_SPATIAL_MOMENTA = """
+    # the link's own momentum
+    hl[i] = Is[i] @ tw[i]
+bl[n+1] = none
+X[n+1] = blocks(one, nil, nil, one)
+for i in inward:
+    # the momentum of the link and those behind
+    bl[i] = hl[i] + X[i+1].T @ bl[i+1]
+    # the momentum
+    tau[i] = bl[i] @ S[i] + Ia[i]*qd[i]
+"""
+_SPATIAL_ENERGY = """
+    # the kinetic energy
+    each[i] = 0.5*tw[i] @ (Is[i] @ tw[i])
+    # the sum over the links
+    E = E + each[i] + 0.5*Ia[i]*qd[i]**2
+"""
+
+
+def spatial_energies(standard: bool) -> str:
+    """The kinetic energy by the links' spatial inertias."""
+    rest = _SPATIAL_FORCES.partition("    # the acceleration")[0]
+    return "E = number" + _spatial(standard) + rest + _SPATIAL_ENERGY
+
+
+def lagrangian(standard: bool) -> str:
+    """L = T - V, by the links' energies, in base axes."""
+    return (
+        energies(standard, True)
+        + """
+V = number
+for i in outward:
+    # the potential energy
+    V = V - m[i]*g @ (o_[i] + cb[i])
+# the Lagrangian L = T - V
+E = E - V
+"""
+    )
 
 
 COMPOSITE_IN_BASE = """
@@ -693,6 +798,23 @@ ITERATIVE = {
 }
 """Steps of iterative inverse kinematics, by quantity."""
 
+OF_COLUMNS = {
+    **{name: ("planar", f"# the step\nE = {text}") for name, text in ITERATIVE.items()},
+    "least_rates": ("all_of", f"# the step\nE = {ITERATIVE['least_rates']}"),
+    "tip_speed_squared": ("linear", "# the velocity of the tool's point\ndp = J @ v\n"
+                          "# the square of the speed\nE = dp @ dp"),
+    "isotropy_defect": ("position", ISOTROPY),
+    "isotropy_conditions": ("position", CONDITIONS),
+}  # fmt: skip
+"""By quantity: the rows of the Jacobian, and what is made of them."""
+
+
+def of_columns(name: str) -> str:
+    """What is made of a Jacobian, with its columns."""
+    rows, rest = OF_COLUMNS[name]
+    return f"{COLUMNS}\nJ = {rows}(Jb)\n{rest}\n"
+
+
 FIVE_BAR = """
 for i in outward:
     # the coefficient A
@@ -882,6 +1004,13 @@ LINES = (
     N_("the composite body's inertia"),
     N_("the velocity of the centre of mass"),
     N_("the sum over the links"),
+    N_("the link's own momentum"),
+    N_("the link's own angular momentum"),
+    N_("the momentum of the link and those behind"),
+    N_("the angular momentum of the link and those behind"),
+    N_("the moment about the base's origin"),
+    N_("the angular momentum about the base's origin"),
+    N_("the square of the speed"),
     N_("the velocity of the joint's origin"),
     N_("the velocity of the tool's point"),
     N_("the rate of the joint's axis"),

@@ -172,7 +172,9 @@ def of_recursion(
         "z": z,
         "R": turns,
         "P": places,
-        "R_": [f[:, :3, :3] for f in frames[1:]],
+        "R_": {k: f[:, :3, :3] for k, f in enumerate(frames)},
+        "o_": {k: f[:, :3, 3] for k, f in enumerate(frames)},
+        "o": {k: f[:, :3, 3] for k, f in enumerate(frames[:-1] if usual else frames[1:], 1)},
     }
 
 

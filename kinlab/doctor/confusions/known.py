@@ -237,6 +237,11 @@ def _answers(case: Case) -> Iterator[Confusion]:
     yield _answer("degrees", _("answers in degrees"), np.rad2deg, 1.4)
     if not shape or shape == (1,):
         return
+    if name.startswith("link_") or "_wrenches" in name:
+        yield _answer("sum", _("adds up over the links: each entry has those before"), _absolute)
+        yield _answer("sum", _("adds up over the links: each entry has those behind"), _behind)
+        yield _answer("sum", _("is the share of each link alone, not the sum"), _relative)
+        yield _answer("sum", _("is the share of each link alone, not the sum"), _relative_behind)
     yield from _of_entries(case)
     rows = len(shape) == 2
     yield _answer("joint order", _("answers from tool to base"), lambda x: x[:, ::-1], 1.2)
@@ -400,6 +405,14 @@ def _backwards(x: Array) -> Array:
 def _relative(x: Array) -> Array:
     steps: Array = np.diff(x, axis=1, prepend=0.0)
     return steps
+
+
+def _relative_behind(x: Array) -> Array:
+    return -np.diff(x, axis=1, append=0.0)
+
+
+def _behind(x: Array) -> Array:
+    return _absolute(x[:, ::-1])[:, ::-1]
 
 
 def _absolute(x: Array) -> Array:

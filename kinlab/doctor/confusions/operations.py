@@ -32,6 +32,8 @@ ROTATIONS = ("R", "R_", "Rn", "Rt")
 def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) -> Iterator[Step]:
     left, right = node.left, node.right
     one, two = (len(axes.get(id(x), ())) for x in (left, right))
+    yield from _parallel_axis(node, step)
+    yield from _squares(node, axes, step)
     if isinstance(node.op, ast.MatMult):
         if one == 2 and isinstance(left, ast.Attribute | ast.Name | ast.Subscript):
             if two == 1 and turns(left):
@@ -68,7 +70,8 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
                     )
                     yield step("missing factor", does, 1.19, (node, rest))
             same = isinstance(right, ast.Attribute) and spelt(right.value) == spelt(left)
-            if not turns(left) and (same or not isinstance(right, ast.Attribute)):
+            both = turns(left) and turns(right)
+            if (both or not turns(left)) and (same or not isinstance(right, ast.Attribute)):
                 turned = ast.BinOp(right, ast.MatMult(), left)
                 does = _("has {new} for {old} (the product's order)").format(
                     new=spelt(turned), old=spelt(node)
@@ -110,6 +113,68 @@ def at_operator(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make
                 new = ast.BinOp(left, ast.Pow(), ast.Constant(other))
                 does = _("has {new} for {old} (power)").format(new=spelt(new), old=spelt(node))
                 yield step("power", does, 1.1, (node, new))
+
+
+def _parallel_axis(node: ast.BinOp, step: Make) -> Iterator[Step]:
+    """Of -m skew(c) skew(c) = m (c.c 1 - c c^T): one of its terms left out, or its sign."""
+    inner, last = node.left, node.right
+    if not (
+        isinstance(node.op, ast.MatMult)
+        and isinstance(last, ast.Call)
+        and name_of(last.func) == "skew"
+        and isinstance(inner, ast.BinOp)
+        and spelt(inner.right) == spelt(last)
+    ):
+        return
+    c = last.args[0]
+    outer = ast.Call(ast.Name("outer"), [c, c], [])
+    square = ast.BinOp(ast.BinOp(c, ast.MatMult(), c), ast.Mult(), ast.Name("one"))
+    name = spelt(c)
+    whole = f"{spelt(inner.left)}*({name}.{name} 1 - {name} {name}^T)"
+    plus, minus_ = f"+ {name} {name}^T", f"- {name} {name}^T"
+    for kind, does, new in (
+        (
+            "sign",
+            _("has {new} for {old} in the parallel-axis term {term}").format(
+                new=plus, old=minus_, term=whole
+            ),
+            ast.UnaryOp(ast.USub(), ast.BinOp(square, ast.Add(), outer)),
+        ),
+        (
+            "missing term",
+            _("leaves {what} out of the parallel-axis term {term}").format(what=minus_, term=whole),
+            ast.UnaryOp(ast.USub(), square),
+        ),
+        (
+            "missing term",
+            _("leaves {what} out of the parallel-axis term {term}").format(
+                what=f"{name}.{name} 1", term=whole
+            ),
+            outer,
+        ),
+    ):
+        yield step(kind, does, 1.05, (node, ast.BinOp(inner.left, ast.Mult(), new)))
+
+
+def _squares(node: ast.BinOp, axes: Mapping[int, tuple[int, ...]], step: Make) -> Iterator[Step]:
+    """Of the square of a vector one component left out; ½ k x² with neither square nor half."""
+    left, right = node.left, node.right
+    if isinstance(node.op, ast.MatMult):
+        first = left.right if isinstance(left, ast.BinOp) else left
+        plain = first.value if isinstance(first, ast.Attribute) else first
+        if spelt(plain) == spelt(right) and axes.get(id(right), ())[:1] == (3,):
+            for axis in "xyz":
+                does = _("leaves the {axis} components out of {term}").format(
+                    axis=axis, term=spelt(node)
+                )
+                new = ast.Call(ast.Name("without_" + axis), [again(right)], [])
+                yield step("missing term", does, 1.1, (right, new))
+        return
+    halved = isinstance(left, ast.BinOp) and isinstance(left.left, ast.Constant)
+    if halved and isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
+        less = ast.BinOp(left.right, ast.Mult(), right.left)  # type: ignore[attr-defined]
+        does = _("has {new} for {old} (power)").format(new=spelt(less), old=spelt(node))
+        yield step("power", does, 1.1, (node, less))
 
 
 def _summed_otherwise(node: ast.BinOp, step: Make) -> Iterator[Step]:

@@ -29,7 +29,7 @@ from kinlab.doctor.confusions.givens import (
     of_table,
     standard,
 )
-from kinlab.doctor.confusions.walk import Program, Step, Walk, program
+from kinlab.doctor.confusions.walk import Program, Step, Walk, program, regular
 from kinlab.model.robot import Robot
 
 _MOST_JOINTS = 7
@@ -101,6 +101,8 @@ def roads(case: Case) -> Iterator[Road]:
                 yield _with_load(case, books.toolward(usual), False, "E", False)
     if name in books.ITERATIVE:
         yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
+    if name in books.OF_COLUMNS:
+        yield _of_arm(case, books.of_columns(name), "E", pairs=False)
     if name == "action_variation_free_ends":
         yield _of_step(case, books.BOUNDARY, of_path)
     if name == "isotropy_defect":
@@ -116,15 +118,15 @@ def roads(case: Case) -> Iterator[Road]:
     ways = [*_recursions(case), *_lagrange(case)]
     # torques by the recursion first; their parts as people derive them alone
     yield from ways if name.startswith("inverse") else reversed(ways)
+    # of the links in their joints' frames, as the engine has them, whatever the table's are
+    placed = replace(case, robot=replace(robot, table=None)) if usual else case
     if name in _OUTWARD:
-        # of the links in their joints' frames, as the engine has them, whatever the table's are
-        placed = replace(case, robot=replace(robot, table=None)) if usual else case
         yield _recursion(placed, _OUTWARD[name], False, "asked")
     if name in ("static_wrenches", "joint_wrenches"):
         still = name == "static_wrenches"
-        text = books.passed_on(usual, False) if still else books.newton_euler(usual, False)
+        text = books.passed_on(False, False) if still else books.newton_euler(False, False)
         yield _with_load(
-            case, books.held(False, False) + books.loaded(text) + books.THROUGH, False, "asked"
+            placed, books.held(False, False) + books.loaded(text) + books.THROUGH, False, "asked"
         )
     if name == "inverse_dynamics_loaded":
         for in_base in (False, True):
@@ -132,7 +134,7 @@ def roads(case: Case) -> Iterator[Road]:
             yield _with_load(case, text, in_base, "tau")
     if name in _WITHIN:
         asked, rest = _WITHIN[name]
-        yield _recursion(case, books.newton_euler(usual, False) + rest, False, asked)
+        yield _recursion(placed, books.newton_euler(False, False) + rest, False, asked)
 
 
 def _recursions(case: Case) -> Iterator[Road]:
@@ -151,6 +153,15 @@ def _recursions(case: Case) -> Iterator[Road]:
         for in_base in (False, True):
             text = books.energies(usual, in_base)
             yield _recursion(case, text, in_base, books.ENERGIES[name])
+        text = books.spatial_energies(usual)
+        yield _recursion(case, text, False, books.ENERGIES[name], False)
+    if name == "lagrangian":
+        yield _recursion(case, books.lagrangian(usual), True, "E", False)
+    if name == "momentum":
+        for text, in_base in books.momenta(usual):
+            yield _recursion(case, text, in_base, pairs=False)
+    if name in _ABOUT_ORIGIN:
+        yield _recursion(case, books.about_origin(usual), True, pairs=False)
 
 
 def _lagrange(case: Case) -> Iterator[Road]:
@@ -168,7 +179,7 @@ _OUTWARD = {
     "angular_jacobian_last": books.ANGULAR,
 }
 _WITHIN = {
-    "com_accelerations": ("dvc", ""),
+    "com_accelerations": ("asked", "for i in outward:\n    asked[i] = dvc[i]\n"),
     "inertial_wrenches": ("asked", books.WRENCHES),
 }
 _FRAMES = {
@@ -187,7 +198,13 @@ _RECURSIVE = (
     "inverse_without_gravity",
     "forward_dynamics",
 )
-_HEAVY = ("inverse_dynamics", "gravity_torques", "forward_dynamics")
+_HEAVY = ("inverse_dynamics", "gravity_torques", "forward_dynamics", "lagrangian")
+_ABOUT_ORIGIN = (
+    "inverse_dynamics",
+    "gravity_torques",
+    "coriolis_torques",
+    "inverse_without_gravity",
+)
 
 
 def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True, walks: int = 1) -> Road:
@@ -225,7 +242,15 @@ def _of_arm(case: Case, text: str, asked: str, rows: Any = None, pairs: bool = T
     of, robot = program(text), case.robot
 
     def ask(ways: Ways, x: Stacks, where: Where) -> tuple[Array, Walk]:
-        walk = Walk(of, lambda q: of_arm(robot, q, x, where(q)), x["q"], ways, robot.n)
+        step = of_step(robot, x["q"], x) if {"target", "twist"} & {*x} else {}
+        given: dict[str, Any] = {
+            name: step[name] for name in ("target", "twist", "x") if name in step
+        }
+
+        def give(q: Array) -> dict[str, Any]:
+            return {**of_arm(robot, q, x, where(q)), **given}
+
+        walk = Walk(of, give, x["q"], ways, robot.n)
         values = walk.values(asked)
         return (values if rows is None else values[:, :, rows]), walk
 
@@ -303,13 +328,22 @@ def through_links(case: Case) -> Iterator[Road]:
     robot = case.robot
     if getattr(robot, "table", None) is None:
         return
-    of = program(books.product_of_links(standard(robot)))
-    for road in roads(case):
-        if road.asked is not None:
+    product, turns = (
+        program(text) for text in (books.product_of_links(standard(robot)), books.EXPONENTIALS)
+    )
+    asked = [road for road in roads(case) if road.asked is not None]
+    lightest = sorted(asked, key=lambda road: road.work)[:1]
+    for of, some in ((product, asked), (turns, lightest)):
+        for road in some:
+            assert road.asked is not None
             yield Road(of, _through(of, robot, road.asked), robot.n, road.work, False)
 
 
 def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
+    rest = np.array([f[0] for f in as_placed(robot, np.zeros((1, robot.n)))[1]])
+    base = np.asarray(robot.table.base)  # type: ignore[union-attr]
+    exponential = not any("A[" in ast.unparse(line.statement) for line in of.lines)
+
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         count, n = len(ways), robot.n
         walks = []
@@ -319,10 +353,16 @@ def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
             own = q.reshape(count, -1, n)[0]
             walk = Walk(of, lambda at: of_table(robot, at), own, ways, n)
             walks.append(walk)
-            links, frames = (
-                [*np.moveaxis(walk.values(name).reshape(-1, n, 4, 4), 1, 0)] for name in ("A", "T")
-            )
-            base = np.asarray(robot.table.base)  # type: ignore[union-attr]
+            made = walk.values("T").reshape(-1, n, 4, 4)
+            if exponential:
+                # T moves what is at rest; links without an inverse make no sense
+                made = made @ np.linalg.inv(base) @ rest[1:]
+                frames = [*np.moveaxis(made, 1, 0)]
+                before = regular(np.array([np.broadcast_to(base, frames[0].shape), *frames[:-1]]))
+                links = [*(np.linalg.inv(before) @ np.array(frames))]
+            else:
+                frames = [*np.moveaxis(made, 1, 0)]
+                links = [*np.moveaxis(walk.stacked("A").reshape(-1, n, 4, 4), 1, 0)]
             return links, [np.broadcast_to(base, frames[0].shape), *frames]
 
         tiled = {k: np.tile(y, (count, *(1,) * (y.ndim - 1))) for k, y in x.items()}

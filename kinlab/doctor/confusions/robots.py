@@ -140,6 +140,12 @@ def gravity_readings(robot: Robot) -> Iterator[Confusion]:
                 _gravity(turned),
                 cost=1.1,
             )
+    base = np.eye(3) if robot.table is None else np.asarray(robot.table.base)[:3, :3]
+    for name, direction in _DIRECTIONS.items():
+        turned = size * base @ np.array(direction, dtype=float)
+        if np.max(np.abs(turned)) < size and not np.allclose(abs(turned @ gravity), size**2):
+            said = _("has gravity along {axis} of the base frame").format(axis=name)
+            yield _model("gravity axis", said, _gravity(turned), cost=1.12)
 
 
 def inertia_readings(robot: Robot) -> Iterator[Confusion]:

@@ -130,6 +130,8 @@ def _steps(
             *_short_loops(of, axes, n),
             *_other_axes(of),
             *_other_links(of),
+            *_in_base(of),
+            *_after_product(of),
         )
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
@@ -311,6 +313,19 @@ def _slides(of: Program) -> Iterator[Step]:
     if len(bounded) > 1:
         does = _("leaves the link's own joint out (j < i for j <= i)")
         yield Step("own joint", does, tuple((x, without_own(x)) for x in bounded), 1.02)
+    inner = [x for x in bounded if ast.unparse(x.test) == "j <= k"]
+    if len(inner) > 1:
+        does = _("gives every joint a column, also those behind the link")
+        yield Step("sum", does, tuple((x, x.body) for x in inner), 1.05)
+        for does, one, op, two in (
+            (_("has a column for the link's own joint only, none for the joints before"),
+             "j", ast.Eq(), "k"),
+            (_("has columns for the joints from the link on, none for those before"),
+             "k", ast.LtE(), "j"),
+        ):  # fmt: skip
+            test = ast.Compare(ast.Name(one), [op], [ast.Name(two)])
+            edits = tuple((x, ast.IfExp(test, x.body, x.orelse)) for x in inner)
+            yield Step("sum", does, edits, 1.06)
 
 
 def _own_for_next(
@@ -332,8 +347,15 @@ def _own_for_next(
 
 
 def _before_for_behind(whole: ast.expr, step: Make) -> Iterator[Step]:
-    """The way from the base to the link's end for that from the joint to the tool."""
+    """The way from the base to the link's end for that from the joint to the tool; all of it."""
     for node in ast.walk(whole):
+        if isinstance(node, ast.BinOp) and ast.unparse(node) in ("p - o[i]", "pc - o[j]"):
+            first = ast.BinOp(node.left, ast.Sub(), ast.parse("o[1]", mode="eval").body)
+            does = _(
+                "adds up all links for those behind the joint ({new} for {old}: the inner sum "
+                "begins at the first joint)"
+            ).format(new=spelt(first, True), old=spelt(node, True))
+            yield step("sum", does, 1.1, (node, first))
         if isinstance(node, ast.BinOp) and ast.unparse(node) == "p - o[i]":
             new = ast.parse("o_[i] - o_[0]", mode="eval").body
             does = _(
@@ -428,6 +450,40 @@ def _other_links(of: Program) -> Iterator[Step]:
                 yield Step("index", _(does), edits, 1.06)
 
 
+def _in_base(of: Program) -> Iterator[Step]:
+    """What is asked for of every link, in the base's axes for the link's."""
+    turn = ast.parse("R_[i]", mode="eval").body
+    for line in of.lines:
+        if ast.unparse(_targets(line)[0]) == "asked[i]":
+            value = _value(line)
+            parts = value.args if isinstance(value, ast.Call) else [value]
+            edits = tuple((x, ast.BinOp(turn, ast.MatMult(), again(x))) for x in parts)
+            yield Step("frame", _("answers in base axes, not in the link's axes"), edits, 1.0)
+
+
+def _after_product(of: Program) -> Iterator[Step]:
+    """What a loop inward multiplies up, taken after the link's own matrix and not before."""
+    for loop in of.body:
+        if not isinstance(loop, ast.For) or ast.unparse(loop.iter) != "inward":
+            continue
+        lines = [line for line in of.lines if line.statement in loop.body]
+        made = {ast.unparse(_targets(line)[0]): line for line in lines}
+        products = {
+            name: line for name, line in made.items() if name.replace("i]", "i + 1]")
+            in ast.unparse(_value(line)) and "R[i" in ast.unparse(_value(line))
+        }  # fmt: skip
+        for name, line in made.items():
+            edits = []
+            for node in ast.walk(_value(line)) if name not in products else ():
+                if isinstance(node, ast.Subscript) and ast.unparse(node) in products:
+                    text = ast.unparse(_value(products[ast.unparse(node)]))
+                    text = text.replace("[i]", "[i-1]").replace("[i + 1]", "[i]")
+                    edits.append((node, ast.parse(text, mode="eval").body))
+            if edits:
+                does = _("takes {line} after the product with the link's own matrix, not before")
+                yield Step("order", does.format(line=_(line.about)), tuple(edits), 1.08)
+
+
 def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
     """Loops that leave their first or last joint out: what they make stays zero there."""
     for loop in (x for statement in of.body for x in ast.walk(statement)):
@@ -464,6 +520,8 @@ def _not_carried(loop: ast.For, lines: list[Assignment], n: int) -> Iterator[Ste
     if carried and ast.unparse(loop.iter) == "inward":
         late = _("does not carry the last link's part inward: the loop begins one link too late")
         early = _("carries nothing inward to the first link: the loop ends one link too early")
+        alone = _("has each link's own part alone: carries nothing inward from the links behind")
+        yield Step("sum", alone, carried, 1.1)
         yield Step("loop", late, carried, 1.1, n - 1)
         yield Step("loop", early, carried, 1.1, 1)
 

@@ -278,6 +278,8 @@ class Walk:
             return bool(self.names[test.value.id][self._index(test.slice)])
         assert isinstance(test, ast.Compare)
         one, two = self._index(test.left), self._index(test.comparators[0])
+        if isinstance(test.ops[0], ast.Eq):
+            return one == two
         return one < two if isinstance(test.ops[0], ast.Lt) else one <= two
 
     def _index(self, node: ast.expr) -> int:
@@ -343,9 +345,9 @@ class Walk:
         elif name == "diagonal":
             out = x[0][..., None] * np.eye(x[0].shape[-1])
         elif name == "inv":
-            out = np.linalg.inv(_regular(x[0]))
+            out = np.linalg.inv(regular(x[0]))
         elif name == "solve":
-            out = np.linalg.solve(_regular(x[0]), x[1][..., None])[..., 0]
+            out = np.linalg.solve(regular(x[0]), x[1][..., None])[..., 0]
         elif name == "defect":
             products = (
                 x[0] / np.mean(np.diagonal(x[0], axis1=-2, axis2=-1), axis=-1)[..., None, None]
@@ -358,12 +360,20 @@ class Walk:
         elif name == "times_i":
             out = np.sum(x[0], axis=-1) * x[1][..., None]
         elif name == "pose":
-            out = np.zeros((*np.broadcast_shapes(x[0].shape[:2], x[1].shape[:2]), 4, 4), x[0].dtype)
+            shape = (*np.broadcast_shapes(x[0].shape[:2], x[1].shape[:2]), 4, 4)
+            out = np.zeros(shape, np.result_type(x[0], x[1]))
             out[..., :3, :3], out[..., :3, 3], out[..., 3, 3] = x[0], x[1], 1.0
         elif name == "ikj":
             out = np.swapaxes(x[0], -1, -2)
         elif name == "jki":
             out = np.moveaxis(x[0], -1, -3)
+        elif name == "outer":
+            out = x[0][..., :, None] * x[1][..., None, :]
+        elif name in _WITHOUT:
+            gone = np.arange(3) == _WITHOUT[name]
+            out = np.where(gone if x[0].ndim == 3 else gone[:, None], 0.0, x[0])
+        elif name in _SOME_ROWS:
+            out = x[0][..., _SOME_ROWS[name], :]
         elif name == "norm":
             out = np.sqrt(np.sum(x[0] * x[0], axis=-1))
         elif name == "clamp":
@@ -373,6 +383,8 @@ class Walk:
         return np.asarray(out)
 
 
+_WITHOUT = {"without_x": 0, "without_y": 1, "without_z": 2}
+_SOME_ROWS = {"planar": [0, 1, 5], "linear": [0, 1, 2], "position": [0, 1], "all_of": [*range(6)]}
 _ON, _BACK = np.array([1, 2, 0]), np.array([2, 0, 1])
 
 
@@ -440,9 +452,10 @@ def _crossing(twist: Array) -> Array:
     return np.concatenate([top, np.concatenate([0 * turning, turning], axis=-1)], axis=-2)
 
 
-def _regular(matrix: Array) -> Array:
+def regular(matrix: Array) -> Array:
     """Singular matrices as NaN: an alternative without an inverse has no answer."""
-    flat = np.linalg.det(matrix) == 0
+    with np.errstate(all="ignore"):
+        flat = np.linalg.det(matrix) == 0
     return np.asarray(np.where(flat[..., None, None], np.nan, matrix))
 
 
