@@ -76,7 +76,7 @@ def examine(
         OptionError: the answers are not real numbers.
     """
     if case.quantity.read is not None:
-        return judged(case, hand, engine, quantity, name)
+        return judged(case, hand, engine, quantity, name, written)
     values = _read(hand, engine, name, quantity)
     case = replace(case, hand=values, again=case.again or _texts_again(case, engine, written))
     same = values.shape == engine.shape

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,7 @@ from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.numbers_off import beside_rounded
+from kinlab.doctor.text.numbers_off import as_meant, beside_rounded
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -191,23 +191,37 @@ def in_text(
     # names that are not there may be there as their numbers: whole ones too
     left_out = (tree.names(right) & set(names.parameters)) - tree.names(written.node)
     held = [float(derived.arm.values[name]) for name in left_out]
+    bare = tree.names(written.node).isdisjoint(names.parameters)
     numbers = any(
-        not one.exponent and ("." in one.text or one.value in held) for one in written.literals
+        not one.exponent and ("." in one.text or one.value in held or (bare and one.half > 0))
+        for one in written.literals
     )
-    lines = []
-    for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
-        target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-        lines.append(Line(written, names, at, np.array(target), forms, numeric=at is own))
-    tried = [(line, 1) for line in lines if numbers and left_out] + [(line, 2) for line in lines]
-    found: list[Mended] = next(filter(None, (mended(*way) for way in tried)), [])
-    found = found or _part_by_part(lines[0], right)
-    found = found or next(filter(None, (mended(line) for line in lines)), [])
-    if not found and numbers:
-        apart = [
-            (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
-            for at in parts(right, own)
-        ]
-        written, found = beside_rounded(lines[-1], apart)
+    plain, lines = [], []
+    for text in dict.fromkeys((as_meant(written, right, own) if numbers else written, written)):
+        for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
+            target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
+            line = Line(text, names, at, np.array(target), forms, numeric=at is own)
+            lines.append(line)
+            plain += [line] if text is written else []
+    if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
+        lines = plain  # nothing else is wrong: the digits are too few
+    tried = [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
+    tried += [(line, 2) for line in lines]
+    ways: Iterator[tuple[Line, list[Mended]]] = chain(
+        ((line, mended(line, most)) for line, most in tried),
+        ((line, _part_by_part(line, right)) for line in lines if not line.numeric),
+        ((line, mended(line)) for line in lines),
+    )
+    for line, found in ways:
+        if found:
+            return [_mended(line.text, one, here) for one in found]
+    if not numbers:
+        return []
+    apart = [
+        (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
+        for at in parts(right, own)
+    ]
+    written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
 
 
@@ -399,10 +413,21 @@ def _told_function(label: str, form: Node, edit: Edit) -> str:
     return said.format(
         entry=shown_entry(label),
         old=brief(str(old)),
-        new=brief(str(edit.new)),
+        new=brief(str(_unsigned(edit.new))),
         term=brief(term),
         kind=_(kind),
     )
+
+
+def _unsigned(node: Node) -> Node:
+    """A product without a sign in front of a sum that begins with one: a - b for -(-a + b)."""
+    if node.op != "mul" or node.args[0].op != "num" or node.args[0].value >= 0:
+        return node
+    for k, factor in enumerate(node.args):
+        if factor.op == "add" and str(factor).startswith("-"):
+            turned = tree.add(*(tree.mul(tree.num(-1), term) for term in factor.args))
+            return tree.mul(tree.num(-1), *node.args[:k], turned, *node.args[k + 1 :])
+    return node
 
 
 def _context(root: Node, path: tuple[int, ...], old: Node) -> str:

@@ -361,7 +361,10 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     text = bare(text)
     parts = text.replace("&=", "=").replace("=&", "=").replace(":=", "=").split("=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
-        raise ExpressionError(f"{place}: {len(parts) - 1} signs of equality; write name = formula")
+        raise ExpressionError(
+            f"{place}: {len(parts) - 1} signs of equality; write one name = formula, and of "
+            "several each as an entry of [formulas] in a file for kinlab check"
+        )
     if len(parts) == 1:
         return "", f"${text}$" if typeset else text
     if not parts[1].strip():

@@ -191,7 +191,7 @@ LEFT_ENGLISH = {
         "beta psi", "px py", "late early", "later earlier", "dv dvc", "Jv Jw", "crank rod", "ct st", "sa ca", "qd qdd",
         "the acceleration of the centre of mass",
     ),
-    "handout.py": ("student id",),
+    "handout.py": ("student id",), "lines.py": ("the angle q",),
     "judge.py": ("the sheet's",), "own_answer.py": ("the sheet's",),
     "submission.py": ("student id", "left side"),
     "child.py": ("processor time", "files read", "files written", "open files", "core dumps"),

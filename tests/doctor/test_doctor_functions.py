@@ -230,3 +230,13 @@ def test_the_noise_of_differences_is_told_from_a_small_slip() -> None:
     found = kl.diagnose(arm, "gravity_torques", forward)
     assert found.error_before > 1e-6
     assert (found.agrees, found.grade) == (True, "right to its digits")
+
+
+def test_the_opposite_of_a_sum_is_written_without_a_sign_before_its_sign() -> None:
+    def jacobian(q):
+        rows = kl.jacobian(kl.load("planar2r"), q).copy()
+        rows[0, 0] *= -1
+        return rows
+
+    said = kl.diagnose("planar2r", "jacobian", jacobian).causes[0].sentence
+    assert "it has l1*sin(q1) + l2*sin(q1 + q2) where the engine has -l1*sin(q1) - l2*" in said

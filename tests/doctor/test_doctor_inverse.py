@@ -312,3 +312,139 @@ def test_rounded_answers_are_neither_right_nor_wrong_and_complex_ones_are_no_sol
     told = kl.diagnose("planar2r", XY, off)
     assert not told.agrees
     assert "right at 0 of 200 targets" in told.sentence
+
+
+FIRST = "atan2(y, x) - atan2(l2*sin(q2), l1 + l2*cos(q2))"
+INNER = "acos((l1^2 + l2^2 - x^2 - y^2)/(2*l1*l2))"
+
+
+@pytest.mark.parametrize(
+    ("robot", "lines", "said"),
+    [
+        ("planar2r", {"q1": FIRST, "q2": f"3.1416 - {INNER}"}, "3.1416 stands for pi"),
+        ("planar2r", {"q1": FIRST, "q2": f"elbow*(3.14 - {INNER})"}, "3.14 stands for pi"),
+        (
+            "scara",
+            {
+                "q1": "atan2(y, x) - atan2(0.275*s2, 0.325 + 0.275*c2)",
+                "q2": "acos((x^2 + y^2 - 0.181)/0.179)",
+                "q3": "0.387 - z",
+                "q4": "q1 + q2 - phi",
+            },
+            "0.181 stands for 0.18125",
+        ),
+    ],
+)
+def test_a_text_with_rounded_numbers_is_right(robot: str, lines: dict[str, str], said: str) -> None:
+    found = judged(robot, {}, **lines)
+    assert (found.agrees, found.form) == (True, "rounded")
+    assert said in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "said"),
+    [
+        (FIRST, "asin(D)", "asin(c2) for acos(c2)"),
+        (FIRST, "acos((x^2 + y^2 - 0.4)/0.4)", "q2: 0.4 should be 0.41"),
+        (FIRST, "acos((x^2 + y^2 - 0.4)/(2*l1*l2))", "q2: 0.4 should be 0.41"),
+        (FIRST, "acos((x^2 + y^2 - 0.41)/0.5)", "q2: 0.5 should be 0.4"),
+        (FIRST, f"3.15 - {INNER}", "q2: 3.15 should be pi"),
+        (FIRST, f"180 - {INNER}", "q2: 180 should be pi"),
+        ("atan2(y, x) - atan2(0.3*s2, 0.5 + 0.4*c2)", "acos(D)", "q1: 0.3 should be 0.4"),
+    ],
+)
+def test_only_the_line_that_is_wrong_is_accused(first: str, second: str, said: str) -> None:
+    found = judged("planar2r", D, q1=first, q2=second)
+    assert not found.agrees
+    assert said in found.sentence
+    assert ("q1" in found.sentence) == (first != FIRST)
+    assert len(found.causes[0].kinds) == 1
+
+
+def test_numbers_alone_give_no_cause_by_their_values() -> None:
+    found = judged("planar2r", {}, q1=FIRST, q2="acos((x^2 + y^2 - 0.16)/0.5)")
+    assert (found.agrees, found.causes) == (False, ())
+
+
+def test_one_sign_of_a_sum_is_one_slip() -> None:
+    def added(x: float, y: float, phi: float) -> Any:
+        q1, q2, _q3 = wrist_arm(x, y, phi, 1.0)
+        return q1, q2, phi + (q1 + q2)
+
+    found = kl.diagnose("planar3r", XYPHI, added, samples=40)
+    assert found.causes[0].kinds == ("sign",)
+    assert "q1 + q2 with the opposite sign in the angle q3" in found.sentence
+
+
+def test_a_constant_that_is_forgotten_in_one_joint() -> None:
+    def flipped(pose: Any) -> Any:
+        q = np.array(puma(pose)[0])
+        # the wrist the other way is (q4 + pi, -q5, q6 + pi)
+        return [q, q * [1, 1, 1, 1, -1, 1] + [0, 0, 0, 0, 0, np.pi]]
+
+    found = kl.diagnose("puma560_modified", "inverse_kinematics", flipped, samples=12)
+    assert len(found.causes) == 1
+    assert "q4 is off by a constant: with pi added it is right (in solution 2" in found.sentence
+    found = kl.diagnose(
+        "scara",
+        "inverse_kinematics_xyzphi",
+        lambda *given: np.add(scara(*given, 1.0), [0, 0, 0, np.pi / 2]),
+    )
+    assert "q4 is off by a constant: with -pi/2 added" in found.sentence
+
+
+def test_a_branch_that_is_given_twice_is_one_solution() -> None:
+    solve = elbow_arm_of()
+    twice = lambda x, y: [solve(x, y, 1.0), np.add(solve(x, y, 1.0), 2 * np.pi)]  # noqa: E731
+    found = kl.diagnose("planar2r", XY, twice, samples=60)
+    assert found.agrees
+    assert "1 solution of each of 60 targets" in found.sentence
+
+
+def test_answers_that_are_no_rows_are_refused_in_plain_words() -> None:
+    for answer in ([(0.1, 0.2), None], [(0.1, 0.2), (0.1,)], {"up": (0.1, 0.2)}):
+        with pytest.raises(kl.KinlabError, match="rows of 2 numbers; a solution that does not"):
+            kl.diagnose("planar2r", XY, lambda x, y, answer=answer: answer, samples=20)
+    with pytest.raises(ExpressionError, match="2 signs of equality.*in a file for kinlab check"):
+        kl.diagnose("planar2r", XY, "q1 = atan2(y, x)\nq2 = 0")
+
+
+def clipped(most: float, l1: float, l2: float, jump: float = np.inf) -> Callable[..., Any]:
+    """Two links with a cosine that is cut off, or q1 off by 0.1 beyond a distance."""
+
+    def solve(x: float, y: float) -> tuple[float, float]:
+        c = min(most, (x * x + y * y - l1 * l1 - l2 * l2) / (2 * l1 * l2))
+        q2 = math.acos(max(-1.0, min(1.0, c)))
+        inner = math.atan2(l2 * math.sin(q2), l1 + l2 * math.cos(q2))
+        return math.atan2(y, x) - inner + 0.1 * (math.hypot(x, y) > jump), q2
+
+    return solve
+
+
+@pytest.mark.parametrize(("most", "jump"), [(0.99, np.inf), (1.0, 0.9944)])
+def test_what_is_cut_off_near_the_limit_of_reach_is_wrong(most: float, jump: float) -> None:
+    def wrist(x: float, y: float, phi: float) -> Any:
+        q1, q2 = clipped(most, 0.5, 0.4, 0.9 * jump)(
+            x - 0.25 * math.cos(phi), y - 0.25 * math.sin(phi)
+        )
+        return q1, q2, phi - q1 - q2
+
+    def slid(x: float, y: float, z: float, phi: float) -> Any:
+        q1, q2 = clipped(most, 0.325, 0.275, 0.6 * jump)(x, y)
+        return q1, q2, 0.387 - z, q1 + q2 - phi
+
+    def hand(x: float, y: float, z: float) -> Any:
+        q3 = math.asin(z / 0.3)
+        length = 0.35 + 0.3 * math.cos(q3)
+        try:
+            return *clipped(most, 0.45, length, (0.45 + length) * jump)(x, y), q3
+        except ValueError:
+            return None
+
+    for robot, name, function in (
+        ("planar2r", XY, clipped(most, 0.5, 0.4, 0.9 * jump)),
+        ("planar3r", XYPHI, wrist),
+        ("scara", "inverse_kinematics_xyzphi", slid),
+        ("spatial3r", "inverse_kinematics_xyz", hand),
+    ):
+        assert kl.diagnose(robot, name, function).verdict.startswith("differs")

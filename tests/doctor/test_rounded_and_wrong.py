@@ -230,3 +230,39 @@ def test_numbers_off_beside_rounded_ones(robot, formulas, right):
         else:
             assert corrected == formulas[entry].replace(*change)
     assert set(found.causes[0].shown) == set(right)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "change"),
+    [
+        ("planar2r", "tau2", "-0.3*sin(q2)*qd1^2 + 5.89*cos(q1+q2)", ("-0.3", "0.3")),
+        ("planar2r", "tau2", "0.3*sin(q2)*qd2^2 + 5.89*cos(q1+q2)", ("qd2^2", "qd1^2")),
+        ("planar2r", "tau2", "0.3*sin(q2)*qd1^2 + 5.89*cos(q1)", ("cos(q1)", "cos(q1 + q2)")),
+        ("planar2r", "tau2", "0.3*sin(q2)*qd1^2 + 6*cos(q1+q2)", ("6*", "5.886*")),
+        (
+            "planar2r",
+            "tau2",
+            "m2*l1*l2*sin(q2)*qd1^2 + 14.7*l2*cos(q1)",
+            ("cos(q1)", "cos(q1 + q2)"),
+        ),
+        ("planar2r", "g1", "17.17*c1-5.89*c12", ("-", "+")),
+        ("planar2r", "M11", "1.12+0.6*s2", ("s2", "c2")),
+        ("planar3r", "M13", "0.0208+0.0625*c23+0.05*c2", ("c2", "c3")),
+        ("planar3r", "M33", "1/50", ("50", "48")),
+    ],
+)
+def test_one_slip_beside_a_product_of_the_robots_numbers_rounded(robot, entry, text, change):
+    inertia = {"tau2": "(0.24+0.3*cos(q2))*qdd1 + 0.24*qdd2 + "}.get(entry, "")
+    typed = f"{inertia}{text}".replace("+ -", "- ")
+    right = f"{inertia}{(text[::-1].replace(change[0][::-1], change[1][::-1], 1))[::-1]}"
+    (found,) = judged(robot, **{entry: typed})
+    first = found.causes[0]
+    assert found.grade == "wrong"
+    assert len(first.kinds) == 1
+    assert first.shown == {entry: right}
+
+
+def test_a_number_nearly_a_coefficient_beside_a_slip():
+    (found,) = judged(g1="17*c1 - 5.9*c12")
+    assert found.causes[0].shown == {"g1": "17.1675*c1 + 5.9*c12"}
+    assert set(found.causes[0].kinds) == {"coefficient", "sign"}

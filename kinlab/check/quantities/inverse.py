@@ -141,7 +141,7 @@ def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
         rows = np.full((_MOST, robot.n), np.nan)
         try:
             answer = function(*state)
-            found = _real(np.asarray([] if answer is None else answer))
+            found = _real(_as_array(robot, [] if answer is None else answer))
         except (ArithmeticError, ValueError) as problem:
             if isinstance(problem, ValueError) and not _DOMAIN.search(str(problem)):
                 raise
@@ -154,6 +154,22 @@ def _padded(robot: Robot, function: Callable[..., Any]) -> Callable[..., Any]:
         return rows
 
     return padded
+
+
+def _as_array(robot: Robot, answer: Any) -> Array:
+    """An answer's rows as an array.
+
+    Raises:
+        AnswerShapeError: rows of different lengths, or what is no number.
+    """
+    try:
+        found = np.asarray(answer)
+        return found if found.dtype.kind in "biufc" else found.astype(float)
+    except (ValueError, TypeError):
+        raise AnswerShapeError(
+            f"answered with something else than rows of {robot.n} numbers; a solution that does "
+            "not exist is left out, or is a row of nan"
+        ) from None
 
 
 def _real(answer: Array) -> Array:

@@ -62,7 +62,7 @@ def at_angle(node: ast.Call, step: Make) -> Iterator[Step]:
         yield step(
             "supplementary angle",
             does.format(new=spelt(turned), old=spelt(node)),
-            1.01,
+            1.03,
             (node, turned),
         )
         wave = ast.Call(ast.Name("arcsin"), x, [])
@@ -138,6 +138,14 @@ def of_angles(of: Program) -> Iterator[Step]:
             does = _("has {what} with the opposite sign").format(what=_(line.about))
             yield Step("sign", does, ((whole, ast.UnaryOp(ast.USub(), again(whole))),), 1.02)
         for node in ast.walk(whole):
+            if angle and is_sum(node) and isinstance(node, ast.BinOp) and is_sum(node.right):
+                # both at once: phi + (q1 + q2)
+                does = _("{does} in {line}").format(
+                    does=_("has {what} with the opposite sign").format(what=spelt(node.right)),
+                    line=_(line.about),
+                )
+                turned = ast.UnaryOp(ast.USub(), again(node.right))
+                yield Step("sign", does, ((node.right, turned),), 1.02)
             if isinstance(node, ast.Name) and re.fullmatch(r"[lad]\d", node.id):
                 places.setdefault(node.id, []).append(node)
     for name, found in places.items():

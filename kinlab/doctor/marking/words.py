@@ -119,6 +119,7 @@ OTHERS = (
     N_("supplementary angle"),
     N_("root"),
     N_("branches mixed"),
+    N_("constant angle"),
     N_("singular matrix"),
     N_("one number"),
 )

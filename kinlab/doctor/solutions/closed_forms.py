@@ -38,6 +38,14 @@ q[2] = arctan2(s2, c2)
 # the angle q1
 q[1] = arctan2(y, x) - arctan2(l2*s2, l1 + l2*c2)
 """
+COSINE_LAW = """
+# the cosine of q2
+c2 = clamp((x**2 + y**2 - l1**2 - l2**2)/(2*l1*l2))
+# the angle q2
+q[2] = elbow*arccos(c2)
+# the angle q1
+q[1] = arctan2(y, x) - arctan2(l2*sin(q[2]), l1 + l2*cos(q[2]))
+"""
 TRIANGLE = """
 # the distance of the tool
 r = sqrt(x**2 + y**2)
@@ -50,6 +58,8 @@ q[2] = elbow*(pi - beta)
 # the angle q1
 q[1] = arctan2(y, x) - elbow*psi
 """
+PLANAR = (TWO_LINKS, COSINE_LAW, TRIANGLE)
+"""Two links in the plane, solved in three ways."""
 _WRIST = """
 # the wrist's x
 xw = x - l3*cos(phi)
@@ -57,7 +67,7 @@ xw = x - l3*cos(phi)
 yw = y - l3*sin(phi)
 {two}
 # the angle q3
-q[3] = phi - q[1] - q[2]
+q[3] = phi - (q[1] + q[2])
 """
 _SCARA = """
 {two}
@@ -201,6 +211,10 @@ class Branch:
         values = self.road.walked([()], dict(zip(self.arguments, given, strict=True)))[0]
         return np.asarray(values[0])
 
+    def joints(self, given: Stacks) -> Array:
+        """The joint positions at the targets, (N, n), as the formulas have them; NaN for none."""
+        return np.asarray(self.road.walked([()], given)[1].stacked("q")[0])
+
 
 def compared(robot: Robot, q: Array) -> Array:
     """Joint positions (..., n) without whole turns: cosines and sines of hinges, ways of slides."""
@@ -252,7 +266,7 @@ def closed_forms(case: Case, limited: bool) -> Iterator[Branches]:
 def _misses(case: Case, branch: Branch) -> Array:
     """How far Pinocchio finds the tool from each target, (N,); NaN where there is no solution."""
     task = TASKS[case.quantity.name]
-    places = reached(case.robot, task, branch.road.walked([()], case.arguments)[1].stacked("q")[0])
+    places = reached(case.robot, task, branch.joints(case.arguments))
     gap = np.abs(places - task.target(*case.arguments.values()))
     out: Array = np.max(gap.reshape(len(gap), -1), axis=1)
     return out
@@ -290,19 +304,19 @@ def _closed_forms(robot: Robot, name: str) -> Iterator[tuple[str, Numbers]]:
     elif name == "inverse_kinematics_xyzphi" and slide == [False, False, True, False]:
         speed = jacobian(robot, np.zeros(4))
         z = "z - z0" if speed[2, 2] > 0 else "z0 - z"
-        turn = "phi - q[1] - q[2]" if speed[5, 3] > 0 else "q[1] + q[2] - phi"
+        turn = "phi - (q[1] + q[2])" if speed[5, 3] > 0 else "q[1] + q[2] - phi"
         numbers = {**_lengths(robot, 2), "z0": float(fk(robot, np.zeros(4))[2, 3])}
-        for two in (TWO_LINKS, TRIANGLE):
+        for two in PLANAR:
             yield _SCARA.format(two=two, z=z, turn=turn), numbers
     elif any(slide):
         return
     elif name in ("inverse_kinematics_xy", "inverse_kinematics_xyphi"):
-        for two in (TWO_LINKS, TRIANGLE):
+        for two in PLANAR:
             text = two if robot.n == 2 else _WRIST.format(two=_renamed(two, x="xw", y="yw"))
             yield text, _lengths(robot, robot.n)
     elif name == "inverse_kinematics_xyz":
         yield ELBOW_ARM, _elbow_arm(robot)
-        for two in (TWO_LINKS, TRIANGLE):
+        for two in PLANAR:
             yield _TURNED_HAND.format(two=_renamed(two, l2="lh")), _turned_hand(robot)
     elif name == "inverse_kinematics" and robot.n == 6 and robot.table is not None:
         _one, two_, three, four, *_rest = robot.table.links

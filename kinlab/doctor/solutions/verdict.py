@@ -27,6 +27,8 @@ from kinlab.doctor.confusions.derivations import (
     with_these,
 )
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
+from kinlab.doctor.solutions.lines import Study, believed, studied
+from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _, ngettext
 from kinlab.tolerances import TOLERANCES
@@ -69,8 +71,15 @@ class Solutions:
         return self.given & ~self.right
 
 
-def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Diagnosis:
-    """The diagnosis of answers to a quantity of inverse kinematics.
+def judged(
+    case: Case,
+    hand: Any,
+    engine: Array,
+    quantity: str,
+    name: str,
+    written: dict[str, Written] | None = None,
+) -> Diagnosis:
+    """The diagnosis of answers to a quantity of inverse kinematics; of texts also line by line.
 
     Raises:
         AnswerShapeError: answers that are no joint positions.
@@ -82,8 +91,17 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
     if not found.wrong.any() and found.right.any(axis=1).all():
         remarks = (*_branches_told(found), *_answers_beyond(found, task))
         return Diagnosis(quantity, label, name, True, float(np.max(worst)), remarks=remarks)
-    causes = _causes(found, engine)
     furthest = float(np.max(worst))
+    study = studied(case, written) if written else None
+    if study is not None and study.rounded and not study.unknown and not study.off:
+        # near the limit of reach a rounded acos may have no value
+        most, remarks = float(np.max(worst[np.isfinite(worst)])), study.rounded
+        return Diagnosis(quantity, label, name, True, most, form="rounded", remarks=remarks)
+    if study is not None and study.off and not study.unknown:
+        causes = [_all_off(study)]
+    else:
+        causes = _causes(found, engine)
+        causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
         told = verdicts.of_digits(furthest).remarks
         return Diagnosis(quantity, label, name, True, furthest, form="digits", remarks=told)
@@ -100,9 +118,23 @@ def judged(case: Case, hand: Any, engine: Array, quantity: str, name: str) -> Di
         worst_state={n: stack[k] for n, stack in case.arguments.items()},
         hand=reached(robot, task, found.q[k, row][None])[0],
         engine=engine[k],
-        form="near" if not causes and furthest <= TOLERANCES.nearly_agrees else "",
+        form="near" if not causes and _rounded_perhaps(found, furthest) else "",
         proved=() if causes else tuple(_counted(found)),
     )
+
+
+def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
+    """Whether all that is wrong may be rounded constants, which leave few targets as they are."""
+    every = ~found.wrong.any(axis=1)
+    return furthest <= TOLERANCES.nearly_agrees and 2 * int(every.sum()) <= len(every)
+
+
+def _all_off(study: Study) -> Cause:
+    """The numbers of several lines that are off, as one cause, with what is only rounded."""
+    told = _("; ").join([*(cause.sentence for cause in study.off), *study.rounded])
+    kinds = tuple(kind for cause in study.off for kind in cause.kinds)
+    places = tuple(place for cause in study.off for place in cause.places)
+    return Cause(told, kinds, places, 0.0, 1.0)
 
 
 def _solutions(case: Case, q: Array, engine: Array) -> Solutions:
@@ -134,7 +166,7 @@ def _ranked(causes: list[Cause]) -> Iterator[Cause]:
 
 def _branches_told(found: Solutions) -> Iterator[str]:
     """How many solutions were shown to be right, and of how many there are."""
-    number = found.right.sum(axis=1)
+    number = _distinct(found).sum(axis=1)
     least, most = int(number.min()), int(number.max())
     said = ngettext(
         "{count} solution of each of {targets} targets, verified by Pinocchio's forward kinematics",
@@ -153,6 +185,15 @@ def _branches_told(found: Solutions) -> Iterator[str]:
     if there and not all(there):
         told = _("of the {every} branches of the closed form it gives {covered}")
         yield told.format(every=len(there), covered=sum(there))
+
+
+def _distinct(found: Solutions) -> Any:
+    """Which right solutions are no repetition of one before, (N, m)."""
+    mine, out = compared(found.case.robot, found.q), found.right.copy()
+    for k in range(1, out.shape[1]):
+        gap = np.max(np.abs(mine[:, :k] - mine[:, k : k + 1]), axis=2)
+        out[:, k] &= ~np.any(out[:, :k] & (gap <= TOLERANCES.same_branch), axis=1)
+    return out
 
 
 def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
@@ -189,7 +230,8 @@ def _causes(found: Solutions, engine: Array) -> list[Cause]:
     silent = _without_solution(found)
     if silent is not None:
         return [silent]
-    whole = list(_by_reading(found, engine)) or list(_by_mixing(found))
+    whole = list(_by_reading(found, engine)) or list(_by_offset(found, engine))
+    whole = whole or list(_by_mixing(found))
     if whole and whole[0].cost <= 1.0:
         return whole
     searches: tuple[Callable[[Case], list[Found]], ...] = (
@@ -243,6 +285,36 @@ def _by_reading(found: Solutions, engine: Array) -> Iterator[Cause]:
             told = _("the formula {does}").format(does=_(does))
             cost = _FAR_FETCHED.get(kind, 1.0)
             yield Cause(told, (kind,), ("",), float(np.max(_worst(other))), cost)
+
+
+_OFFSETS = (("pi", np.pi), ("pi/2", np.pi / 2), ("-pi/2", -np.pi / 2))
+"""Constants that are forgotten, or are too much, in one joint."""
+
+
+def _by_offset(found: Solutions, engine: Array) -> Iterator[Cause]:
+    """One joint that is a constant off in all rows that are wrong."""
+    off = found.wrong.any(axis=0)
+    wrong: Any = found.wrong[:, off]
+    if not np.all(wrong | ~found.given[:, off]):
+        return
+    places = ", ".join(str(k + 1) for k in np.flatnonzero(off))
+    for joint in np.flatnonzero(~slides(found.case.robot)).tolist():
+        for name, angle in _OFFSETS:
+            q = found.q.copy()
+            q[:, off, joint] += angle
+            other = _solutions(found.case, q, engine)
+            if other.wrong.any() or not other.right.any(axis=1).all():
+                continue
+            told = _("q{joint} is off by a constant: with {angle} added it is right").format(
+                joint=joint + 1, angle=name
+            )
+            if not off.all():
+                told = _("{what} (in solution {places}; the others are right)").format(
+                    what=told, places=places
+                )
+            yield Cause(
+                told, ("constant angle",), (f"q{joint + 1}",), float(np.max(_worst(other))), 1.0
+            )
 
 
 def _by_mixing(found: Solutions) -> Iterator[Cause]:

@@ -25,6 +25,7 @@ from kinlab.doctor.text.line import (
     is_term,
     words_in,
 )
+from kinlab.doctor.text.meanings import CLOSE
 from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
@@ -113,22 +114,39 @@ def _number(line: Line, place: Place) -> None:
         shown = "0.25" if decimal and size == 0.25 else shown
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
             line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
-    if not decimal:
+    if not decimal and not line.only_numbers:
         return
     for word, value in line.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
         line.instead(place, word, value, "parameter", 1.2)
     if line.numeric:
-        moved = line.climbed(place, place.value + 1.0) - line.root.value
-        size = float(np.sum(moved * moved))
-        right = place.value + np.sum(moved * (line.target - line.root.value)) / (size or 1.0)
-        shown = np.format_float_positional(float(right[0]), 12, fractional=False, trim="-")
+        right = _fitting(line, place)
+        shown = np.format_float_positional(right, 12, fractional=False, trim="-")
         held = line.meanings.holds(float(line.segment(place)))
-        means = line.meanings.holds(float(right[0]))
+        means = line.meanings.holds(right) or (not decimal and shown.isdigit())
         # an error of all numbers that are written so would be laid into this one
-        sure = means or len(_alike(line, line.segment(place))) < 2
+        sure = means or (decimal and len(_alike(line, line.segment(place))) < 2)
         if sure and not shown.startswith("-") and not (idle and shown == "1"):
             doubt = 0.5 * held + 0.3 * (not means)
-            line.instead(place, shown, right, "coefficient", 1.15 + doubt)
+            value = np.full(line.count, right)
+            line.instead(place, shown, value, "coefficient", 1.15 + doubt)
+    if line.numeric and line.only_numbers:
+        for size in line.fronts:  # nearly a coefficient: 17 for 17.1675, beside another slip
+            if 0 < abs(size - place.value[0]) <= CLOSE * size:
+                shown = np.format_float_positional(size, 12, fractional=False, trim="-")
+                line.instead(place, shown, np.full(line.count, size), "coefficient", 1.2)
+
+
+def _fitting(line: Line, place: Place) -> float:
+    """The number that would do best at a place, of which the whole is a multiple or a quotient."""
+    above = place.above.node if place.above is not None and place.role == 1 else None
+    below = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Div)
+    turned = 1.0 / place.value if below else place.value
+    moved = line.climbed(place, 1.0 / (turned + 1.0) if below else turned + 1.0) - line.root.value
+    size = float(np.sum(moved * moved))
+    share = np.sum(moved * (line.target - line.root.value)) / (size or 1.0)
+    with np.errstate(all="ignore"):
+        right = 1.0 / (turned + share) if below else turned + share
+    return float(np.ravel(right)[0])
 
 
 def _call(line: Line, place: Place, node: ast.Call) -> None:

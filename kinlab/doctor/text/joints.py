@@ -77,16 +77,7 @@ def _row(
     sides: dict[str, float],
     path: str,
 ) -> dict[str, Array]:
-    count = len(next(iter(case.arguments.values())))
-    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
-    at = {word: np.full(count, value) for word, value in (words | sides).items()}
-    for argument, stack in case.arguments.items():
-        if argument != "pose":
-            at[argument] = stack
-            continue
-        for i, j in np.ndindex(3, 3):
-            at[f"r{i + 1}{j + 1}"] = stack[:, i, j]
-        at |= {f"p{axis}": stack[:, i, 3] for i, axis in enumerate("xyz")}
+    at = named_values(case, sides)
     found: dict[str, Array] = {}
     while len(found) < len(labels):
         ready = [
@@ -105,3 +96,18 @@ def _row(
         for k in ready:
             found[labels[k]] = at[f"q{k + 1}"] = formulas[labels[k]].values(at)
     return found
+
+
+def named_values(case: Case, sides: dict[str, float]) -> dict[str, Array]:
+    """What a joint's text may stand on but the other joints: (N,) by name."""
+    count = len(next(iter(case.arguments.values())))
+    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
+    at = {word: np.full(count, value) for word, value in (words | sides).items()}
+    for argument, stack in case.arguments.items():
+        if argument != "pose":
+            at[argument] = stack
+            continue
+        for i, j in np.ndindex(3, 3):
+            at[f"r{i + 1}{j + 1}"] = stack[:, i, j]
+        at |= {f"p{axis}": stack[:, i, 3] for i, axis in enumerate("xyz")}
+    return at

@@ -18,7 +18,7 @@ from typing import Any, TypeGuard
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.meanings import Meanings
+from kinlab.doctor.text.meanings import Meanings, coefficients
 from kinlab.doctor.text.written import Written, operands
 from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, joint_spelling, respelled
@@ -131,6 +131,23 @@ class Line:
         self.source = self.text.text
         self.root = self._place(ast.parse(self.source, mode="eval").body, None, 0)
         self.scale = float(np.max(np.abs(self.target))) or float(np.max(np.abs(self.root.value)))
+
+    @property
+    def wrong_by(self) -> float:
+        """The largest difference from the values it should have."""
+        return float(np.max(np.abs(self.target - self.root.value)))
+
+    @cached_property
+    def fronts(self) -> list[float]:
+        """The derived formula's coefficients, at the robot's own numbers."""
+        whole, *_parts = coefficients(tree.add(*self.forms[0]))
+        sizes = [abs(float(np.ravel(tree.evaluate(one, dict(self.at)))[0])) for one in whole]
+        return list(dict.fromkeys(sizes))
+
+    @property
+    def only_numbers(self) -> bool:
+        """Whether none of the robot's numbers stands in it by its name."""
+        return tree.names(self.text.node).isdisjoint(self.names.parameters)
 
     @cached_property
     def terms(self) -> list[Node]:

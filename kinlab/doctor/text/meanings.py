@@ -13,6 +13,8 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.written import Literal
+from kinlab.formulas import tree
+from kinlab.formulas.tree import Node
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -24,6 +26,8 @@ _FRACTIONS = tuple(k / n for n in range(1, _SIMPLE + 1) for k in range(1, 2 * _S
 _SHARES = tuple(k / n for n in (1, 2, 3, 4, 6, 12) for k in range(1, 6))
 _PARTS = (1.0, 2.0, 4.0, 1 / 2, 1 / 3, 2 / 3, 4 / 3, 1 / 4, 3 / 4, 3 / 2, 1 / 6, 1 / 8, 1 / 12)
 """Numbers in front of products of the robot's: m l²/3, m l²/12."""
+_ADDED = 6
+"""Terms in front of one joint function of which some are added."""
 RODS = tuple(k / n for n in (3, 6, 12, 24) for k in (1, 2, 4, 7))
 """Numbers in front of m l² of rods, which nobody writes in full."""
 
@@ -122,6 +126,31 @@ class Meanings:
         if gap > one.half * (1 + TOLERANCES.same_relation):
             return name is not None and name[0] == "g"
         return gap <= CLOSE * abs(value) or one.digits > 1
+
+
+def coefficients(right: Node) -> tuple[list[Node], ...]:
+    """What stands in front of the joint functions of a formula, parts of that, and their products.
+
+    Sums of the terms in front come before products within one term: 0.438 is (m1 + m2) l1²/2.
+    """
+    fronts: dict[Node, list[Node]] = {}
+    within: list[Node] = []
+    for term in right.args if right.op == "add" else (right,):
+        factors = term.args if term.op == "mul" else (term,)
+        moving = [f for f in factors if any(name[0] == "q" for name in tree.names(f))]
+        still = [f for f in factors if f not in moving]
+        fronts.setdefault(tree.mul(tree.num(1), *moving), []).append(tree.mul(tree.num(1), *still))
+        for count in range(1, len(still)):
+            within += [tree.mul(tree.num(1), *some) for some in combinations(still, count)]
+    whole = [tree.add(*terms) for terms in fronts.values()]
+    single = [term for terms in fronts.values() for term in terms]
+    some = [
+        tree.add(*part)
+        for terms in fronts.values()
+        for count in range(2, len(terms))
+        for part in combinations(terms[:_ADDED], count)
+    ]
+    return tuple(list(dict.fromkeys(circle)) for circle in ([*single, *whole], some, within))
 
 
 def stands_for(written: object, meant: str) -> str:

@@ -13,10 +13,14 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import Change, Line
+from kinlab.doctor.text.meanings import Meanings, coefficients
 from kinlab.doctor.text.mend import Mended, mended, together
 from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins, told_apart
-from kinlab.doctor.text.written import Written
+from kinlab.doctor.text.written import Literal, Written
+from kinlab.formulas import tree
+from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
+from kinlab.tolerances import TOLERANCES
 
 _MOST = 3
 """Numbers that are off above which a list of them is no diagnosis."""
@@ -45,6 +49,52 @@ def beside_rounded(line: Line, parts: Sequence[Part]) -> tuple[Written, list[Men
     return text, [] if text is line.text else mended(_again(line, text), 2)
 
 
+def as_meant(text: Written, right: Node, own: Mapping[str, Array]) -> Written:
+    """The text with every number that is a number of the derived formula, rounded, as that.
+
+    A slip beside it is then one slip. A coefficient comes before a product within one, and a
+    number that could be two of them stays as it is written.
+
+    Args:
+        text: the formula.
+        right: the derived one, as a sum of terms.
+        own: values of the names, the robot's own.
+    """
+    meanings = Meanings.at(own)
+    meant: dict[int, str] = {}
+    circles = [[_positive(one, own) for one in circle] for circle in coefficients(right)]
+    for k, (one, _span) in enumerate(zip(text.literals, text.spans, strict=False)):
+        if one.half and meanings.parameter(one.value) is None:
+            found = _meant(one, circles, meanings)
+            if found is not None:
+                plain = tree.names(found[0]).isdisjoint(text.symbols)
+                meant[k] = tree.to_text(found[0]) if plain else repr(found[1])
+    return _with_exact(text, meant) if meant else text
+
+
+def _meant(
+    one: Literal, circles: list[list[tuple[Node, float]]], meanings: Meanings
+) -> tuple[Node, float] | None:
+    """What a number is rounded from; None where it is exact, or may be two."""
+    near, reach = TOLERANCES.same_relation * one.value, one.reach * (1 + TOLERANCES.same_relation)
+    if any(abs(size - one.value) <= near for circle in circles for _node, size in circle):
+        return None
+    for circle in circles:
+        close = [pair for pair in circle if abs(pair[1] - one.value) <= reach]
+        found = [pair for pair in close if meanings.credible(one, pair[1])]
+        if found:
+            node, size = found[0]
+            sure = all(abs(other - size) <= near for _node, other in found)
+            return (node, size) if sure else None
+    return None
+
+
+def _positive(node: Node, own: Mapping[str, Array]) -> tuple[Node, float]:
+    """A product of the robot's numbers without its sign, and its value."""
+    value = float(np.ravel(tree.evaluate(node, dict(own)))[0])
+    return (tree.mul(tree.num(-1), node), -value) if value < 0 else (node, value)
+
+
 def _again(line: Line, text: Written) -> Line:
     return replace(line, text=text, places=[], changes=[], rows=[])
 
@@ -68,7 +118,7 @@ def _put_right(line: Line) -> tuple[Written, list[Mended]]:
     ratio = solved[off] / written
     if not 1 <= len(off) <= _MOST or np.any(ratio < 1 / _LIKE) or np.any(ratio > _LIKE):
         return text, []
-    named = _with_exact(text, exact)
+    named = _with_exact(text, {k: repr(value) for k, value in exact.items()})
     changes = []
     for one, value in zip(off, solved[off], strict=True):
         start, end = named.spans[one - sum(k < one for k in exact)]
@@ -79,22 +129,22 @@ def _put_right(line: Line) -> tuple[Written, list[Mended]]:
     return named, together(_again(line, named), tuple(changes))
 
 
-def _with_exact(text: Written, exact: Mapping[int, float]) -> Written:
+def _with_exact(text: Written, exact: Mapping[int, str]) -> Written:
     """The text with names for numbers that are rounded: written as they were, and exact in value.
 
-    What they stand for is given by their place among the literals.
+    What they stand for is given by their place among the literals, as digits or as a formula.
     """
     line, symbols, numbers = text.text, dict(text.symbols), dict(text.numbers)
     for k in sorted(exact, reverse=True):
         (start, end), name = text.spans[k], f"exact_{k}_{len(numbers)}"
-        symbols[name], numbers[name] = repr(exact[k]), line[start:end]
+        symbols[name], numbers[name] = exact[k], line[start:end]
         line = line[:start] + name + line[end:]
     return replace(text, text=line, symbols=symbols, numbers=numbers)
 
 
 def _with_right_parts(text: Written, parts: Sequence[Part]) -> Written:
     """The text with the numbers of those parts exact that are right when rounded."""
-    exact: dict[int, float] = {}
+    exact: dict[int, str] = {}
     for at, target in parts:
         scale = np.full_like(target, np.max(np.abs(target)))
         for one, value in stand_ins(text, at, target, scale) or ():
@@ -103,5 +153,5 @@ def _with_right_parts(text: Written, parts: Sequence[Part]) -> Written:
                 for k, (other, _span) in enumerate(zip(text.literals, text.spans, strict=False))
                 if other is one
             ]
-            exact.update(dict.fromkeys(alike, value))
+            exact.update(dict.fromkeys(alike, repr(value)))
     return _with_exact(text, exact) if exact else text
