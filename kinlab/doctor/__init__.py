@@ -1,35 +1,35 @@
 """The formula doctor: not only that a formula differs, but what is wrong in it.
 
-==================  ==============================================================================
-module              what it holds
-==================  ==============================================================================
-``changes``         A reading: one thing that people take differently, and what the engine says if
-                    one does
-``derived``         The engine's quantities as derived formulas, entry by entry, for arms with a
-                    DH table
-``examine``         The examination: compare, try the readings, look for slips in the entries,
-                    rank what explains
-``file``            A file of formulas as text, each examined entry by entry
-``numbers``         The robot's numbers taken otherwise: one of them another, or all of a kind
-                    rounded
-``regression``      The difference of a function from the derived formula as a short sum of known
-                    terms
-``report``          Diagnoses by every door: of a function, a text, a file, a row of a report,
-                    typeset and marked
-``rounding``        Rounded numbers of a function and of the robot's data, and whether they
-                    explain a difference
-``search``          Every slip at one place of a formula, and those that turn it into another by
-                    their effect
-``terms``           Slips within single entries: the derived formula beside a user's text or
-                    function
-``verdicts``        Right in another way: with numbers for names, or another valid formula
-``confusions/``     What people take differently: a known confusion, and what the engine would say
-                    if one does
-``solutions/``      Inverse kinematics by hand: which branches are right, and which step of the
-                    closed form is not
-``tables/``         The table doctor: two descriptions of one arm disagree; which cell of the
-                    table is wrong?
-``text/``           A formula as its writer typed it: its line, its numbers, its slips of the pen
-``marking/``        The formulas of a class, judged and marked
-==================  ==============================================================================
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``changes``       A reading: one thing that people take differently, and what the engine says if
+                  one does
+``derived``       The engine's quantities as derived formulas, entry by entry, for arms with a DH
+                  table
+``examine``       The examination: compare, try the readings, look for slips in the entries, rank
+                  what explains
+``file``          A file of formulas as text, each examined entry by entry
+``numbers``       The robot's numbers taken otherwise: one of them another, or all of a kind
+                  rounded
+``regression``    The difference of a function from the derived formula as a short sum of known
+                  terms
+``report``        Diagnoses by every door: of a function, a text, a file, a row of a report,
+                  typeset and marked
+``rounding``      Rounded numbers of a function and of the robot's data, and whether they explain a
+                  difference
+``search``        Every slip at one place of a formula, and those that turn it into another by
+                  their effect
+``terms``         Slips within single entries: the derived formula beside a user's text or function
+``verdicts``      Right in another way: with numbers for names, or another valid formula
+``confusions/``   What people take differently: a known confusion, and what the engine would say if
+                  one does
+``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
+``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
+                  closed form is not
+``tables/``       The table doctor: two descriptions of one arm disagree; which cell of the table
+                  is wrong?
+``text/``         A formula as its writer typed it: its line, its numbers, its slips of the pen
+``marking/``      The formulas of a class, judged and marked
+================  =================================================================================
 """

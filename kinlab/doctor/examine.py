@@ -19,7 +19,8 @@ from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import rounding, terms, verdicts
 from kinlab.doctor.changes import Arguments, Case, Confusion, table_of
-from kinlab.doctor.confusions.derivations import (
+from kinlab.doctor.confusions.known import readings
+from kinlab.doctor.derivations.joined import (
     Found,
     Ready,
     one_for_each_kind,
@@ -28,9 +29,8 @@ from kinlab.doctor.confusions.derivations import (
     taken_at_one_joint,
     taken_otherwise,
 )
-from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.parts import Apart, apart, proved
-from kinlab.doctor.confusions.words import together
+from kinlab.doctor.derivations.parts import Apart, apart, proved
+from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.solutions.verdict import judged

@@ -15,8 +15,18 @@ from typing import Any
 from kinlab.errors import FileError
 from kinlab.host.files import read_toml
 
-_FULL = {ord("“"): '"', ord("”"): '"', ord("‘"): "'", ord("’"): "'", ord("＝"): "=",
-         ord("【"): "[", ord("】"): "]", ord("［"): "[", ord("］"): "]", 0x3000: " "}  # fmt: skip
+_FULL = {
+    ord("“"): '"',
+    ord("”"): '"',
+    ord("‘"): "'",
+    ord("’"): "'",
+    ord("＝"): "=",
+    ord("【"): "[",
+    ord("】"): "]",
+    ord("［"): "[",
+    ord("］"): "]",
+    0x3000: " ",
+}
 """Signs of a Chinese keyboard, and those that TOML has."""
 _HEADER = re.compile(r"\s*\[+\s*([\w. ]+?)\s*(\]*)\s*(?:#.*)?")
 _ENTRY = re.compile(r"\s*(\"[^\"]*\"|'[^']*'|[^=\"'#\[][^=\"']*?)\s*=(?!=)\s*(.*)", re.DOTALL)

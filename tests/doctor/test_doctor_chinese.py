@@ -14,10 +14,10 @@ import sentences
 
 import kinlab as kl
 from kinlab.check.diagnosis import shown_entry
-from kinlab.doctor.confusions.books import LINES as BOOKS
 from kinlab.doctor.confusions.known import readings
-from kinlab.doctor.confusions.roads import roads
-from kinlab.doctor.confusions.steps import steps
+from kinlab.doctor.derivations.books.lines import LINES as BOOKS
+from kinlab.doctor.derivations.roads import roads
+from kinlab.doctor.derivations.steps import steps
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.handout import handout
 from kinlab.doctor.marking.sheet import read_sheet, sheet_of

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
-from kinlab.doctor.confusions.roads import roads
+from kinlab.doctor.derivations.roads import roads
 from kinlab.doctor.examine import prepare
 
 ARM = kl.load("spatial3r")

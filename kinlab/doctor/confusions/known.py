@@ -13,7 +13,7 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Arguments, Case, Confusion, Engine
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
-from kinlab.doctor.confusions.words import together
+from kinlab.doctor.derivations.words import together
 from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES

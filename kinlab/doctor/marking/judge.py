@@ -10,7 +10,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
-from kinlab.doctor.confusions.words import together
+from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas
 from kinlab.doctor.marking.marks import (

@@ -19,9 +19,9 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.quantities.inverse import TASKS, reached
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.givens import Stacks
-from kinlab.doctor.confusions.roads import Road, Ways
-from kinlab.doctor.confusions.walk import Walk, program
+from kinlab.doctor.derivations.givens import Stacks
+from kinlab.doctor.derivations.roads import Road, Ways
+from kinlab.doctor.derivations.walk import Walk, program
 from kinlab.engine.kinematics import fk, jacobian
 from kinlab.host.language import N_
 from kinlab.model.link import Convention

@@ -30,7 +30,7 @@ _FEWEST = 10
 
 
 @dataclass(frozen=True)
-class Study:
+class LineStudy:
     """What the lines are by themselves.
 
     Attributes:
@@ -53,7 +53,7 @@ class Study:
         return len(self.unknown), len(self.off), len(self.rounded)
 
 
-def studied(case: Case, written: dict[str, Written]) -> Study | None:
+def studied(case: Case, written: dict[str, Written]) -> LineStudy | None:
     """The lines beside the branch that they fit best; None where the arm has no closed form.
 
     Args:
@@ -79,7 +79,7 @@ def studied(case: Case, written: dict[str, Written]) -> Study | None:
     return max(known, key=lambda row: row.order)
 
 
-def _beside_branches(case: Case, texts: list[Written], sides: dict[str, float]) -> Study | None:
+def _beside_branches(case: Case, texts: list[Written], sides: dict[str, float]) -> LineStudy | None:
     found = [
         _beside(case, texts, sides, one, q)
         for form in closed_forms(case, False)
@@ -91,7 +91,7 @@ def _beside_branches(case: Case, texts: list[Written], sides: dict[str, float]) 
 
 def _beside(
     case: Case, texts: list[Written], sides: dict[str, float], one: Case, q: Array
-) -> Study:
+) -> LineStudy:
     """The lines where the other joints have a branch's values."""
     plain = named_values(one, sides)
     right, off, unknown, rounded, numbers = set(), [], set(), [], set()
@@ -115,7 +115,7 @@ def _beside(
             off.append(cause)
         elif not told:
             unknown.add(k + 1)
-    return Study(
+    return LineStudy(
         frozenset(right),
         tuple(dict.fromkeys(rounded)),
         tuple(off),
@@ -229,7 +229,7 @@ class _Line:
         return bool(np.max(_apart(self.one, values, self.q, self.k)) <= TOLERANCES.same_branch)
 
 
-def believed(causes: list[Cause], study: Study, case: Case) -> list[Cause]:
+def believed(causes: list[Cause], study: LineStudy, case: Case) -> list[Cause]:
     """Causes that speak of no line that is right, nor of a name where a line has only numbers."""
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
     named = re.compile(rf"\b(?:{'|'.join(map(re.escape, words))})\b") if words else None

@@ -19,7 +19,7 @@ from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.inverse import TASKS, Task, as_solutions, reached
 from kinlab.doctor import verdicts
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.derivations import (
+from kinlab.doctor.derivations.joined import (
     Found,
     ready,
     several_taken_otherwise,
@@ -27,7 +27,7 @@ from kinlab.doctor.confusions.derivations import (
     with_these,
 )
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
-from kinlab.doctor.solutions.lines import Study, believed, studied
+from kinlab.doctor.solutions.lines import LineStudy, believed, studied
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _, ngettext
@@ -129,7 +129,7 @@ def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
     return furthest <= TOLERANCES.nearly_agrees and 2 * int(every.sum()) <= len(every)
 
 
-def _all_off(study: Study) -> Cause:
+def _all_off(study: LineStudy) -> Cause:
     """The numbers of several lines that are off, as one cause, with what is only rounded."""
     told = _("; ").join([*(cause.sentence for cause in study.off), *study.rounded])
     kinds = tuple(kind for cause in study.off for kind in cause.kinds)

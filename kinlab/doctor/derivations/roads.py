@@ -14,8 +14,8 @@ from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.fivebar import numbers as numbers_of_loop
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions import books
-from kinlab.doctor.confusions.givens import (
+from kinlab.doctor.derivations.books import columns, energies, five_bar, matrices, recursions
+from kinlab.doctor.derivations.givens import (
     Placed,
     Stacks,
     as_placed,
@@ -29,7 +29,7 @@ from kinlab.doctor.confusions.givens import (
     of_table,
     standard,
 )
-from kinlab.doctor.confusions.walk import Program, Step, Walk, program, regular
+from kinlab.doctor.derivations.walk import Program, Step, Walk, program, regular
 from kinlab.model.robot import Robot
 
 _MOST_JOINTS = 7
@@ -82,39 +82,39 @@ def roads(case: Case) -> Iterator[Road]:
         return
     usual = standard(robot)
     if robot.table is not None and name in _PRODUCTS:
-        yield _of_links(case, books.product_of_links(usual), _PRODUCTS[name])
+        yield _of_links(case, matrices.product_of_links(usual), _PRODUCTS[name])
         if name == "fk":
-            yield _of_links(case, books.product_of_elements(usual), "pose")
-            yield _of_links(case, books.EXPONENTIALS, "pose")
+            yield _of_links(case, matrices.product_of_elements(usual), "pose")
+            yield _of_links(case, columns.EXPONENTIALS, "pose")
     frame = _FRAMES.get(name)
     if frame is not None:
-        text = books.COLUMNS + books.TWISTED[frame]
+        text = columns.COLUMNS + columns.TWISTED[frame]
         if name.startswith("statics"):
-            yield _of_arm(case, text + books.STATICS, "tau")
+            yield _of_arm(case, text + columns.STATICS, "tau")
             for in_base in (False, True):
-                held = books.held(name == "statics_tool", in_base)
-                yield _with_load(case, held + books.passed_on(usual, in_base), in_base, "tau")
+                held = recursions.held(name == "statics_tool", in_base)
+                yield _with_load(case, held + recursions.passed_on(usual, in_base), in_base, "tau")
         else:
             rows = [0, 1, 5] if name == "planar_jacobian" else None
             yield _of_arm(case, text, "Jb", rows)
             if frame == "tool":
-                yield _with_load(case, books.toolward(usual), False, "E", False)
-    if name in books.ITERATIVE:
-        yield _of_step(case, f"# the step\nE = {books.ITERATIVE[name]}")
-    if name in books.OF_COLUMNS:
-        yield _of_arm(case, books.of_columns(name), "E", pairs=False)
+                yield _with_load(case, columns.toolward(usual), False, "E", False)
+    if name in columns.ITERATIVE:
+        yield _of_step(case, f"# the step\nE = {columns.ITERATIVE[name]}")
+    if name in columns.OF_COLUMNS:
+        yield _of_arm(case, columns.of_columns(name), "E", pairs=False)
     if name == "action_variation_free_ends":
-        yield _of_step(case, books.BOUNDARY, of_path)
+        yield _of_step(case, energies.BOUNDARY, of_path)
     if name == "isotropy_defect":
-        yield _of_step(case, books.ISOTROPY)
+        yield _of_step(case, columns.ISOTROPY)
     if name == "isotropy_conditions":
-        yield _of_step(case, books.CONDITIONS)
-    if name in books.ISOTROPIC:
-        text = f"# the cosine of theta2\nE = {books.ISOTROPIC[name]}"
+        yield _of_step(case, columns.CONDITIONS)
+    if name in columns.ISOTROPIC:
+        text = f"# the cosine of theta2\nE = {columns.ISOTROPIC[name]}"
         yield _of_step(case, text, of_lengths)
     if name == "jacobian_dot":
-        yield _of_arm(case, books.RATES, "E")
-        yield _of_arm(case, books.COLUMNS + books.RATE, "E")
+        yield _of_arm(case, columns.RATES, "E")
+        yield _of_arm(case, columns.COLUMNS + columns.RATE, "E")
     ways = [*_recursions(case), *_lagrange(case)]
     # torques by the recursion first; their parts as people derive them alone
     yield from ways if name.startswith("inverse") else reversed(ways)
@@ -124,63 +124,70 @@ def roads(case: Case) -> Iterator[Road]:
         yield _recursion(placed, _OUTWARD[name], False, "asked")
     if name in ("static_wrenches", "joint_wrenches"):
         still = name == "static_wrenches"
-        text = books.passed_on(False, False) if still else books.newton_euler(False, False)
+        text = (
+            recursions.passed_on(False, False) if still else recursions.newton_euler(False, False)
+        )
         yield _with_load(
-            placed, books.held(False, False) + books.loaded(text) + books.THROUGH, False, "asked"
+            placed,
+            recursions.held(False, False) + recursions.loaded(text) + recursions.THROUGH,
+            False,
+            "asked",
         )
     if name == "inverse_dynamics_loaded":
         for in_base in (False, True):
-            text = books.held(False, in_base) + books.loaded(books.newton_euler(usual, in_base))
+            text = recursions.held(False, in_base) + recursions.loaded(
+                recursions.newton_euler(usual, in_base)
+            )
             yield _with_load(case, text, in_base, "tau")
     if name in _WITHIN:
         asked, rest = _WITHIN[name]
-        yield _recursion(placed, books.newton_euler(False, False) + rest, False, asked)
+        yield _recursion(placed, recursions.newton_euler(False, False) + rest, False, asked)
 
 
 def _recursions(case: Case) -> Iterator[Road]:
     """Newton-Euler in base axes, in the links', and with spatial vectors; composite bodies."""
     name, usual = case.quantity.name, standard(case.robot)
     if name in _RECURSIVE:
-        yield _recursion(case, books.spatial(usual), False, pairs=False)
+        yield _recursion(case, recursions.spatial(usual), False, pairs=False)
         for in_base in (False, True):
-            yield _recursion(case, books.newton_euler(usual, in_base), in_base)
+            yield _recursion(case, recursions.newton_euler(usual, in_base), in_base)
         if usual and name == "inverse_dynamics":
-            yield _recursion(case, books.SPONG, False)
+            yield _recursion(case, recursions.SPONG, False)
     if name == "mass_matrix":
-        yield _recursion(case, books.composite(usual), False, "M", False)
-        yield _of_arm(case, books.COMPOSITE_IN_BASE, "M", pairs=False)
-    if name in books.ENERGIES:
+        yield _recursion(case, recursions.composite(usual), False, "M", False)
+        yield _of_arm(case, recursions.COMPOSITE_IN_BASE, "M", pairs=False)
+    if name in recursions.ENERGIES:
         for in_base in (False, True):
-            text = books.energies(usual, in_base)
-            yield _recursion(case, text, in_base, books.ENERGIES[name])
-        text = books.spatial_energies(usual)
-        yield _recursion(case, text, False, books.ENERGIES[name], False)
+            text = recursions.energies(usual, in_base)
+            yield _recursion(case, text, in_base, recursions.ENERGIES[name])
+        text = recursions.spatial_energies(usual)
+        yield _recursion(case, text, False, recursions.ENERGIES[name], False)
     if name == "lagrangian":
-        yield _recursion(case, books.lagrangian(usual), True, "E", False)
+        yield _recursion(case, recursions.lagrangian(usual), True, "E", False)
     if name == "momentum":
-        for text, in_base in books.momenta(usual):
+        for text, in_base in recursions.momenta(usual):
             yield _recursion(case, text, in_base, pairs=False)
     if name in _ABOUT_ORIGIN:
-        yield _recursion(case, books.about_origin(usual), True, pairs=False)
+        yield _recursion(case, recursions.about_origin(usual), True, pairs=False)
 
 
 def _lagrange(case: Case) -> Iterator[Road]:
     """What follows from the mass matrix by the links' Jacobians."""
-    if case.quantity.name in books.LAGRANGE:
-        asked, rest = books.LAGRANGE[case.quantity.name]
+    if case.quantity.name in energies.LAGRANGE:
+        asked, rest = energies.LAGRANGE[case.quantity.name]
         pairs = "slope" not in rest or case.robot.n <= _SMALL
-        yield _of_arm(case, books.MASSES + rest, asked, pairs=pairs)
+        yield _of_arm(case, energies.MASSES + rest, asked, pairs=pairs)
 
 
 _PRODUCTS = {"fk": "pose", "link_transforms": "A", "dh_poses": "T", "link_poses": "T"}
 _OUTWARD = {
-    "link_velocities": books.VELOCITIES,
-    "link_accelerations": books.ACCELERATIONS,
-    "angular_jacobian_last": books.ANGULAR,
+    "link_velocities": recursions.VELOCITIES,
+    "link_accelerations": recursions.ACCELERATIONS,
+    "angular_jacobian_last": columns.ANGULAR,
 }
 _WITHIN = {
     "com_accelerations": ("asked", "for i in outward:\n    asked[i] = dvc[i]\n"),
-    "inertial_wrenches": ("asked", books.WRENCHES),
+    "inertial_wrenches": ("asked", recursions.WRENCHES),
 }
 _FRAMES = {
     "jacobian": "base",
@@ -329,7 +336,7 @@ def through_links(case: Case) -> Iterator[Road]:
     if getattr(robot, "table", None) is None:
         return
     product, turns = (
-        program(text) for text in (books.product_of_links(standard(robot)), books.EXPONENTIALS)
+        program(text) for text in (matrices.product_of_links(standard(robot)), columns.EXPONENTIALS)
     )
     asked = [road for road in roads(case) if road.asked is not None]
     lightest = sorted(asked, key=lambda road: road.work)[:1]
@@ -377,7 +384,7 @@ def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
 
 def _five_bar(case: Case) -> Iterator[Road]:
     name = case.quantity.name
-    asked, text = books.CLOSED.get(name, ("", ""))
+    asked, text = five_bar.CLOSED.get(name, ("", ""))
     mechanism: Any = case.robot
     loop = numbers_of_loop(mechanism)
 
@@ -394,4 +401,4 @@ def _five_bar(case: Case) -> Iterator[Road]:
     if asked:
         yield road(text, asked)
     if name == "fivebar_projection":
-        yield road(books.OTHER_SIDE, "C")
+        yield road(five_bar.OTHER_SIDE, "C")

@@ -16,8 +16,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.walk import Step
-from kinlab.doctor.confusions.words import together
+from kinlab.doctor.derivations.walk import Step
+from kinlab.doctor.derivations.words import together
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES

@@ -13,8 +13,8 @@ import ast
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
-from kinlab.doctor.confusions.angles import at_angle, at_difference, exchanged, of_angles, of_rods
-from kinlab.doctor.confusions.operations import (
+from kinlab.doctor.derivations.angles import at_angle, at_difference, exchanged, of_angles, of_rods
+from kinlab.doctor.derivations.operations import (
     Make,
     at_call,
     at_choice,
@@ -24,8 +24,8 @@ from kinlab.doctor.confusions.operations import (
     turns,
     without_own,
 )
-from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
-from kinlab.doctor.confusions.words import (
+from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
+from kinlab.doctor.derivations.words import (
     KNOWN,
     halves,
     is_sum,
@@ -318,11 +318,19 @@ def _slides(of: Program) -> Iterator[Step]:
         does = _("gives every joint a column, also those behind the link")
         yield Step("sum", does, tuple((x, x.body) for x in inner), 1.05)
         for does, one, op, two in (
-            (_("has a column for the link's own joint only, none for the joints before"),
-             "j", ast.Eq(), "k"),
-            (_("has columns for the joints from the link on, none for those before"),
-             "k", ast.LtE(), "j"),
-        ):  # fmt: skip
+            (
+                _("has a column for the link's own joint only, none for the joints before"),
+                "j",
+                ast.Eq(),
+                "k",
+            ),
+            (
+                _("has columns for the joints from the link on, none for those before"),
+                "k",
+                ast.LtE(),
+                "j",
+            ),
+        ):
             test = ast.Compare(ast.Name(one), [op], [ast.Name(two)])
             edits = tuple((x, ast.IfExp(test, x.body, x.orelse)) for x in inner)
             yield Step("sum", does, edits, 1.06)
@@ -469,9 +477,11 @@ def _after_product(of: Program) -> Iterator[Step]:
         lines = [line for line in of.lines if line.statement in loop.body]
         made = {ast.unparse(_targets(line)[0]): line for line in lines}
         products = {
-            name: line for name, line in made.items() if name.replace("i]", "i + 1]")
-            in ast.unparse(_value(line)) and "R[i" in ast.unparse(_value(line))
-        }  # fmt: skip
+            name: line
+            for name, line in made.items()
+            if name.replace("i]", "i + 1]") in ast.unparse(_value(line))
+            and "R[i" in ast.unparse(_value(line))
+        }
         for name, line in made.items():
             edits = []
             for node in ast.walk(_value(line)) if name not in products else ():

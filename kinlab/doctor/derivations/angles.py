@@ -10,9 +10,9 @@ import ast
 import re
 from collections.abc import Iterator
 
-from kinlab.doctor.confusions.operations import Make
-from kinlab.doctor.confusions.walk import Assignment, Program, Step, again
-from kinlab.doctor.confusions.words import is_sum, minus, name_of, spelt, times
+from kinlab.doctor.derivations.operations import Make
+from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
+from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
 from kinlab.host.language import _
 
 _EXCHANGED = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator
 
-from kinlab.doctor.confusions.walk import again
+from kinlab.doctor.derivations.walk import again
 from kinlab.host.language import N_, _
 
 MEANT = {

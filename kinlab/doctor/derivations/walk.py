@@ -1,6 +1,6 @@
 """Walks a textbook's derivation, written as text, with one step or several taken otherwise.
 
-A derivation is a short program in the textbooks' notation (:mod:`kinlab.doctor.confusions.books`):
+A derivation is a short program in the textbooks' notation (:mod:`kinlab.doctor.derivations.books`):
 assignments, with or without an index, and loops over the joints, outward or inward. It is walked
 for all alternatives and all states at once: the leading axes of every value are the alternatives
 and the states. An alternative puts another expression in the place of one or several of the

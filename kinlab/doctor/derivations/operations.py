@@ -11,9 +11,9 @@ import ast
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from kinlab.doctor.confusions.books import MODIFIED, STANDARD
-from kinlab.doctor.confusions.walk import Step, again
-from kinlab.doctor.confusions.words import (
+from kinlab.doctor.derivations.books.matrices import MODIFIED, STANDARD
+from kinlab.doctor.derivations.walk import Step, again
+from kinlab.doctor.derivations.words import (
     across,
     is_sum,
     meant,

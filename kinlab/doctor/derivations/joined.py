@@ -12,10 +12,10 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.confusions.parts import Apart, joined, spoils
-from kinlab.doctor.confusions.roads import Road, Ways, roads, through_links
-from kinlab.doctor.confusions.steps import steps
-from kinlab.doctor.confusions.walk import Step
+from kinlab.doctor.derivations.parts import Apart, joined, spoils
+from kinlab.doctor.derivations.roads import Road, Ways, roads, through_links
+from kinlab.doctor.derivations.steps import steps
+from kinlab.doctor.derivations.walk import Step
 from kinlab.doctor.text.pairs import pairs_adding_up
 from kinlab.tolerances import TOLERANCES
 
