@@ -20,6 +20,25 @@ Array = NDArray[np.float64]
 LARGEST = 1e100
 """Largest number that is read: the products of three of them still have a value."""
 
+_BLOCK = 8192
+"""Numbers up to which BLAS stays on the calling thread."""
+
+
+def sum_of_squares(array: Array) -> float:
+    """The sum of the squares of all entries; NaN or infinite where one is.
+
+    Block by block: for more than 10,000 numbers BLAS starts threads of its own, and where another
+    thread forks in the middle of that, parent and child wait for ever.
+
+    Args:
+        array: of any shape.
+    """
+    flat = array.reshape(-1)
+    if len(flat) <= _BLOCK:
+        return float(np.vdot(flat, flat))
+    blocks = (flat[first : first + _BLOCK] for first in range(0, len(flat), _BLOCK))
+    return float(sum(np.vdot(block, block) for block in blocks))
+
 
 def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateError) -> Array:
     """Reads real numbers as float64 and refuses everything else, NaN and infinity included.
@@ -53,7 +72,7 @@ def real_array(value: ArrayLike, what: str, error: type[KinlabError] = StateErro
     else:  # of longer floats, the largest are infinite here
         with np.errstate(over="ignore"):
             result = np.asarray(array, dtype=np.float64)
-    if np.vdot(result, result) <= LARGEST:  # then every |x| is; half the cost of comparing each
+    if sum_of_squares(result) <= LARGEST:  # then every |x| is; half the cost of comparing each
         return result
     fine = np.abs(result) <= LARGEST  # false for NaN
     if not fine.all():

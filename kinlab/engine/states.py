@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from kinlab.arrays import LARGEST, Array, real_array
+from kinlab.arrays import LARGEST, Array, real_array, sum_of_squares
 from kinlab.errors import StateError, warn
 from kinlab.model.robot import Robot
 
@@ -59,7 +59,7 @@ def joint_vector(robot: Robot, value: ArrayLike, name: str) -> Array:
         if value.shape == robot.shape:
             if -LARGEST < sum(value.tolist()) < LARGEST:  # a tenth of np.isfinite(value).all()
                 return value
-        elif value.ndim == 2 and value.shape[1] == robot.n and np.vdot(value, value) <= LARGEST:
+        elif value.ndim == 2 and value.shape[1] == robot.n and sum_of_squares(value) <= LARGEST:
             return _packed(value)
     array = real_array(value, f"robot {robot.name!r}: {name}")
     if array.ndim not in (1, 2) or array.shape[-1] != robot.n:
@@ -86,7 +86,7 @@ def warn_far(robot: Robot, q: Array, name: str = "q") -> None:
     Warns:
         KinlabWarning: naming the first joint that is far outside.
     """
-    if np.vdot(q, q) <= robot.near_square:  # no entry can be far outside
+    if sum_of_squares(q) <= robot.near_square:  # no entry can be far outside
         return
     rows = np.atleast_2d(q)
     far = np.abs(rows - np.clip(rows, robot.lower, robot.upper)) > robot.slack

@@ -24,10 +24,11 @@ work = {
 }[sys.argv[1]]
 here = work()
 
-# the child compares, and says so by its exit status: the parent, once it has forked, waits for it
-# with nothing else running. A child that never answers is ended by the alarm and says where it was
+# the child compares, and says so by its exit status; one that never answers is ended by the alarm,
+# as is the parent, and says where it was
 faulthandler.enable()
 faulthandler.register(signal.SIGALRM, chain=True)
+signal.alarm(100)
 def child():
     pid = os.fork()
     if pid == 0:
