@@ -32,11 +32,6 @@ D = slope(M)
 # Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k
 C = 0.5*(D + ikj(D) - jki(D)) @ v
 """
-VELOCITY = """
-D = slope(M)
-# the velocity torques: Mdot v and the gradient of ½ v^T M v
-c = (D @ v) @ v - 0.5*(jki(D) @ v) @ v
-"""
 LAGRANGE = {
     "mass_matrix": ("M", ""),
     "gravity_torques": ("G", ""),

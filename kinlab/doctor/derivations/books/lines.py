@@ -32,7 +32,6 @@ LINES = (
     N_("the potential energy"),
     N_("the rotors' inertia"),
     N_("Christoffel's C_ij = Σ ½ (dM_ij/dq_k + dM_ik/dq_j - dM_jk/dq_i) qd_k"),
-    N_("the velocity torques: Mdot v and the gradient of ½ v^T M v"),
     N_("the kinetic energy"),
     N_("the momentum"),
     N_("the Lagrangian L = T - V"),
