@@ -54,6 +54,7 @@ class Case:
         arguments: the states, by name, (N, ...).
         hand: the hand formula's answers, (N, ...).
         index: which entries of the quantity the hand formula is.
+        function: the hand formula itself, where it is a function that can be read.
         slack: relative error up to which an explanation fits.
         again: the hand formula's answers at other states, (N, ...), where it can be asked.
     """
@@ -64,6 +65,7 @@ class Case:
     hand: Array
     index: tuple[Any, ...] = ()
     again: Callable[[Arguments], Any] | None = None
+    function: Callable[..., Any] | None = None
     slack: float = TOLERANCES.formula_agrees
 
     def engine(self, robot: Robot, arguments: Arguments) -> Array:

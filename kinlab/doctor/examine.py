@@ -33,6 +33,7 @@ from kinlab.doctor.derivations.parts import Apart, apart, proved
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
+from kinlab.doctor.program.words import repaired
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -148,6 +149,7 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
+    edited = _exactly(repaired(case, engine, _left(worst)), worst) if same and not written else []
     rough: list[Cause] = []
     ways: Ready = []
     if not visible:
@@ -161,6 +163,8 @@ def _explained(
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         causes = _outranked(causes, exact)
+        if edited:
+            return _in_lines(edited, exact), (), None, None
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
@@ -186,6 +190,22 @@ def _explained(
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
     return causes, partial, None, split
+
+
+def _in_lines(edited: list[Cause], read: list[Cause]) -> list[Cause]:
+    """What a line of the program should be, with what that means where it is known."""
+    meant = sorted((c for c in read if c.cost <= _FETCHED), key=lambda c: c.cost)[:1]
+    said = _("{meaning}: {line}")
+    return [
+        replace(
+            line,
+            sentence=said.format(meaning=cause.sentence, line=line.sentence),
+            kinds=cause.kinds,
+            places=(*line.places, *cause.places),
+        )
+        for cause in meant
+        for line in edited[:1]
+    ] or edited[:1]
 
 
 def _texts_again(

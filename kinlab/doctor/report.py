@@ -85,7 +85,11 @@ def diagnose(
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
     stacked = state_by_state(case.quantity.asked(case.robot, function))
-    case = replace(case, again=lambda states: np.asarray(stacked(None, *states.values())))
+    case = replace(
+        case,
+        again=lambda states: np.asarray(stacked(None, *states.values())),
+        function=function,
+    )
     hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(function), {})
 

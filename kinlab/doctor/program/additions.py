@@ -1,0 +1,263 @@
+"""What may be missing in a program: a sign, a transpose, a factor, a matrix, a term."""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Iterator
+from math import pi
+
+import numpy as np
+
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import Edit, Here, called, number
+from kinlab.doctor.program.trial import Trial
+
+ANGLES = ("sin", "cos", "tan")
+_LONG = 60
+"""Letters up to which an expression is tried in other places."""
+_UNUSED = 0.2
+"""What it is likelier that something is missing which is set and used nowhere."""
+
+
+class Scope:
+    """What may be written in one part: its names with their shapes, and its expressions.
+
+    Attributes:
+        shapes: names of numbers, by their shapes.
+        lists: names of lists, by the shapes of their entries.
+        counters: names that count.
+        unused: names that are set, in the part or in the module, and used nowhere.
+        turned: names of which sines and cosines are taken.
+        angles: what sines and cosines are taken of.
+        pieces: expressions that occur, and entries of lists by a counter, by shape and text.
+    """
+
+    def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
+        tree = trial.trees[part]
+        self.shapes: dict[str, Shape] = {}
+        self.lists: dict[str, Shape] = {}
+        self.counters: list[str] = []
+        self.angles: dict[str, ast.expr] = {}
+        self.pieces: dict[Shape, dict[str, ast.expr]] = {}
+        inner: set[str] = set()
+        for node in ast.walk(tree):
+            if isinstance(node, ast.For | ast.comprehension):
+                names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
+                self.counters += [n for n in names if n not in self.counters]
+                if isinstance(node, ast.comprehension):
+                    inner |= {*names}
+        loaded = {
+            n.id
+            for one in trial.trees
+            for n in ast.walk(one)
+            if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
+        }
+        for node in ast.walk(tree):
+            if isinstance(node, ast.expr):
+                self._of_expression(node, observed, inner)
+            if isinstance(node, ast.Assign) and len(node.targets) == 1:
+                for name, shape in _unpacked(node.targets[0], node.value, observed):
+                    self.shapes.setdefault(name, shape)
+        self.counters = [
+            name for name in self.counters if self.shapes.get(name, ()) == ()
+        ]
+        for name, value in trial.program.space.items():
+            if name[:1] != "_" and isinstance(value, int | float | list | tuple | np.ndarray):
+                shape = _shape(value)
+                if shape is not None:
+                    self.shapes.setdefault(name, shape)
+        self.turned = {
+            n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
+        }
+        self.unused = {name for name in self.shapes if name not in loaded}
+        for name, shape in self.shapes.items():
+            if name in self.counters:
+                continue
+            plain = ast.Name(name, ast.Load())
+            if name in self.unused:
+                self.pieces.setdefault(shape, {}).setdefault(name, plain)
+            if shape and (name in self.unused or len(shape) > 1):
+                self.lists.setdefault(name, shape[1:])
+        for name, shape in self.lists.items():
+            for counter in self.counters:
+                counted = ast.Name(counter, ast.Load())
+                entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
+                self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+
+    def _of_expression(self, node: ast.expr, observed: Observed, inner: set[str]) -> None:
+        seen = observed.of(node)
+        if seen is not None and seen.entries is not None and isinstance(node, ast.Name):
+            self.lists.setdefault(node.id, seen.entries)
+        if seen is None or seen.shape is None or isinstance(node, ast.Constant):
+            return
+        if isinstance(node, ast.Name):
+            self.shapes.setdefault(node.id, seen.shape)
+            if seen.whole and seen.shape == ():
+                return
+        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+        text = ast.unparse(node)
+        if names & inner or len(text) > _LONG:
+            return
+        own = copy.deepcopy(node)
+        self.pieces.setdefault(seen.shape, {}).setdefault(text, own)
+        if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
+            self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
+
+    def dear(self, text: str, node: ast.expr) -> float:
+        """What a piece costs less for being used nowhere."""
+        del text
+        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+        return 0.0 if names & self.unused else _UNUSED
+
+    def simple(self, shape: Shape) -> Iterator[tuple[str, ast.expr]]:
+        """Names, entries of lists and attributes of one shape."""
+        for text, node in self.pieces.get(shape, {}).items():
+            if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
+                yield text, node
+
+
+def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
+    """A sign, a transpose, a factor, a term more: where an expression stands for itself."""
+    node, parent = here.node, here.parent
+    zero = isinstance(node, ast.Constant) and node.value == 0
+    literal = isinstance(node, ast.List | ast.Tuple)
+    if shape and not literal and not isinstance(parent, ast.Attribute):
+        yield from _matrices(here, scope, shape)
+    if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
+        return
+    operated = isinstance(parent, ast.BinOp)
+    op = parent.op if isinstance(parent, ast.BinOp) else None
+    summand = isinstance(op, ast.Add | ast.Sub)
+    product = isinstance(op, ast.MatMult)
+    entry = isinstance(parent, ast.List | ast.Tuple)
+    whole = isinstance(parent, ast.Assign | ast.AugAssign | ast.Return) or entry
+    trig = isinstance(parent, ast.Call) and called(parent) in ANGLES
+    argument = isinstance(parent, ast.Call) and not trig
+    first = summand and here.field == "left"
+    if not isinstance(node, ast.UnaryOp) and (first or not operated):
+        if not isinstance(parent, ast.UnaryOp):
+            cost = 1.0 if whole or first else 1.1
+            yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
+    below = isinstance(op, ast.Div) and here.field == "right"
+    if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
+        for value in (2, 0.5):
+            times = ast.BinOp(number(value), ast.Mult(), node)
+            yield here.instead(times, "factor", 1.05 if not trig else 1.15)
+    if trig:
+        yield from _angle(here, scope)
+        return
+    if isinstance(node, ast.Constant):
+        return
+    if shape == ():
+        yield from _scalars(here, scope, summand or whole or below, operated)
+    if whole or summand or argument or product:
+        yield from _terms(here, scope, shape, whole)
+
+
+def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
+    node = here.node
+    if len(shape) == 2 and not (isinstance(node, ast.Attribute) and node.attr == "T"):
+        yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", 1.04)
+    if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
+        return
+    if isinstance(node, ast.Name) and len(shape) > 2:
+        return
+    for size in {shape[0], shape[-1]}:
+        for text, matrix in scope.simple((size, size)):
+            cost = 1.02 + scope.dear(text, matrix)
+            for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
+                if turned is not matrix and isinstance(matrix, ast.Attribute):
+                    continue
+                if size == shape[0]:
+                    new = ast.BinOp(turned, ast.MatMult(), node)
+                    yield here.instead(new, "missing matrix", cost)
+                if len(shape) == 2 and size == shape[-1]:
+                    new = ast.BinOp(node, ast.MatMult(), turned)
+                    yield here.instead(new, "missing matrix", cost)
+                cost += 0.02
+
+
+def _angle(here: Here, scope: Scope) -> Iterator[Edit]:
+    node = here.node
+    radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
+    yield here.instead(radians, "degrees", 1.1)
+    own = {ast.unparse(n) for n in ast.walk(node)}
+    for text, angle in scope.simple(()):
+        if text not in own:
+            cost = 1.0 + scope.dear(text, angle)
+            yield here.instead(ast.BinOp(node, ast.Add(), angle), "argument", cost)
+
+
+def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[Edit]:
+    node, parent = here.node, here.parent
+    own = ast.unparse(node)
+    power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
+    named = isinstance(node, ast.Name | ast.Subscript)
+    if named and not power and (operated or term):
+        yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
+    for text, scalar in scope.pieces.get((), {}).items():
+        if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
+            continue
+        dear = scope.dear(text, scalar)
+        if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
+            yield here.instead(scalar, "parameter", 1.05 + dear)
+        if term:
+            yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
+        elif named and operated and (text[0] == own[0] or not dear):
+            for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
+                new = ast.BinOp(node, op, scalar)
+                yield here.instead(new, "missing term", cost + dear)
+
+
+def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Edit]:
+    node = here.node
+    own = ast.unparse(node)
+    entry = isinstance(here.parent, ast.List | ast.Tuple)
+    for text, piece in scope.pieces.get(shape, {}).items():
+        named = isinstance(piece, ast.Name | ast.Subscript)
+        if text == own or not (whole or named or isinstance(piece, ast.Attribute)):
+            continue
+        if entry and not isinstance(piece, ast.BinOp) and scope.dear(text, piece):
+            continue
+        dear = scope.dear(text, piece)
+        for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
+            yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
+        if whole and shape == () and not dear:
+            for factor, other in scope.simple(()):
+                product = ast.BinOp(piece, ast.Mult(), other)
+                if factor != text:
+                    new = ast.BinOp(node, ast.Add(), product)
+                    yield here.instead(new, "missing term", 1.15)
+
+
+def _shape(value: object) -> Shape | None:
+    if isinstance(value, bool):
+        return None
+    try:
+        numbers = np.asarray(value)
+    except ValueError:
+        return None
+    return numbers.shape if numbers.dtype.kind in "fi" else None
+
+
+def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
+    """The names that an assignment sets, each with its value."""
+    if isinstance(target, ast.Name):
+        yield target.id, value
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for one, part in zip(target.elts, value.elts, strict=False):
+            yield from _set(one, part)
+
+
+def _unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:
+    """The names that an assignment sets, each with the shape of its value."""
+    for name, part in _set(target, value):
+        shape = observed.shape(part)
+        if shape is not None:
+            yield name, shape
+    if isinstance(target, ast.Tuple) and not isinstance(value, ast.Tuple):
+        shape = observed.shape(value)
+        for one in target.elts:
+            if isinstance(one, ast.Name) and shape:
+                yield one.id, shape[1:]

@@ -1,0 +1,88 @@
+"""The places of a program, and what is put there instead."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from kinlab.doctor.program.trial import Change
+
+DATA = -1
+"""In place of a part's number: an edit of the program's data."""
+
+
+@dataclass(frozen=True, eq=False)
+class Edit:
+    """Something else in one place of a program.
+
+    Attributes:
+        part: which function; :data:`DATA` for the data.
+        changes: what is put where.
+        kind: ``"sign"``, ``"index"``, ``"transposed"``, ...
+        cost: how far-fetched it is.
+        node: what is changed: an expression or a statement; of data its name.
+        place: the keys down to a number of the data.
+    """
+
+    part: int
+    changes: tuple[Change, ...]
+    kind: str
+    cost: float
+    node: Any
+    place: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Here:
+    """A node and where it hangs."""
+
+    part: int
+    node: Any
+    parent: ast.AST
+    holder: Any
+    field: Any
+    above: tuple[ast.AST, ...]
+
+    def instead(self, new: Any, kind: str, cost: float) -> Edit:
+        return self.within(self.holder, self.field, new, kind, cost)
+
+    def within(self, holder: Any, field: Any, new: Any, kind: str, cost: float) -> Edit:
+        for node in new if isinstance(new, list) else [new]:
+            if isinstance(node, ast.AST):
+                _located(node, self.node)
+        return Edit(self.part, (Change(holder, field, new),), kind, cost, self.node)
+
+
+def places(part: int, tree: ast.AST, above: tuple[ast.AST, ...] = ()) -> Iterator[Here]:
+    inside = (*above, tree)
+    for name, value in ast.iter_fields(tree):
+        if name in ("annotation", "returns", "decorator_list"):
+            continue
+        if isinstance(value, list):
+            for k, node in enumerate(value):
+                if isinstance(node, ast.AST):
+                    yield Here(part, node, tree, value, k, inside)
+                    yield from places(part, node, inside)
+        elif isinstance(value, ast.AST):
+            yield Here(part, value, tree, tree, name, inside)
+            yield from places(part, value, inside)
+
+
+def called(node: ast.Call) -> str:
+    """The last name of what is called: ``cross`` of ``np.cross``."""
+    target = node.func
+    return target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
+
+
+def number(value: Any) -> ast.expr:
+    """A number as it is written."""
+    return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
+
+
+def _located(new: ast.AST, old: ast.AST) -> None:
+    """Gives new nodes the place of the one they stand for."""
+    for node in ast.walk(new):
+        if "lineno" in node._attributes and not hasattr(node, "lineno"):
+            ast.copy_location(node, old)

@@ -1,0 +1,192 @@
+"""A program run with edits in it."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from types import CodeType, FunctionType
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.program.read import Part, Program
+
+_REMEMBERED = 20_000
+"""Answers of one part that are kept."""
+_TURNS = 2_000
+"""Turns that all ``while`` loops of one call may take."""
+
+
+@dataclass(frozen=True, eq=False)
+class Change:
+    """Another value in one field of a syntax tree, or in one place of the data.
+
+    Attributes:
+        holder: the node, list, dictionary or array.
+        field: the name of the field, or the key or index; a name of the data in ``space``.
+        new: what it gets.
+    """
+
+    holder: Any
+    field: Any
+    new: Any
+
+
+class Trial:
+    """A program that can be run with changes in it; nothing of the user's own is touched.
+
+    Args:
+        program: what was read.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.space = dict(program.space)
+        for name in program.data:
+            self.space[name] = copy.deepcopy(program.space[name])
+        self.trees = [_bounded(part.tree) for part in program.parts]
+        self.space["_turn"] = self._turn
+        self._turns = 0
+        for k in range(len(self.trees)):
+            self.build(k)
+        self._first = program.parts[0].name
+        self.above = _callers(program)
+        self._known: list[dict[Any, Any]] = [{} for _ in program.parts]
+
+    def build(self, k: int) -> None:
+        """Compiles one part as its tree stands now."""
+        part = self.program.parts[k]
+        self.space[part.name] = made(self.trees[k], part, self.space)
+
+    @contextmanager
+    def changed(self, parts: set[int], changes: Sequence[Change]) -> Iterator[None]:
+        """The program with changes in it; -1 stands for its data."""
+        before = [(change, _get(change)) for change in changes]
+        names = [part.name for part in self.program.parts]
+        touched = {k for part in parts for k in self.above[part]}
+        kept = {k: self.space[name] for k, name in enumerate(names)}
+        try:
+            for change in changes:
+                _put(change, change.new)
+            for k, name in enumerate(names):
+                if k in parts:
+                    self.build(k)  # -1, the data, needs none
+                elif k not in touched and -1 not in parts:
+                    self.space[name] = _remembering(kept[k], self._known[k])
+            yield
+        finally:
+            for change, old in reversed(before):
+                _put(change, old)
+            for k, function in kept.items():
+                self.space[names[k]] = function
+
+    def function(self, *state: Any) -> Any:
+        """The program at one state."""
+        self._turns = 0
+        return self.space[self._first](*self.program.bound, *state)
+
+    def _turn(self) -> bool:
+        self._turns += 1
+        if self._turns > _TURNS:
+            raise RuntimeError("a loop without end")
+        return True
+
+
+@contextmanager
+def quietly() -> Iterator[None]:
+    """What edited programs warn of is nobody's concern."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        yield
+
+
+def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionType:
+    """A function of a definition, with the defaults that the user's own has."""
+    module = ast.Module([tree], [])
+    code = compile(module, "<formula>", "exec")
+    own = next(one for one in code.co_consts if isinstance(one, CodeType))
+    function = FunctionType(own, space, part.name, part.function.__defaults__)
+    function.__kwdefaults__ = part.function.__kwdefaults__
+    return function
+
+
+def _callers(program: Program) -> dict[int, set[int]]:
+    """For each part those whose answers depend on it, itself among them; -1 for the data."""
+    names = {part.name: k for k, part in enumerate(program.parts)}
+    calls = [
+        {names[n.id] for n in ast.walk(part.tree) if isinstance(n, ast.Name) and n.id in names}
+        for part in program.parts
+    ]
+    every = range(len(calls))
+    above = {k: {k} for k in every}
+    for _round in every:
+        for k in every:
+            above[k] |= {j for j in every if calls[j] & above[k]}
+    return {**above, -1: set(every)}
+
+
+def _remembering(function: FunctionType, known: dict[Any, Any]) -> Any:
+    """A part that no edit reaches: its answers are kept, by what it was asked."""
+
+    def remembered(*asked: Any) -> Any:
+        try:
+            key = tuple(_key(one) for one in asked)
+            hash(key)
+        except TypeError:
+            return function(*asked)
+        if key not in known:
+            if len(known) >= _REMEMBERED:
+                known.clear()
+            known[key] = function(*asked)
+        return copy.deepcopy(known[key])
+
+    return remembered
+
+
+def _key(value: Any) -> Any:
+    if isinstance(value, np.ndarray):
+        return (value.shape, value.dtype.str, value.tobytes())
+    if isinstance(value, list | tuple):
+        return (type(value).__name__, *map(_key, value))
+    return value if isinstance(value, str) else (type(value).__name__, value)
+
+
+def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
+    """A copy that prints nothing and whose loops end."""
+    own = copy.deepcopy(tree)
+    own.returns, own.args.defaults = None, []
+    own.args.kw_defaults = [None] * len(own.args.kwonlyargs)
+    for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
+        name.annotation = None
+    own = _Quiet().visit(own)
+    return ast.fix_missing_locations(own)
+
+
+class _Quiet(ast.NodeTransformer):
+    def visit_Expr(self, node: ast.Expr) -> ast.stmt:
+        called = node.value.func if isinstance(node.value, ast.Call) else None
+        silent = isinstance(called, ast.Name) and called.id in ("print", "display")
+        return ast.copy_location(ast.Pass(), node) if silent else node
+
+    def visit_While(self, node: ast.While) -> ast.While:
+        self.generic_visit(node)
+        turn = ast.Call(ast.Name("_turn", ast.Load()), [], [])
+        node.test = ast.BoolOp(ast.And(), [turn, node.test])
+        return node
+
+
+def _get(change: Change) -> Any:
+    if isinstance(change.holder, ast.AST):
+        return getattr(change.holder, change.field)
+    return change.holder[change.field]
+
+
+def _put(change: Change, value: Any) -> None:
+    if isinstance(change.holder, ast.AST):
+        setattr(change.holder, change.field, value)
+    else:
+        change.holder[change.field] = value

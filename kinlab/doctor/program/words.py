@@ -1,0 +1,152 @@
+"""A repair in words: the line, what stands there, what should."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+
+from kinlab.arrays import Array
+from kinlab.check.diagnosis import Cause
+from kinlab.doctor.changes import Case
+from kinlab.doctor.program.places import DATA, Edit
+from kinlab.doctor.program.repair import Repair, Search, changed
+from kinlab.doctor.program.trial import Trial
+from kinlab.host.language import N_, _
+
+_WIDE = 72
+"""Letters of a piece of a program that is shown; more of it where it is shorter."""
+
+_WHAT = {
+    "sign": N_("the sign is wrong"),
+    "sin/cos": N_("sine and cosine are exchanged"),
+    "index": N_("the index is another's"),
+    "parameter": N_("it is another name"),
+    "transposed": N_("the transpose is wrong"),
+    "factor": N_("a factor is wrong"),
+    "number": N_("a number is wrong"),
+    "power": N_("the power is wrong"),
+    "argument": N_("the angle is another"),
+    "parentheses": N_("the parentheses are wrong"),
+    "degrees": N_("degrees are taken for radians"),
+    "order": N_("the order is wrong"),
+    "order of lines": N_("what the line uses is updated too early, or too late"),
+    "loop": N_("the loop has other bounds"),
+    "condition": N_("the condition is wrong"),
+    "entries swapped": N_("two entries are exchanged"),
+    "rows": N_("the rows are others"),
+    "inverse": N_("the inverse is wrong"),
+    "product": N_("it is a matrix product"),
+    "sum": N_("the sum forgets what was there before"),
+    "extra statement": N_("the line is one too many"),
+    "extra term": N_("a term is too many"),
+    "extra factor": N_("a factor is too many"),
+    "missing term": N_("a term is missing"),
+    "missing factor": N_("a factor is missing"),
+    "missing matrix": N_("a product with a matrix is missing"),
+}
+
+
+def repaired(case: Case, wanted: Array, allowed: float) -> list[Cause]:
+    """What single edits of its program make a hand formula right, the likeliest first.
+
+    Args:
+        case: the states, and the formula's own answers.
+        wanted: the right answers, (N, ...).
+        allowed: the relative error that may be left.
+    """
+    search = Search(case, wanted, allowed)
+    return [cause_of(repair, search.trial) for repair in search.singles()]
+
+
+def cause_of(repair: Repair, trial: Trial) -> Cause:
+    """A repair as a cause."""
+    told = [*_told(repair, trial)]
+    return Cause(
+        _("; ").join(dict.fromkeys(told)),
+        tuple(edit.kind for edit in repair.edits),
+        tuple(_place(edit, trial) for edit in repair.edits),
+        repair.error,
+        repair.cost,
+    )
+
+
+def _told(repair: Repair, trial: Trial) -> Iterator[str]:
+    for edit in repair.edits:
+        if edit.part == DATA:
+            yield _of_data(edit)
+            continue
+        old, new = _pieces(edit, trial)
+        said = {"place": _line(edit, trial), "old": old, "new": new, "what": _(_WHAT[edit.kind])}
+        if edit.kind == "order of lines":
+            yield _("{place}, `{old}`: {what}; it should stand {new}").format(**said)
+        elif edit.kind == "extra statement":
+            yield _("{place}, `{old}`: {what}").format(**said)
+        else:
+            yield _("{place}, {what}: `{old}` should be `{new}`").format(**said)
+
+
+def _line(edit: Edit, trial: Trial) -> str:
+    part = trial.program.parts[edit.part]
+    if edit.part:
+        return _("line {number} (in {function})").format(
+            number=edit.node.lineno, function=part.name
+        )
+    return _("line {number}").format(number=edit.node.lineno)
+
+
+def _place(edit: Edit, trial: Trial) -> str:
+    return str(edit.node) if edit.part == DATA else f"line {edit.node.lineno}"
+
+
+def _of_data(edit: Edit) -> str:
+    change = edit.changes[0]
+    name = edit.node + "".join(f"[{key!r}]" for key in edit.place)
+    old = change.holder[change.field]
+    said = {"name": name, "what": _(_WHAT[edit.kind])}
+    if isinstance(old, float | int):
+        return _("{name}, {what}: {old:.6g} should be {new:.6g}").format(
+            **said, old=float(old), new=float(change.new)
+        )
+    return _("{name}, {what}").format(**said)
+
+
+def _pieces(edit: Edit, trial: Trial) -> tuple[str, str]:
+    """What stands there, and what should: the widest that is short."""
+    tree = trial.trees[edit.part]
+    above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+    chain = [edit.node]
+    while id(chain[-1]) in above and isinstance(chain[-1], ast.expr):
+        chain.append(above[id(chain[-1])])
+    chain = [node for node in chain if not isinstance(node, ast.FunctionDef)]
+    if edit.kind == "order of lines":
+        return _text(edit.node), _after(edit)
+    before = [_text(node) for node in chain]
+    with changed(trial, (edit,)):
+        after = [_text(node) for node in chain]
+        if before[0] == after[0] and len(edit.changes) == 1:
+            new = edit.changes[0].new
+            if before[-1] == after[-1]:
+                after = [_text(new)] if isinstance(new, ast.AST) else after
+                before = before[:1]
+    pairs = [(one, other) for one, other in zip(before, after, strict=True) if one != other]
+    short = [pair for pair in pairs if max(map(len, pair)) <= _WIDE]
+    if short:
+        return short[-1]
+    return pairs[0] if pairs else (before[0], after[0])
+
+
+def _after(edit: Edit) -> str:
+    later = edit.changes[0].new
+    k = next(i for i, one in enumerate(later) if one is edit.node)
+    if k + 1 < len(later):
+        return _("before line {number}").format(number=later[k + 1].lineno)
+    return _("after line {number}").format(number=later[k - 1].lineno)
+
+
+def _text(node: ast.AST) -> str:
+    """A piece of a program as it is usually typed."""
+    text = ast.unparse(node).partition("\n")[0].rstrip(":")
+    return re.sub(r" (\*\*|\*|/) ", r"\1", text)
+
+
