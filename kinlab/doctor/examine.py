@@ -149,7 +149,8 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    edited = _exactly(repaired(case, engine, _left(worst)), worst) if same and not written else []
+    lines = repaired(case, engine, _left(worst)) if same and not written else []
+    edited = _exactly(lines, worst)
     rough: list[Cause] = []
     ways: Ready = []
     if not visible:

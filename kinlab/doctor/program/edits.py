@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from dataclasses import dataclass
 from math import pi
 from typing import Any
 
@@ -20,6 +21,9 @@ from kinlab.doctor.program.trial import Change, Trial
 
 _TRIG = ("sin", "cos", "tan")
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
+_PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
+_TABLE = 60
+"""Numbers of an array of which any may be wrong."""
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
 
@@ -57,7 +61,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
     )
     whole = seen is not None and seen.whole and shape == ()
     if isinstance(node, ast.BinOp):
-        yield from _operator(here, observed, index)
+        yield from _operator(here, observed, index or whole)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         yield here.instead(node.operand, "sign", 1.0)
     elif isinstance(node, ast.Call):
@@ -109,7 +113,7 @@ def _operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
         if index:
             return
         for side, inner in (("left", left), ("right", right)):
-            if isinstance(inner, ast.BinOp) and isinstance(inner.op, ast.Mult | ast.Div):
+            if isinstance(inner, ast.BinOp) and isinstance(inner.op, _PRODUCTS):
                 # a*b + c for a*(b + c)
                 first, last = (inner.left, inner.right)
                 both = (last, right) if side == "left" else (left, first)
@@ -128,7 +132,16 @@ def _operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
             if isinstance(left.op, ast.Sub):  # a - b + c for a - (b + c)
                 rest = ast.BinOp(left.right, turned if isinstance(op, ast.Sub) else op, right)
                 yield here.instead(ast.BinOp(left.left, ast.Sub(), rest), "parentheses", 1.2)
-    elif isinstance(op, ast.Mult | ast.Div | ast.MatMult):
+    elif isinstance(op, _PRODUCTS):
+        for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
+            if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
+                # a*(b + c) for a*b + c
+                one, other = sum_.left, sum_.right
+                if name == "right":
+                    new = ast.BinOp(ast.BinOp(outer, op, one), sum_.op, other)
+                else:
+                    new = ast.BinOp(one, sum_.op, ast.BinOp(other, op, outer))
+                yield here.instead(new, "parentheses", 1.15)
         matrices = [observed.shape(side) for side in (left, right)]
         yield here.instead(left, "extra factor", 1.15)
         yield here.instead(right, "extra factor", 1.17)
@@ -368,8 +381,7 @@ def _comparison_of(here: Here, test: ast.expr) -> Iterator[Edit]:
     if isinstance(test, ast.Compare) and len(test.comparators) == 1:
         right = test.comparators[0]
         for step in (1, -1):
-            new = [_plus(right, step)]
-            yield Edit(here.part, (Change(test, "comparators", new),), "condition", 1.25, test)
+            yield here.within(test, "comparators", [_plus(right, step)], "condition", 1.25)
 
 
 def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
@@ -464,6 +476,56 @@ def _numbers_in(holder: Any, key: Any, name: str, place: tuple[Any, ...]) -> Ite
                 if value[index]:
                     change = Change(value, index, -value[index])
                     yield Edit(DATA, (change,), "sign", 1.1, name, (*place, *index))
+
+
+# -------- Numbers
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """A number in the text of a program, or in its data."""
+
+    value: float
+    part: int
+    holder: Any
+    field: Any
+    node: Any
+    place: tuple[Any, ...] = ()
+
+    def edit(self, value: float) -> Edit:
+        """Another number there."""
+        change = Change(self.holder, self.field, value)
+        return Edit(self.part, (change,), "number", 1.15, self.node, self.place)
+
+
+def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
+    """Numbers that are no index."""
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            node = here.node
+            if isinstance(node, ast.Constant) and observed.of(node) is not None:
+                if isinstance(node.value, float) or (
+                    type(node.value) is int and isinstance(here.parent, ast.BinOp)
+                ):
+                    yield Place(node.value, part, node, "value", node)
+    for name in trial.program.data:
+        for holder, key, place in _leaves(trial.space, name, ()):
+            yield Place(float(holder[key]), DATA, holder, key, name, place)
+
+
+def _leaves(holder: Any, key: Any, place: tuple[Any, ...]) -> Iterator[tuple[Any, Any, Any]]:
+    value = holder[key]
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        yield holder, key, place
+    elif isinstance(value, dict):
+        for k in value:
+            yield from _leaves(value, k, (*place, k))
+    elif isinstance(value, list):
+        for k in range(len(value)):
+            yield from _leaves(value, k, (*place, k))
+    elif isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size <= _TABLE:
+        for index in np.ndindex(value.shape):
+            yield value, index, (*place, *index)
 
 
 # -------- Small trees

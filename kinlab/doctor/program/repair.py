@@ -7,16 +7,18 @@ counted in expressions, not in seconds, so that the answer is the same on every 
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+import copy
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.program.edits import edits
+from kinlab.doctor.program.edits import Place, edits, numbers
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Edit
 from kinlab.doctor.program.read import read
@@ -30,6 +32,14 @@ _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
+_ANY_ZERO = ("potential_energy", "lagrangian")
+"""Quantities of which a constant more or less is no slip."""
+_NUMBER = 1.15
+"""Cost of an edit above which it is rather a wrong number that explains the program."""
+_TURNS = 5
+"""Steps in which a wrong number is solved for."""
+_DIGITS = 6
+"""Digits of a number that somebody may have typed."""
 _CLOSE = 1e-7
 """Share of the answer's size within which an edit is tried at all states."""
 
@@ -62,16 +72,27 @@ class Search:
         self.program = None if case.function is None else read(case.function)
         self.case, self.wanted, self.allowed = case, wanted, allowed
         self.sizes = error_sizes(wanted)
+        self.stand: tuple[Edit, ...] = ()
         self.tried: list[tuple[Edit, Array]] = []
-        self.work = 0
+        self.work, self.most = 0, _WORK
         if self.program is None:
             return
         self.trial = Trial(self.program)
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
-        states = [tuple(stack[k] for stack in case.arguments.values()) for k in self.first]
+        self._prepare()
+
+    def _prepare(self) -> None:
+        stacks = self.case.arguments.values()
+        states = [tuple(stack[k] for stack in stacks) for k in self.first]
         self.observed = Observed(self.trial, states)
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+
+    def beside(self, stand: tuple[Edit, ...]) -> Search:
+        """The search for more, while edits stand in the program."""
+        other = copy.copy(self)
+        other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // 4
+        return other
 
     def singles(self) -> list[Repair]:
         """Single edits that make the program right, the likeliest first."""
@@ -80,33 +101,86 @@ class Search:
         found: list[Repair] = []
         with quietly():
             for edit in edits(self.trial, self.observed):
-                if found and edit.cost > found[0].cost + _TIED:
+                if found and edit.cost > found[0].edits[-1].cost + _TIED:
                     break
                 self.work += self.observed.work[edit.part]
                 self.work += self.nodes[edit.part] if edit.part >= 0 else 0
-                if self.work > _WORK:
+                if self.work > self.most:
                     break
-                repair = self._one(edit)
+                with changed(self.trial, (edit,)):
+                    values = self.values(self.first)
+                    if values is None:
+                        continue
+                    self.tried.append((edit, values))
+                    repair = self.verdict((*self.stand, edit), values)
                 if repair is not None:
                     found.append(repair)
+            if not found or found[0].edits[-1].cost > _NUMBER:
+                found = [*self._numbers(), *found]
         return found
 
-    def _one(self, edit: Edit) -> Repair | None:
-        with changed(self.trial, (edit,)):
-            values = self._values(self.first)
-            if values is None:
-                return None
-            self.tried.append((edit, values))
-            if not self._close(values):
-                return None
-            return self._all((edit,))
+    def _numbers(self) -> Iterator[Repair]:
+        """Single numbers, of the text or the data, with which the program is right."""
+        for place in numbers(self.trial, self.observed):
+            value = self._solved(place)
+            if value is not None:
+                edit = place.edit(value)
+                with changed(self.trial, (edit,)):
+                    repair = self.verdict((*self.stand, edit))
+                if repair is not None:
+                    yield repair
+                    return
 
-    def _close(self, values: Array) -> bool:
+    def _solved(self, place: Place) -> float | None:
+        """The number with which the first states are right, if it is one of few digits."""
+        own = self.values(self.first)
+        if own is None:
+            return None
+        wanted, old = self.wanted[self.first], float(place.value)
+        at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
+        for _turn in range(_TURNS):
+            with changed(self.trial, (place.edit(at + step),)):
+                values = self.values(self.first)
+            if values is None or not np.isfinite(values).all():
+                return None
+            after = (values - wanted).ravel()
+            slope = (after - before) / step
+            flat = float(slope @ slope)
+            if not flat > 0.0:
+                return None
+            at, before, step = at + step, after, -float(after @ slope) / flat
+            if abs(step) <= 1e-9 * max(abs(at), 1e-3):
+                break
+        for digits in range(1, _DIGITS):
+            value = float(f"{at + step:.{digits - 1}e}")
+            with changed(self.trial, (place.edit(value),)):
+                values = self.values(self.first)
+            if value != old and values is not None and self.right(values).all():
+                return value
+        return None
+
+    def right(self, values: Array) -> Any:
+        """Which entries of answers at the first states are right."""
         gap = np.abs(values - self.wanted[self.first])
         sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        return bool(np.all(gap <= max(_CLOSE, self.allowed) * sizes))
+        near = gap <= max(_CLOSE, self.allowed) * sizes
+        return near.all(axis=0).ravel()
 
-    def _values(self, which: Sequence[int]) -> Array | None:
+    def verdict(self, several: tuple[Edit, ...], values: Array | None = None) -> Repair | None:
+        """The repair, if the program as it stands now is right at every state."""
+        values = self.values(self.first) if values is None else values
+        if values is None or not self.right(values).all():
+            return None
+        values = self.values(range(len(self.wanted)))
+        if values is None:
+            return None
+        gap = np.abs(values - self.wanted).reshape(len(values), -1).max(axis=1, initial=0.0)
+        error = float(np.max(gap / self.sizes))
+        if not error <= self.allowed:
+            return None
+        return Repair(several, error, sum(edit.cost for edit in several))
+
+    def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
         quantity, robot = self.case.quantity, self.case.robot
         asked = state_by_state(quantity.asked(robot, self.trial.function))
@@ -118,18 +192,9 @@ class Search:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):
             return None
-        return values if values.shape == wanted.shape else None
-
-    def _all(self, several: tuple[Edit, ...]) -> Repair | None:
-        """The repair, if the program as it stands now is right at every state."""
-        values = self._values(range(len(self.wanted)))
-        if values is None:
+        if values.shape != wanted.shape:
             return None
-        gap = np.abs(values - self.wanted).reshape(len(values), -1).max(axis=1, initial=0.0)
-        error = float(np.max(gap / self.sizes))
-        if not error <= self.allowed:
-            return None
-        return Repair(several, error, sum(edit.cost for edit in several))
+        return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
 
 
 def changed(trial: Trial, several: tuple[Edit, ...]) -> AbstractContextManager[None]:

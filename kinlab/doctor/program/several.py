@@ -1,0 +1,145 @@
+"""Two or three edits that together make a program right.
+
+Those whose effects on the answer add up to what is missing are found without trying each with
+each; others one after the other, where the first makes entries of the answer right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.program.places import Edit
+from kinlab.doctor.program.repair import Repair, Search, changed
+from kinlab.doctor.program.trial import quietly
+from kinlab.doctor.text.pairs import pairs_adding_up
+
+_VERIFIED = 60
+"""Combinations that are tried in the program, the likeliest first."""
+_STEPS = 6
+"""Edits that make entries right from which is gone on."""
+_TRIPLES = 250
+"""Edits of which any three are added up."""
+_MATCH = 1e-8
+"""Share of the answer's size within which effects add up."""
+_EXCHANGED = 0.5
+"""What it costs to take a term out and put another in."""
+_DEEPEST = 2
+"""Edits that may stand already when more are looked for."""
+
+
+def several(search: Search) -> list[Repair]:
+    """Two edits, or else three, that make the program right; the likeliest first.
+
+    Args:
+        search: whose single edits were tried already.
+    """
+    if search.program is None or not search.tried:
+        return []
+    with quietly():
+        return _found(search, (), search.tried)
+
+
+def _found(search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]]) -> list[Repair]:
+    """Repairs of which some edits stand already."""
+    found = [*_adding_up(search, stand, tried, 2)]
+    if not found and len(stand) < _DEEPEST:
+        found = [*_one_after_another(search, stand, tried)]
+    if not found and not stand:
+        found = [*_adding_up(search, stand, tried, 3)]
+    return sorted(found, key=lambda repair: repair.cost)
+
+
+def _adding_up(
+    search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]], count: int
+) -> Iterator[Repair]:
+    wanted = search.wanted[search.first]
+    sizes = search.sizes[search.first].reshape(-1, *[1] * (wanted.ndim - 1))
+    own = search.values(search.first)
+    if own is None or not np.isfinite(own).all():
+        return
+    goal = ((wanted - own) / sizes).ravel()
+    edits_, rows = _distinct(tried, own, sizes)
+    if len(rows) < 2:
+        return
+    both: list[tuple[Edit, ...]]
+    if count == 2:
+        pairs = pairs_adding_up(rows, goal, _MATCH)
+        both = [(edits_[one], edits_[two]) for one, two in pairs]
+    else:
+        most = min(_TRIPLES, len(rows))
+        both = [
+            (edits_[k], edits_[one], edits_[two])
+            for k in range(2, most)
+            for one, two in pairs_adding_up(rows[:k], goal - rows[k], _MATCH)
+        ]
+    both.sort(key=_cost)
+    yield from _verified(search, (stand + one for one in both[:_VERIFIED]))
+
+
+def _distinct(
+    tried: list[tuple[Edit, Array]], own: Array, sizes: Array
+) -> tuple[list[Edit], Array]:
+    """Of edits with one effect the likeliest; those without are left out."""
+    kept: dict[bytes, tuple[Edit, Array]] = {}
+    for edit, values in tried:
+        effect = ((values - own) / sizes).ravel()
+        if not np.isfinite(effect).all() or np.max(np.abs(effect)) < _MATCH:
+            continue
+        key = (np.round(effect, 7) + 0.0).tobytes()
+        if key not in kept or edit.cost < kept[key][0].cost:
+            kept[key] = (edit, effect)
+    one = sorted(kept.values(), key=lambda pair: pair[0].cost)
+    return [edit for edit, _effect in one], np.array([effect for _edit, effect in one])
+
+
+def _one_after_another(
+    search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]]
+) -> Iterator[Repair]:
+    """Edits that make entries right and spoil none, and then what is left."""
+    own = search.values(search.first)
+    if own is None:
+        return
+    before = search.right(own)
+    gains = []
+    for edit, values in tried:
+        after = search.right(values)
+        if np.all(after >= before) and after.sum() > before.sum():
+            gains.append((-int(after.sum()), edit.cost, len(gains), edit))
+    seen: set[bytes] = set()
+    for _gain, _cost_, _k, edit in sorted(gains)[: 4 * _STEPS]:
+        with changed(search.trial, (edit,)):
+            values = search.values(search.first)
+            key = b"" if values is None else np.round(values, 7).tobytes()
+            if values is None or key in seen or len(seen) == _STEPS:
+                continue
+            seen.add(key)
+            here = search.beside((*stand, edit))
+            found = here.singles()
+            more = found or _found(here, (*stand, edit), here.tried)
+        if more:
+            yield from more
+            return
+
+
+def _verified(search: Search, ways: Iterator[tuple[Edit, ...]]) -> Iterator[Repair]:
+    found = 0
+    for way in ways:
+        fresh = [edit for edit in way if edit not in search.stand]
+        with changed(search.trial, tuple(fresh)):
+            repair = search.verdict(way)
+        if repair is not None:
+            yield repair
+            found += 1
+            if found == 3:
+                return
+
+
+def _cost(way: tuple[Edit, ...]) -> float:
+    kinds = {edit.kind for edit in way}
+    swapped = _EXCHANGED if {"extra term", "missing term"} <= kinds else 0.0
+    return sum(edit.cost for edit in way) + swapped
+
+
