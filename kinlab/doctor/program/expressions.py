@@ -144,7 +144,11 @@ class Hand:
                 )
             target = at(ast.Tuple(elements, ast.Store()), span_of(elements[0]))
             value = value.whole.value
-        self.stored.append((value, target))
+        if isinstance(value, Imported) and value.module.names and isinstance(target, ast.Name):
+            alias = None if value.name == target.id else target.id
+            value.module.aliases.append(ast.alias(value.name, alias))
+        else:
+            self.stored.append((value, target))
 
 
 N = TypeVar("N", bound=ast.AST)

@@ -45,6 +45,9 @@ from kinlab.doctor.program.instructions import (
 from kinlab.doctor.program.steps import do
 
 BRANCHES = {"TEST", "AND", "OR"}
+GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
+"""What puts an element into what lies below on the stack: at once, so not to be tried."""
+
 Stops = dict[Step, str]
 """Where a part of a function ends, and how one gets there: ``on``, ``continue``, ``break``."""
 
@@ -111,11 +114,10 @@ def _compiled(tree: ast.FunctionDef, code: CodeType) -> CodeType | None:
         found = compile(module, "<recovered>", "exec", dont_inherit=True)
     except (SyntaxError, ValueError, TypeError):
         return None
-    for _ in range(2 if code.co_freevars else 1):
-        found = next((c for c in found.co_consts if isinstance(c, CodeType)), None)
-        if found is None:
-            return None
-    return found
+    inner = [c for c in found.co_consts if isinstance(c, CodeType)]
+    if inner and code.co_freevars:
+        inner = [c for c in inner[0].co_consts if isinstance(c, CodeType)]
+    return inner[0] if inner else None
 
 
 @dataclass
@@ -154,7 +156,7 @@ def _definition(made: Made, name: str) -> ast.FunctionDef:
     if (text := docstring(code)) is not None:
         head.insert(0, ast.Expr(ast.Constant(text)))
     tree = ast.FunctionDef(
-        name, _arguments(made), head + (body or [ast.Pass()]), made.decorators, None
+        name, _arguments(made), head + (body or [ast.Pass()]), made.decorators, made.notes.get("return")
     )
     line = code.co_firstlineno
     last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
@@ -208,6 +210,7 @@ class _Reader:
         self.first = folded(entry(code))
         self._unchain()
         steps = reachable([self.first])
+        self.left = 4 * len(steps)
         self.into = Counter(after for step in steps for after in step.after)
         self.into[self.first] += 1
         self.world = {str(s.value) for s in steps if s.op in ("STORE_GLOBAL", "DELETE_GLOBAL")}
@@ -258,6 +261,9 @@ class _Reader:
     ) -> Step | None:
         """One statement; the step after it."""
         base = len(stack) if base < 0 else base
+        self.left -= 1
+        if self.left < 0:
+            raise UnreadError("read again and again")
         hand = Hand(stack, [], out)
         start, lines = step, len(out)
         while True:
@@ -334,11 +340,7 @@ class _Reader:
             top = value.name.partition(".")[0]
             return [ast.Import([ast.alias(value.name, None if top == target.id else target.id)])]
         if isinstance(value, Imported):
-            if not value.module.names:
-                return [ast.Import([ast.alias(value.module.name, target.id)])]
-            alias = ast.alias(value.name, None if value.name == target.id else target.id)
-            value.module.aliases.append(alias)
-            return []
+            return [ast.Import([ast.alias(value.module.name, target.id)])]
         raise UnreadError("not stored here")
 
     # Conditions
@@ -385,6 +387,9 @@ class _Reader:
                 return Decision(test, step, step, True, None, Counter([step]), None)
             fresh = False
             if step.op in LAST or step.op == "FOR_ITER":
+                return None
+            size = step.value if isinstance(step.value, int) else 0
+            if step.op in GROWING and size + 1 > len(hand.stack) - height:
                 return None
             do(step, hand, self.finish)
             if (
