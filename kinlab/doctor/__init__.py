@@ -25,6 +25,7 @@ module            what it holds
 ``confusions/``   What people take differently: a known confusion, and what the engine would say if
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
+``program/``       A student's function as its author wrote it: what its values are
 ``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
                   closed form is not
 ``tables/``       The table doctor: two descriptions of one arm disagree; which cell of the table

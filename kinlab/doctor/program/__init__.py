@@ -1,0 +1,11 @@
+"""A student's function as its author wrote it.
+
+============  ====================================================================================
+module        what it holds
+============  ====================================================================================
+``meaning``   What a value in somebody's program is: the axis of joint 2, the angular velocity of
+              link 1
+``textbook``  The textbooks' vectors, matrices and numbers of an arm at one state, each with what it
+              is
+============  ====================================================================================
+"""
