@@ -7,7 +7,8 @@ nothing is said rather than a wrong word.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +27,7 @@ PHRASES = {
     "R": N_("the rotation matrix from {before} to {frame}"),
     "tool rotation": N_("the tool's rotation matrix"),
     "axis": N_("the axis of {joint}"),
-    "frame axis": N_("the {of} axis of {frame}"),
+    "z axis": N_("the z axis of {frame}"),
     "origin": N_("the origin of {frame}"),
     "tool point": N_("the tool point"),
     "centre": N_("the position of the centre of mass of {link}"),
@@ -45,11 +46,11 @@ PHRASES = {
     "vc": N_("the velocity of the centre of mass of {link}"),
     "tool velocity": N_("the velocity of the tool point"),
     "dv": N_("the acceleration of the origin of {frame}"),
-    "dv-g": N_("the acceleration of the origin of {frame}, gravity counted in"),
+    "dv-g": N_("the acceleration of the origin of {frame} less g"),
     "dvc": N_("the acceleration of the centre of mass of {link}"),
-    "dvc-g": N_("the acceleration of the centre of mass of {link}, gravity counted in"),
+    "dvc-g": N_("the acceleration of the centre of mass of {link} less g"),
     "F": N_("the inertial force of {link}"),
-    "F-g": N_("the inertial force of {link}, gravity counted in"),
+    "F-g": N_("the inertial force of {link} less its weight"),
     "N": N_("the inertial moment of {link}"),
     "p": N_("the momentum of {link}"),
     "L": N_("the angular momentum of {link} about its centre of mass"),
@@ -130,6 +131,26 @@ PHRASES = {
 }
 """What things are called, by their key."""
 
+_KINDS = (
+    ("axis", "z axis", "R0", "R", "tool rotation", "sine", "cosine"),
+    ("origin", "centre", "coordinate", "centre coordinate", "tool coordinate", "tool point")
+    + ("lever", "far lever", "tool lever", "own centre", "joint centre", "far centre")
+    + ("centre distance",),
+    ("w",),
+    ("dw",),
+    ("v", "vc", "tool velocity", "wP", "wc", "wr"),
+    ("dv", "dv-g", "dvc", "dvc-g", "g", "wwP", "wwc", "wwr", "aP", "ac", "ar", "Coriolis"),
+    ("F", "F-g", "weight", "f", "load force"),
+    ("N", "n", "I dw", "w x Iw", "c x F", "r x F", "P x f", "load moment"),
+    ("k", "k linear", "k rotational", "u", "kinetic", "potential"),
+    ("inertia", "frame inertia", "Izz", "joint Izz"),
+    ("mass",),
+    ("p",),
+    ("L",),
+)
+"""What has one unit. Things of different units that have one value (a mass of 1 kg makes force and
+acceleration alike) leave it without a name; what is not listed goes with any."""
+
 _CELLS = ("cell", "mass", "centre distance", "Izz", "joint Izz")
 """The arm's own numbers, which do not vary: of these, sums and products may meet another."""
 
@@ -151,17 +172,27 @@ def meaning_of(known_at_states: Sequence[Glossary], values: Sequence[Array]) -> 
     seen = [x for x in arrays if x is not None and not _trivial(x)]
     if len(seen) < len(arrays):
         return None
-    for form, change in (("", np.array), ("minus", np.negative), ("transpose", np.transpose)):
-        if form == "transpose" and seen[0].ndim != 2:
-            continue
-        found = list(_hits(known_at_states, [change(x) for x in seen]))
-        if found:
-            return _one(known_at_states[0], found, form, seen[0])
-    return None
+    found: list[tuple[int, int, Sense]] = []
+    for k, (form, change) in enumerate(_FORMS.items()):
+        if form != "transpose" or seen[0].ndim == 2:
+            hits = _hits(known_at_states, [change(x) for x in seen])
+            found += [(rank, k, replace(sense, form=form)) for rank, sense in hits]
+    kinds = {k for *_rank, sense in found for k, kind in enumerate(_KINDS) if sense.what in kind}
+    if len(kinds) > 1:
+        return None
+    best = min((rank, k) for rank, k, _sense in found) if found else None
+    return _one(known_at_states[0], [x for *rank, x in found if tuple(rank) == best], seen[0])
+
+
+_FORMS: dict[str, Callable[[Array], Array]] = {
+    "": np.array,
+    "minus": np.negative,
+    "transpose": np.transpose,
+}
 
 
 def _hits(known: Sequence[Glossary], values: Sequence[Array]) -> Iterator[Row]:
-    for embed in _EMBEDDINGS if known[0].plane else _EMBEDDINGS[:1]:
+    for k, embed in enumerate(_EMBEDDINGS if known[0].plane else _EMBEDDINGS[:1]):
         shown = [embed(value) for value in values]
         same: Array | None = None
         rows: list[Row] = []
@@ -174,7 +205,8 @@ def _hits(known: Sequence[Glossary], values: Sequence[Array]) -> Iterator[Row]:
             same = here if same is None else same & here
         else:
             assert same is not None
-            yield from (rows[int(k)] for k in np.flatnonzero(same))
+            found = (rows[int(row)] for row in np.flatnonzero(same))
+            yield from ((rank + (k > 0), sense) for rank, sense in found)
 
 
 _NOTHING: tuple[list[Row], Array] = ([], np.zeros(0))
@@ -211,22 +243,26 @@ def _as_rows(value: Array) -> Array | None:
     return np.vstack([value, np.zeros_like(value[:1])])
 
 
-_EMBEDDINGS = (np.asarray, _as_vector, _as_rotation, _as_transform, _as_rows)
+_EMBEDDINGS: tuple[Callable[[Array], Array | None], ...] = (
+    np.asarray,
+    _as_vector,
+    _as_rotation,
+    _as_transform,
+    _as_rows,
+)
 """A value as one in space: as it is, and what a plane arm's formulas leave out."""
 
 
-def _one(known: Glossary, found: list[Row], form: str, value: Array) -> Sense | None:
+def _one(known: Glossary, senses: list[Sense], value: Array) -> Sense | None:
     """The one thing that several are: its number and frame only where all have the same."""
-    best = min(rank for rank, _ in found)
-    senses = [sense for rank, sense in found if rank == best]
-    if len({(sense.what, sense.of) for sense in senses}) > 1:
+    if len({(sense.what, sense.of) for sense in senses}) != 1:
         return None
     first = senses[0]
     if first.what in _CELLS and not _one_way(known, float(abs(value)), first.what):
         return None
     numbers, frames = ({getattr(x, name) for x in senses} for name in ("number", "frame"))
     number = first.number if len(numbers) == 1 else None
-    return Sense(first.what, number, first.frame if len(frames) == 1 else "", first.of, form)
+    return replace(first, number=number, frame=first.frame if len(frames) == 1 else "")
 
 
 def _one_way(known: Glossary, size: float, what: str) -> bool:

@@ -156,11 +156,11 @@ class _Gathered:
         self.each("R", steps[:, :3, :3], rank=1)
         self.put("tool pose", tool, rank=1)
         self.put("tool rotation", tool[:3, :3], rank=1)
-        self.vector(0, {"axis": self.z, "lever": self.P, "own centre": self.c})
-        self.vector(1, {"joint centre": self.c + self.P})
+        self.vector(0, {"axis": self.z})
+        self.vector(1, {"lever": self.P, "own centre": self.c})
+        self.vector(2, {"joint centre": self.c + self.P})
         for k, frame in enumerate(frames):
-            for c, letter in enumerate("xyz"):
-                self.put("frame axis", frame[:3, c], k, of=letter, rank=1)
+            self.put("z axis", frame[:3, 2], k, rank=2)
         centres = self.o + self.c
         for what, points in (("origin", self.o), ("centre", centres)):
             self.each(what, points)
@@ -172,10 +172,10 @@ class _Gathered:
             self.put("tool coordinate", p[c], of=letter, rank=2)
         self.put("tool point", p, rank=1)
         for k, origin in enumerate(origins):
-            self.put("tool lever", p - origin, k, "base", rank=2)
+            self.put("tool lever", p - origin, k, "base", rank=3)
             for i in range(k + 2, n + 1):
-                self.put("far lever", origins[i] - origin, i, "base", str(k), rank=3)
-                self.put("far centre", centres[i - 1] - origin, i, "base", str(k), rank=3)
+                self.put("far lever", origins[i] - origin, i, "base", str(k), rank=4)
+                self.put("far centre", centres[i - 1] - origin, i, "base", str(k), rank=4)
         J = kinematics.jacobian(self.robot, q)
         self.put("J", J, frame="base")
         self.put("J", kinematics.jacobian(self.robot, q, "tool"), frame="tool")
@@ -274,7 +274,7 @@ class _Gathered:
         self.vector(2, {"Coriolis": 2.0 * _x(w, slide), "z qd": z * v[:, None]})
         self.vector(2, {"w x z qd": _x(w, z * v[:, None])})
         if self.standard:
-            self.vector(2, {"wr": _x(w, c + P), "wwr": _x(w, _x(w, c + P))})
+            self.vector(3, {"wr": _x(w, c + P), "wwr": _x(w, _x(w, c + P))})
         self.each("k linear", 0.5 * self.mass * np.sum(self.vc**2, axis=1), rank=1)
         self.each("k rotational", 0.5 * np.sum(w * Iw, axis=1), rank=1)
         if "a" in self.given:
@@ -297,7 +297,7 @@ class _Gathered:
         self.vector(2, {"aP": _x(carried, P), "ac": _x(dw, c), "I dw": Idw, "c x F": _x(c, F)})
         self.vector(2, {"z qdd": self.z * a[:, None]})
         if self.standard:
-            self.vector(2, {"ar": _x(dw, c + P), "r x F": _x(c + P, F)})
+            self.vector(3, {"ar": _x(dw, c + P), "r x F": _x(c + P, F)})
         if not robot.singular_mass:
             load = self.given.get("wrench")
             self.wrenches(links.joint_wrenches(robot, q, v, a, load))
