@@ -73,7 +73,7 @@ def textbook(table, state):
             "F-g": F[-1], "N": N[-1], "p": m * u_c, "L": tensor @ w_i,
             "w x Iw": cross(w_i, tensor @ w_i), "wwc": cross(w_i, cross(w_i, c)),
             "wwP": cross(at, cross(at, lever)), "aP": cross(rate, lever), "ac": cross(dw_i, c),
-            "joint centre": lever + c, "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
+            "wc": cross(w_i, c), "wP": cross(at, lever), "joint centre": lever + c, "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
         }  # fmt: skip
         for what, value in own.items():
             things[what, i, "own", ""] = value
@@ -119,6 +119,9 @@ def textbook(table, state):
             arm = steps[i][:3, 3] if i < n else np.zeros(3)
             nn = R @ nn + cross(arm, beyond) + cross(c, F[i - 1]) + N[i - 1]
             z = E_Z
+        things["c x F", i, "own", ""] = cross(c, F[i - 1])
+        if i < n:
+            things["P x f", i + 1, "before", ""] = cross(levers[i - 1] if standard else arm, beyond)
         f = beyond + F[i - 1]
         turn = T[i][:3, :3]
         for what, value in (("f", f), ("n", nn)):
@@ -174,7 +177,7 @@ def looked_up(table, seed):
 def same(one, two):
     if np.shape(one) != np.shape(two):
         return False
-    return np.max(np.abs(np.subtract(one, two))) <= 1e-9 * max(np.max(np.abs(one)), 1e-3)
+    return np.abs(np.subtract(one, two)).max() <= 1e-9 * max(np.abs(one).max(), 1e-3)
 
 
 def alike(key, things):
@@ -200,17 +203,13 @@ def is_true(sense, key, form, things):
 @pytest.mark.parametrize("kinds", ["RRPRRR", "RRR", "PRPR"])
 def test_each_thing_of_a_general_arm_is_named(convention, kinds):
     named = 0
-    for seed in range(2):
-        table = general_table(seed, convention, kinds)
-        for key, form, sense, things in looked_up(table, seed):
-            if sense == Sense(*key, form):
-                named += 1
-            else:  # at the ends of the chain, and next to a slide, two things are one
-                plain = (
-                    np.max(np.abs(things[key] - np.round(things[key]))) < 1e-9
-                )  # 0, or (0, 0, 1)
-                assert plain or alike(key, things), key
-                assert sense is None or is_true(sense, key, form, things), (key, sense)
+    for key, form, sense, things in looked_up(general_table(len(kinds), convention, kinds), 2):
+        if sense == Sense(*key, form):
+            named += 1
+        else:  # at the ends of the chain, and next to a slide, two things are one
+            plain = np.max(np.abs(things[key] - np.round(things[key]))) < 1e-9  # 0, or (0, 0, 1)
+            assert plain or alike(key, things), key
+            assert sense is None or is_true(sense, key, form, things), (key, sense)
     assert named > 150 * len(kinds)
 
 
@@ -226,7 +225,7 @@ def test_no_word_is_wrong_where_axes_are_parallel_and_numbers_neat(name):
     assert told > 150
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_no_word_is_wrong_on_arms_with_special_angles(seed):
     told = 0
     for convention in ("standard", "modified"):
