@@ -22,10 +22,11 @@ module            what it holds
                   their effect
 ``terms``         Slips within single entries: the derived formula beside a user's text or function
 ``verdicts``      Right in another way: with numbers for names, or another valid formula
+``bytecode/``      The syntax tree of a function whose source text cannot be had
 ``confusions/``   What people take differently: a known confusion, and what the engine would say if
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
-``program/``       A student's program, read as what it says
+``program/``       A student's Python function, read: which edit of which line makes it right
 ``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
                   closed form is not
 ``tables/``       The table doctor: two descriptions of one arm disagree; which cell of the table

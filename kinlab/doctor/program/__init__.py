@@ -1,10 +1,20 @@
-"""A student's Python function, read: which single edit of which line makes it right.
+"""A student's Python function, read: which edit of which line makes it right.
 
-================  ==========================================================================module            what it holds
-================  ==========================================================================``read``          The functions that a formula is made of, as syntax trees, and the data they use
-``observed``      What every expression of a program was when it ran: its values, their shapes
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
 ``edits``         What could stand in a place of a program instead
+``meaning``       What a value in somebody's program is: the axis of joint 2, the angular velocity
+                  of link 1
+``observed``      What every expression of a program was when it ran: its values, their shapes
+``places``        The places of a program, and what is put there instead
+``read``          The functions that a formula is made of, as syntax trees, and the data they use
+``repair``        The edits that make a program right
+``several``       Two or three edits that together make a program right
+``textbook``      The textbooks' vectors, matrices and numbers of an arm at one state, each with
+                  what it is
 ``trial``         A program run with edits in it
-``repair``        The edits that make a program right: one, or several together
 ``words``         A repair in words: the line, what stands there, what should
-================  =========================================================================="""
+================  =================================================================================
+"""

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.bytecode.recover import recovered
+
 _MOST = 40
 """Functions of one program that are read."""
 
@@ -85,7 +87,7 @@ def read(function: Callable[..., Any]) -> Program | None:
 
 def tree_of(function: FunctionType) -> ast.FunctionDef | None:
     """The definition of a function, from its source or else from its byte code."""
-    return _from_source(function)
+    return _from_source(function) or recovered(function)
 
 
 def _from_source(function: FunctionType) -> ast.FunctionDef | None:

@@ -19,7 +19,7 @@ from collections import Counter
 from dataclasses import dataclass
 from types import CodeType, FunctionType
 
-from kinlab.doctor.program.expressions import (
+from kinlab.doctor.bytecode.expressions import (
     Changed,
     Element,
     Hand,
@@ -30,7 +30,7 @@ from kinlab.doctor.program.expressions import (
     at,
     span_of,
 )
-from kinlab.doctor.program.instructions import (
+from kinlab.doctor.bytecode.instructions import (
     LAST,
     Span,
     Step,
@@ -42,7 +42,7 @@ from kinlab.doctor.program.instructions import (
     folded,
     reachable,
 )
-from kinlab.doctor.program.steps import do
+from kinlab.doctor.bytecode.steps import do
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}

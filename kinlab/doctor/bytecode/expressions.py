@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from types import CodeType
 from typing import TypeVar
 
-from kinlab.doctor.program.instructions import Span, UnreadError
+from kinlab.doctor.bytecode.instructions import Span, UnreadError
 
 
 class Blank:

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable
 from types import CodeType
 
-from kinlab.doctor.program.expressions import (
+from kinlab.doctor.bytecode.expressions import (
     BINARY,
     COMPARE,
     NULL,
@@ -24,7 +24,7 @@ from kinlab.doctor.program.expressions import (
     at,
     literal,
 )
-from kinlab.doctor.program.instructions import Span, Step, UnreadError
+from kinlab.doctor.bytecode.instructions import Span, Step, UnreadError
 
 Finish = Callable[[Made, "ast.expr | None", "Span | None"], ast.expr]
 """A function just made as an expression: a lambda, or a comprehension over what is given."""
