@@ -33,7 +33,8 @@ from kinlab.doctor.derivations.parts import Apart, apart, proved
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
-from kinlab.doctor.program.words import repaired
+from kinlab.doctor.program.several import several
+from kinlab.doctor.program.words import in_lines, searched
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -149,8 +150,9 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    lines = repaired(case, engine, _left(worst)) if same and not written else []
-    edited = _exactly(lines, worst)
+    read = same and not written and silent is None and not signs
+    program = searched(case, engine, _left(worst)) if read else None
+    edited = _exactly(in_lines(program, program.singles()), worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
     if not visible:
@@ -159,13 +161,17 @@ def _explained(
         ways = [] if (written and causes) or signs else ready(case)
         every = [*_singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
-        if ways and all(cause.cost > _FETCHED for cause in exact):
+        if ways and not edited and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
+        if program is not None and not edited:
+            likely = _PLAIN if program.written_out else _FETCHED
+            if all(cause.cost > likely for cause in exact or rough):
+                edited = _exactly(in_lines(program, several(program)), worst)
+        if program is not None and edited:
+            return _meant(edited, [] if program.written_out else exact or rough), (), None, None
         causes = _outranked(causes, exact)
-        if edited:
-            return _in_lines(edited, exact), (), None, None
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
             causes += found
@@ -193,9 +199,10 @@ def _explained(
     return causes, partial, None, split
 
 
-def _in_lines(edited: list[Cause], read: list[Cause]) -> list[Cause]:
+def _meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
     """What a line of the program should be, with what that means where it is known."""
-    meant = sorted((c for c in read if c.cost <= _FETCHED), key=lambda c: c.cost)[:1]
+    one = sorted((c for c in read if c.cost <= _FETCHED), key=lambda c: c.cost)[:1]
+    meant = one if len(edited[0].kinds) == 1 else []
     said = _("{meaning}: {line}")
     return [
         replace(

@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.program.trial import Trial, made, quietly
 
-_KEPT = 8
+_KEPT = 64
 """Values of one expression that are kept."""
 
 Shape = tuple[int, ...]

@@ -49,9 +49,6 @@ class Here:
         return self.within(self.holder, self.field, new, kind, cost)
 
     def within(self, holder: Any, field: Any, new: Any, kind: str, cost: float) -> Edit:
-        for node in new if isinstance(new, list) else [new]:
-            if isinstance(node, ast.AST):
-                _located(node, self.node)
         return Edit(self.part, (Change(holder, field, new),), kind, cost, self.node)
 
 
@@ -79,10 +76,3 @@ def called(node: ast.Call) -> str:
 def number(value: Any) -> ast.expr:
     """A number as it is written."""
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
-
-
-def _located(new: ast.AST, old: ast.AST) -> None:
-    """Gives new nodes the place of the one they stand for."""
-    for node in ast.walk(new):
-        if "lineno" in node._attributes and not hasattr(node, "lineno"):
-            ast.copy_location(node, old)

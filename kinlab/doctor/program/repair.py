@@ -20,20 +20,24 @@ from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.edits import Place, edits, numbers
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Edit
-from kinlab.doctor.program.read import read
+from kinlab.doctor.program.places import Edit, called
+from kinlab.doctor.program.read import Program
 from kinlab.doctor.program.trial import Trial, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 
-_WORK = 2_000_000
+_WORK = 1_600_000
 """Expressions that may be evaluated, and nodes compiled, for single edits."""
+_SHARE = 4
+"""Of that work, the part of each search beside edits that stand already."""
 _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
 _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
+_WATCHED = 2
+"""States at which a program is watched."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _TURNS = 5
@@ -63,47 +67,55 @@ class Search:
     """A wrong program beside what it should answer.
 
     Args:
+        program: what was read of it.
         case: the states, and the program's own answers.
         wanted: the right answers, (N, ...).
         allowed: the relative error that may be left.
     """
 
-    def __init__(self, case: Case, wanted: Array, allowed: float) -> None:
-        self.program = None if case.function is None else read(case.function)
+    def __init__(self, program: Program, case: Case, wanted: Array, allowed: float) -> None:
+        self.program = program
         self.case, self.wanted, self.allowed = case, wanted, allowed
         self.sizes = error_sizes(wanted)
         self.stand: tuple[Edit, ...] = ()
         self.tried: list[tuple[Edit, Array]] = []
         self.work, self.most = 0, _WORK
-        if self.program is None:
-            return
         self.trial = Trial(self.program)
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
+        self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._prepare()
 
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
-        states = [tuple(stack[k] for stack in stacks) for k in self.first]
+        states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
         self.observed = Observed(self.trial, states)
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+
+    @property
+    def written_out(self) -> bool:
+        """Whether the program has neither loops nor products of matrices: formulas, term by term."""
+        return not any(
+            isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
+            or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))
+            for part in self.program.parts
+            for node in ast.walk(part.tree)
+        )
 
     def beside(self, stand: tuple[Edit, ...]) -> Search:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
-        other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // 4
+        other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // _SHARE
         return other
 
     def singles(self) -> list[Repair]:
         """Single edits that make the program right, the likeliest first."""
-        if self.program is None:
-            return []
         found: list[Repair] = []
         with quietly():
             for edit in edits(self.trial, self.observed):
                 if found and edit.cost > found[0].edits[-1].cost + _TIED:
                     break
-                self.work += self.observed.work[edit.part]
+                self.work += self.observed.work[edit.part] * len(self.first) // len(self.watched)
                 self.work += self.nodes[edit.part] if edit.part >= 0 else 0
                 if self.work > self.most:
                     break

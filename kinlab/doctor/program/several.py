@@ -18,7 +18,7 @@ from kinlab.doctor.text.pairs import pairs_adding_up
 
 _VERIFIED = 60
 """Combinations that are tried in the program, the likeliest first."""
-_STEPS = 6
+_STEPS = 4
 """Edits that make entries right from which is gone on."""
 _TRIPLES = 250
 """Edits of which any three are added up."""
@@ -36,7 +36,7 @@ def several(search: Search) -> list[Repair]:
     Args:
         search: whose single edits were tried already.
     """
-    if search.program is None or not search.tried:
+    if not search.tried:
         return []
     with quietly():
         return _found(search, (), search.tried)

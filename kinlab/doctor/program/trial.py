@@ -8,7 +8,7 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import CodeType, FunctionType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -48,6 +48,9 @@ class Trial:
         self.space = dict(program.space)
         for name in program.data:
             self.space[name] = copy.deepcopy(program.space[name])
+        for name, value in self.space.items():
+            if value is np or value is np.cross:
+                self.space[name] = _QUICK if value is np else _cross
         self.trees = [_bounded(part.tree) for part in program.parts]
         self.space["_turn"] = self._turn
         self._turns = 0
@@ -71,6 +74,7 @@ class Trial:
         kept = {k: self.space[name] for k, name in enumerate(names)}
         try:
             for change in changes:
+                _located(change.new)
                 _put(change, change.new)
             for k, name in enumerate(names):
                 if k in parts:
@@ -102,6 +106,20 @@ def quietly() -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         yield
+
+
+def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
+    """numpy's cross product; of two vectors of three numbers ten times as fast."""
+    if not rest and not options:
+        a, b = np.asarray(one), np.asarray(other)
+        if a.shape == b.shape == (3,):
+            (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
+            return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+    return np.cross(one, other, *rest, **options)
+
+
+_QUICK = ModuleType("numpy")
+_QUICK.__dict__.update(np.__dict__, cross=_cross)
 
 
 def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionType:
@@ -177,6 +195,16 @@ class _Quiet(ast.NodeTransformer):
         turn = ast.Call(ast.Name("_turn", ast.Load()), [], [])
         node.test = ast.BoolOp(ast.And(), [turn, node.test])
         return node
+
+
+def _located(new: Any) -> None:
+    """Gives new nodes a line, which compiling asks for."""
+    for one in new if isinstance(new, list) else [new]:
+        if isinstance(one, ast.AST):
+            for node in ast.walk(one):
+                if "lineno" in node._attributes and not hasattr(node, "lineno"):
+                    node.lineno = node.end_lineno = 1  # type: ignore[attr-defined]
+                    node.col_offset = node.end_col_offset = 0  # type: ignore[attr-defined]
 
 
 def _get(change: Change) -> Any:

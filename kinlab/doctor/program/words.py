@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case
+from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, Edit
+from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import Repair, Search, changed
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
 
+_MOST = 3
+"""Repairs that are told."""
+_NAMED = 2
+"""Pieces of which it is said what they are."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -47,21 +53,30 @@ _WHAT = {
 }
 
 
-def repaired(case: Case, wanted: Array, allowed: float) -> list[Cause]:
-    """What single edits of its program make a hand formula right, the likeliest first.
+def searched(case: Case, wanted: Array, allowed: float) -> Search | None:
+    """The search for what is wrong in a hand formula's program; None where it cannot be read.
 
     Args:
         case: the states, and the formula's own answers.
         wanted: the right answers, (N, ...).
         allowed: the relative error that may be left.
     """
-    search = Search(case, wanted, allowed)
-    return [cause_of(repair, search.trial) for repair in search.singles()]
+    program = None if case.function is None else read(case.function)
+    return None if program is None else Search(program, case, wanted, allowed)
 
 
-def cause_of(repair: Repair, trial: Trial) -> Cause:
+def in_lines(search: Search, repairs: Sequence[Repair]) -> list[Cause]:
+    """What single lines of the program should be, the likeliest first."""
+    return [cause_of(repair, search) for repair in repairs[:_MOST]]
+
+
+def cause_of(repair: Repair, search: Search) -> Cause:
     """A repair as a cause."""
+    trial = search.trial
     told = [*_told(repair, trial)]
+    known = [one for edit in repair.edits for one in named(edit, search)]
+    is_ = _("`{piece}` is {thing}")
+    told += [is_.format(piece=_typed(text), thing=thing) for text, thing in known[:_NAMED]]
     return Cause(
         _("; ").join(dict.fromkeys(told)),
         tuple(edit.kind for edit in repair.edits),
@@ -146,7 +161,10 @@ def _after(edit: Edit) -> str:
 
 def _text(node: ast.AST) -> str:
     """A piece of a program as it is usually typed."""
-    text = ast.unparse(node).partition("\n")[0].rstrip(":")
+    return _typed(ast.unparse(node).partition("\n")[0].rstrip(":"))
+
+
+def _typed(text: str) -> str:
     return re.sub(r" (\*\*|\*|/) ", r"\1", text)
 
 

@@ -1,0 +1,74 @@
+"""What the pieces of a program around an edit are: ``z`` is the axis of joint 2."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import replace
+
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.meaning import meaning_of, said
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, Edit
+from kinlab.doctor.program.repair import Search
+from kinlab.doctor.program.textbook import Glossary, Sense, meanings
+
+
+def named(edit: Edit, search: Search) -> list[tuple[str, str]]:
+    """Pieces of what an edit changes, each with what it is; none where nothing is known.
+
+    Args:
+        edit: of the program.
+        search: whose program was observed.
+    """
+    if table_of(search.case.robot) is None or edit.part == DATA or edit.kind in ("loop", "condition"):
+        return []
+    arguments = search.case.arguments
+    known = [
+        meanings(search.case.robot, {name: stack[k] for name, stack in arguments.items()})
+        for k in search.watched
+    ]
+    nodes = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
+    texts = {ast.unparse(n): n for n in ast.walk(search.trial.trees[edit.part]) if _piece(n)}
+    out: dict[str, str] = {}
+    for node in nodes:
+        for piece in _pieces(node):
+            text = ast.unparse(piece)
+            sense = _sense(texts.get(text, piece), search.observed, known)
+            if sense is not None:
+                out.setdefault(text, said(sense))
+    return [*out.items()]
+
+
+def _pieces(node: ast.AST) -> Iterator[ast.expr]:
+    """Names and entries, the widest first; what stands in an index is none."""
+    if _piece(node):
+        assert isinstance(node, ast.expr)
+        yield node
+    for child in ast.iter_child_nodes(node):
+        if not (isinstance(node, ast.Subscript) and child is node.slice):
+            yield from _pieces(child)
+
+
+def _piece(node: ast.AST) -> bool:
+    loaded = isinstance(getattr(node, "ctx", None), ast.Load)
+    return loaded and isinstance(node, ast.Name | ast.Subscript | ast.Attribute)
+
+
+def _sense(node: ast.AST, observed: Observed, known: list[Glossary]) -> Sense | None:
+    """What a piece is whenever it is passed, by the values that it had at each of the states."""
+    seen = observed.of(node)
+    if seen is None or not seen.values or seen.count % len(known):
+        return None
+    passes = seen.count // len(known)
+    if len(seen.values) < seen.count:
+        return None
+    found: list[Sense] = []
+    for k in range(passes):
+        sense = meaning_of(known, [seen.values[k + passes * j] for j in range(len(known))])
+        if sense is not None:
+            found.append(sense)
+    if not found or len({(x.what, x.of, x.frame, x.form) for x in found}) > 1:
+        return None
+    one = {x.number for x in found}
+    return found[0] if len(one) == 1 and passes == len(found) else replace(found[0], number=None)
