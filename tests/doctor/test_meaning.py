@@ -268,6 +268,8 @@ def test_an_arm_without_a_table_is_not_known():
     assert not any(one.things for one in known)
     assert meaning_of(known, [np.ones(3) / 3] * 2) is None
     assert not meanings(kl.load("ur5"), {}).things
+    assert not meanings(kl.load("ur5"), {"q": np.zeros((2, 6))}).things
+    assert not meanings(kl.load("ur5"), {"q": np.zeros(6), "v": np.zeros((2, 6))}).things
 
 
 def test_a_plane_arm_is_written_in_the_plane():
@@ -394,7 +396,7 @@ def test_it_is_said_in_english_and_chinese():
         assert said(Sense("f", 3, "before")) == "the force through joint 3 in the axes of frame 2"
         assert (
             said(Sense("R", 2, form="transpose"))
-            == "the transpose of the rotation matrix from frame 1 to frame 2"
+            == "the transpose of the rotation matrix of frame 2 in frame 1"
         )
         assert said(Sense("sine", of="q1 + q2")) == "the sine of q1 + q2"
         assert said(Sense("w")) == "the angular velocity of a link"

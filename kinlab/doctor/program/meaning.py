@@ -19,12 +19,12 @@ from kinlab.tolerances import TOLERANCES
 
 PHRASES = {
     "T0": N_("the transform of {frame} in the base"),
-    "T": N_("the transform from {before} to {frame}"),
+    "T": N_("the transform of {frame} in {before}"),
     "T0_inverse": N_("the inverse of the transform of {frame} in the base"),
-    "T_inverse": N_("the inverse of the transform from {before} to {frame}"),
+    "T_inverse": N_("the inverse of the transform of {frame} in {before}"),
     "tool_pose": N_("the tool's pose"),
     "R0": N_("the rotation matrix of {frame} in the base"),
-    "R": N_("the rotation matrix from {before} to {frame}"),
+    "R": N_("the rotation matrix of {frame} in {before}"),
     "tool_rotation": N_("the tool's rotation matrix"),
     "axis": N_("the axis of {joint}"),
     "z_axis": N_("the z axis of {frame}"),

@@ -64,9 +64,11 @@ def meanings(robot: Robot, arguments: dict[str, Array]) -> Glossary:
         arguments: ``q`` and, where the quantity has them, ``v``, ``a``, ``tau``, ``wrench``, one
             state each. What needs an argument that is missing is not known.
     """
-    if robot.table is None or "q" not in arguments:
+    sizes = {"q": robot.n, "v": robot.n, "a": robot.n, "tau": robot.n, "wrench": 6}
+    given = {name: np.asarray(x) for name, x in arguments.items() if name in sizes}
+    one_state = all(x.shape == (sizes[name],) for name, x in given.items())
+    if robot.table is None or "q" not in given or not one_state:
         return Glossary()
-    given = {name: np.asarray(x, dtype=np.float64) for name, x in arguments.items()}
     if {"v", "tau"} <= set(given) and "a" not in given and not robot.singular_mass:
         given["a"] = dynamics.forward_dynamics(robot, given["q"], given["v"], given["tau"])
     return _Gathered(robot, given).glossary()
