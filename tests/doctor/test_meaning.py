@@ -67,13 +67,20 @@ def textbook(table, state):
         F.append(m * du_c)
         N.append(tensor @ dw_i + cross(w_i, tensor @ w_i))
         levers.append(lever)
+        if standard:
+            r = lever + c
+            for what, value in (
+                ("wr", cross(w_i, r)), ("wwr", cross(w_i, cross(w_i, r))), ("ar", cross(dw_i, r)),
+            ):  # fmt: skip
+                things[what, i, "own", ""] = value
         own = {
             "axis": s * z, "lever": lever, "own_centre": c, "w": w_i, "dw": dw_i, "v": u_i, "vc": u_c,
             "dv": du_i + g, "dv-g": du_i, "dvc": du_c + g, "dvc-g": du_c, "F": m * (du_c + g),
             "F-g": F[-1], "N": N[-1], "p": m * u_c, "L": tensor @ w_i,
             "w x Iw": cross(w_i, tensor @ w_i), "wwc": cross(w_i, cross(w_i, c)),
             "wwP": cross(at, cross(at, lever)), "aP": cross(rate, lever), "ac": cross(dw_i, c),
-            "wc": cross(w_i, c), "wP": cross(at, lever), "joint_centre": lever + c, "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
+            "wc": cross(w_i, c), "wP": cross(at, lever), "joint_centre": lever + c,
+            "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
         }  # fmt: skip
         for what, value in own.items():
             things[what, i, "own", ""] = value
@@ -108,12 +115,8 @@ def textbook(table, state):
         R = steps[i][:3, :3] if i < n else np.eye(3)  # f and nn are still those of link i + 1
         beyond = R @ f
         if standard:  # about the origin before, force i + 1 acts at the origin of frame i
-            nn = (
-                R @ nn
-                + cross(levers[i - 1], beyond)
-                + cross(levers[i - 1] + c, F[i - 1])
-                + N[i - 1]
-            )
+            things["r x F", i, "own", ""] = cross(levers[i - 1] + c, F[i - 1])
+            nn = R @ nn + cross(levers[i - 1], beyond) + things["r x F", i, "own", ""] + N[i - 1]
             z = steps[i - 1][:3, :3].T @ E_Z
         else:
             arm = steps[i][:3, 3] if i < n else np.zeros(3)
