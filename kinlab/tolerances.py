@@ -141,6 +141,10 @@ class Tolerances:
     """Relative error of every coefficient of a function up to which it is right to its digits:
     constants of four digits; and of an answer that has the noise of differences."""
 
+    plain_value: float = 1e-9
+    """Size of a value in a program, or its distance from halves and parts of pi, below which it is
+    nothing that could be named: rounding leaves 1e-15 of zero, and no arm's states are so small."""
+
     nearly_agrees: float = 2e-3
     """Relative error up to which a function may be right with rounded constants inside; nobody
     can tell."""

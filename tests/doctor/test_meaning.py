@@ -67,13 +67,20 @@ def textbook(table, state):
         F.append(m * du_c)
         N.append(tensor @ dw_i + cross(w_i, tensor @ w_i))
         levers.append(lever)
+        if standard:
+            r = lever + c
+            for what, value in (
+                ("wr", cross(w_i, r)), ("wwr", cross(w_i, cross(w_i, r))), ("ar", cross(dw_i, r)),
+            ):  # fmt: skip
+                things[what, i, "own", ""] = value
         own = {
-            "axis": s * z, "lever": lever, "own centre": c, "w": w_i, "dw": dw_i, "v": u_i, "vc": u_c,
+            "axis": s * z, "lever": lever, "own_centre": c, "w": w_i, "dw": dw_i, "v": u_i, "vc": u_c,
             "dv": du_i + g, "dv-g": du_i, "dvc": du_c + g, "dvc-g": du_c, "F": m * (du_c + g),
             "F-g": F[-1], "N": N[-1], "p": m * u_c, "L": tensor @ w_i,
             "w x Iw": cross(w_i, tensor @ w_i), "wwc": cross(w_i, cross(w_i, c)),
             "wwP": cross(at, cross(at, lever)), "aP": cross(rate, lever), "ac": cross(dw_i, c),
-            "wc": cross(w_i, c), "wP": cross(at, lever), "joint centre": lever + c, "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
+            "wc": cross(w_i, c), "wP": cross(at, lever), "joint_centre": lever + c,
+            "I dw": tensor @ dw_i, "z qd": s * z * v[i - 1],
         }  # fmt: skip
         for what, value in own.items():
             things[what, i, "own", ""] = value
@@ -88,17 +95,17 @@ def textbook(table, state):
         things["inertia", i, "own", ""] = tensor
         things["inertia", i, "base", ""] = turn @ tensor @ turn.T
         about = tensor + m * (c @ c * np.eye(3) - np.outer(c, c))
-        things["frame inertia", i, "own", ""] = about
-        things["k linear", i, "", ""] = 0.5 * m * u_c @ u_c
-        things["k rotational", i, "", ""] = 0.5 * w_i @ tensor @ w_i
-        things["k", i, "", ""] = things["k linear", i, "", ""] + things["k rotational", i, "", ""]
+        things["frame_inertia", i, "own", ""] = about
+        things["k_linear", i, "", ""] = 0.5 * m * u_c @ u_c
+        things["k_rotational", i, "", ""] = 0.5 * w_i @ tensor @ w_i
+        things["k", i, "", ""] = things["k_linear", i, "", ""] + things["k_rotational", i, "", ""]
         things["u", i, "", ""] = -m * gravity @ (T[-1][:3, 3] + turn @ c)
         things["T0", i, "", ""], things["R0", i, "", ""] = T[-1], turn
         things["T", i, "", ""], things["R", i, "", ""] = step, R
-        things["T inverse", i, "", ""] = np.linalg.inv(step)
+        things["T_inverse", i, "", ""] = np.linalg.inv(step)
         things["origin", i, "", ""] = T[-1][:3, 3]
         things["centre", i, "", ""] = T[-1][:3, 3] + turn @ c
-        things["z axis", i, "", ""] = turn[:, 2]
+        things["z_axis", i, "", ""] = turn[:, 2]
         things["g", i, "own", ""] = turn.T @ gravity
         if link.joint == "revolute":
             things["sine", None, "", f"q{i}"] = np.sin(q[i - 1])
@@ -108,12 +115,8 @@ def textbook(table, state):
         R = steps[i][:3, :3] if i < n else np.eye(3)  # f and nn are still those of link i + 1
         beyond = R @ f
         if standard:  # about the origin before, force i + 1 acts at the origin of frame i
-            nn = (
-                R @ nn
-                + cross(levers[i - 1], beyond)
-                + cross(levers[i - 1] + c, F[i - 1])
-                + N[i - 1]
-            )
+            things["r x F", i, "own", ""] = cross(levers[i - 1] + c, F[i - 1])
+            nn = R @ nn + cross(levers[i - 1], beyond) + things["r x F", i, "own", ""] + N[i - 1]
             z = steps[i - 1][:3, :3].T @ E_Z
         else:
             arm = steps[i][:3, 3] if i < n else np.zeros(3)
@@ -130,15 +133,15 @@ def textbook(table, state):
                 things[what, i, "before", ""] = steps[i - 1][:3, :3] @ value
         s = -1.0 if link.flip else 1.0
         tau[i - 1] = s * z @ (nn if link.joint == "revolute" else f) + link.armature * a[i - 1]
-        things["tau entry", i, "", ""] = tau[i - 1]
+        things["tau_entry", i, "", ""] = tau[i - 1]
     things["tau", None, "", ""] = tau
     tool = (T[-1] @ np.asarray(table.tool))[:3, 3]
     for j, link in enumerate(table.links, 1):
         at = T[j - 1] if standard else T[j]
         z, o = at[:3, 2] * (-1.0 if link.flip else 1.0), at[:3, 3]
         if link.joint == "revolute":
-            things["Jv column", j, "", ""] = np.cross(z, tool - o)
-        things["tool lever", j, "base", ""] = tool - T[j][:3, 3]
+            things["Jv_column", j, "", ""] = np.cross(z, tool - o)
+        things["tool_lever", j, "base", ""] = tool - T[j][:3, 3]
     return things
 
 
@@ -268,6 +271,8 @@ def test_an_arm_without_a_table_is_not_known():
     assert not any(one.things for one in known)
     assert meaning_of(known, [np.ones(3) / 3] * 2) is None
     assert not meanings(kl.load("ur5"), {}).things
+    assert not meanings(kl.load("ur5"), {"q": np.zeros((2, 6))}).things
+    assert not meanings(kl.load("ur5"), {"q": np.zeros(6), "v": np.zeros((2, 6))}).things
 
 
 def test_a_plane_arm_is_written_in_the_plane():
@@ -323,15 +328,15 @@ def test_whole_matrices_are_named():
     rates = [newton_euler.torques(table, s["q"], s["v"], still) for s in states]
     masses = [newton_euler.mass_matrix(table, s["q"]) for s in states]
     assert meaning_of(known, masses) == Sense("M")
-    assert meaning_of(known, [M[2] for M in masses]) == Sense("M row", 3)
-    assert meaning_of(known, [M[3, 1] for M in masses]) == Sense("M entry", of="2, 4")
-    assert meaning_of(known, [np.linalg.inv(M) for M in masses]) == Sense("M inverse")
+    assert meaning_of(known, [M[2] for M in masses]) == Sense("M_row", 3)
+    assert meaning_of(known, [M[3, 1] for M in masses]) == Sense("M_entry", of="2, 4")
+    assert meaning_of(known, [np.linalg.inv(M) for M in masses]) == Sense("M_inverse")
     assert meaning_of(known, weight) == Sense("gravity")
     assert meaning_of(known, np.subtract(rates, weight)) == Sense("C v")
     assert meaning_of(known, [M @ s["a"] for M, s in zip(masses, states, strict=True)]) == Sense(
         "M a"
     )
-    assert told(lambda s: s["wrench"][:3]) == Sense("load force")
+    assert told(lambda s: s["wrench"][:3]) == Sense("load_force")
 
     def columns(s):
         axes, points = newton_euler.axes(table, s["q"])
@@ -343,7 +348,7 @@ def test_whole_matrices_are_named():
 
     assert told(columns) == Sense("J", frame="base")
     assert told(lambda s: columns(s).T) == Sense("J", frame="base", form="transpose")
-    assert told(lambda s: np.linalg.inv(columns(s))) == Sense("J inverse")
+    assert told(lambda s: np.linalg.inv(columns(s))) == Sense("J_inverse")
     assert told(lambda s: columns(s)[3:]) == Sense("Jw")
     assert told(lambda s: columns(s).T @ s["wrench"]) == Sense("J^T F")
     assert told(lambda s: columns(s) @ s["v"]) == Sense("twist")
@@ -394,7 +399,7 @@ def test_it_is_said_in_english_and_chinese():
         assert said(Sense("f", 3, "before")) == "the force through joint 3 in the axes of frame 2"
         assert (
             said(Sense("R", 2, form="transpose"))
-            == "the transpose of the rotation matrix from frame 1 to frame 2"
+            == "the transpose of the rotation matrix of frame 2 in frame 1"
         )
         assert said(Sense("sine", of="q1 + q2")) == "the sine of q1 + q2"
         assert said(Sense("w")) == "the angular velocity of a link"

@@ -19,32 +19,32 @@ from kinlab.tolerances import TOLERANCES
 
 PHRASES = {
     "T0": N_("the transform of {frame} in the base"),
-    "T": N_("the transform from {before} to {frame}"),
-    "T0 inverse": N_("the inverse of the transform of {frame} in the base"),
-    "T inverse": N_("the inverse of the transform from {before} to {frame}"),
-    "tool pose": N_("the tool's pose"),
+    "T": N_("the transform of {frame} in {before}"),
+    "T0_inverse": N_("the inverse of the transform of {frame} in the base"),
+    "T_inverse": N_("the inverse of the transform of {frame} in {before}"),
+    "tool_pose": N_("the tool's pose"),
     "R0": N_("the rotation matrix of {frame} in the base"),
-    "R": N_("the rotation matrix from {before} to {frame}"),
-    "tool rotation": N_("the tool's rotation matrix"),
+    "R": N_("the rotation matrix of {frame} in {before}"),
+    "tool_rotation": N_("the tool's rotation matrix"),
     "axis": N_("the axis of {joint}"),
-    "z axis": N_("the z axis of {frame}"),
+    "z_axis": N_("the z axis of {frame}"),
     "origin": N_("the origin of {frame}"),
-    "tool point": N_("the tool point"),
+    "tool_point": N_("the tool point"),
     "centre": N_("the position of the centre of mass of {link}"),
     "coordinate": N_("the {of} coordinate of the origin of {frame}"),
-    "tool coordinate": N_("the {of} coordinate of the tool point"),
-    "centre coordinate": N_("the {of} coordinate of the centre of mass of {link}"),
+    "tool_coordinate": N_("the {of} coordinate of the tool point"),
+    "centre_coordinate": N_("the {of} coordinate of the centre of mass of {link}"),
     "lever": N_("the vector from {before} to {frame}"),
-    "far lever": N_("the vector from frame {of} to {frame}"),
-    "tool lever": N_("the vector from {frame} to the tool point"),
-    "own centre": N_("the vector from the origin of its frame to the centre of mass of {link}"),
-    "joint centre": N_("the vector from the frame before to the centre of mass of {link}"),
-    "far centre": N_("the vector from frame {of} to the centre of mass of {link}"),
+    "far_lever": N_("the vector from frame {of} to {frame}"),
+    "tool_lever": N_("the vector from {frame} to the tool point"),
+    "own_centre": N_("the vector from the origin of its frame to the centre of mass of {link}"),
+    "joint_centre": N_("the vector from the frame before to the centre of mass of {link}"),
+    "far_centre": N_("the vector from frame {of} to the centre of mass of {link}"),
     "w": N_("the angular velocity of {link}"),
     "dw": N_("the angular acceleration of {link}"),
     "v": N_("the velocity of the origin of {frame}"),
     "vc": N_("the velocity of the centre of mass of {link}"),
-    "tool velocity": N_("the velocity of the tool point"),
+    "tool_velocity": N_("the velocity of the tool point"),
     "dv": N_("the acceleration of the origin of {frame}"),
     "dv-g": N_("the acceleration of the origin of {frame} less g"),
     "dvc": N_("the acceleration of the centre of mass of {link}"),
@@ -58,8 +58,8 @@ PHRASES = {
     "weight": N_("the weight of {link}"),
     "f": N_("the force through {joint}"),
     "n": N_("the moment through {joint}"),
-    "load force": N_("the force at the tool"),
-    "load moment": N_("the moment at the tool"),
+    "load_force": N_("the force at the tool"),
+    "load_moment": N_("the moment at the tool"),
     "load": N_("the wrench at the tool"),
     "I dw": N_("the inertia tensor times the angular acceleration of {link}"),
     "w x Iw": N_("the gyroscopic moment w x (I w) of {link}"),
@@ -80,12 +80,12 @@ PHRASES = {
     "r x F": N_("the moment of the inertial force of {link} about the origin of the frame before"),
     "P x f": N_("the moment of the force through {joint} about the joint before"),
     "inertia": N_("the inertia tensor of {link} about its centre of mass"),
-    "frame inertia": N_("the inertia tensor of {link} about the origin of its frame"),
+    "frame_inertia": N_("the inertia tensor of {link} about the origin of its frame"),
     "mass": N_("the mass of {link}"),
     "cell": N_("{of} in {row} of the table"),
-    "centre distance": N_("the distance from {joint} to its link's centre of mass"),
+    "centre_distance": N_("the distance from {joint} to its link's centre of mass"),
     "Izz": N_("the moment of inertia of {link} about its centre of mass"),
-    "joint Izz": N_("the moment of inertia of {link} about its joint"),
+    "joint_Izz": N_("the moment of inertia of {link} about its joint"),
     "sine": N_("the sine of {of}"),
     "cosine": N_("the cosine of {of}"),
     "angle": N_("the angle {of}"),
@@ -96,35 +96,35 @@ PHRASES = {
     "velocities": N_("the joint velocities"),
     "accelerations": N_("the joint accelerations"),
     "J": N_("the Jacobian"),
-    "J inverse": N_("the inverse of the Jacobian"),
+    "J_inverse": N_("the inverse of the Jacobian"),
     "Jv": N_("the linear rows of the Jacobian"),
     "Jw": N_("the angular rows of the Jacobian"),
-    "Jv column": N_("the linear part of {column} of the Jacobian"),
-    "J column": N_("{column} of the Jacobian"),
+    "Jv_column": N_("the linear part of {column} of the Jacobian"),
+    "J_column": N_("{column} of the Jacobian"),
     "Jvc": N_("the linear Jacobian of the centre of mass of {link}"),
     "Jwc": N_("the angular Jacobian of {link}"),
-    "Jvc column": N_("column {of} of the linear Jacobian of the centre of mass of {link}"),
+    "Jvc_column": N_("column {of} of the linear Jacobian of the centre of mass of {link}"),
     "twist": N_("the tool's twist"),
     "J^T F": N_("the joint torques that hold the wrench"),
     "M": N_("the mass matrix"),
-    "M inverse": N_("the inverse of the mass matrix"),
-    "M row": N_("{row} of the mass matrix"),
-    "M entry": N_("entry ({of}) of the mass matrix"),
+    "M_inverse": N_("the inverse of the mass matrix"),
+    "M_row": N_("{row} of the mass matrix"),
+    "M_entry": N_("entry ({of}) of the mass matrix"),
     "m Jv^T Jv": N_("m Jv^T Jv of {link}, its mass's part of the mass matrix"),
     "Jw^T I Jw": N_("Jw^T I Jw of {link}, its inertia tensor's part of the mass matrix"),
     "M a": N_("the mass matrix times the accelerations"),
     "C": N_("the Coriolis matrix"),
-    "C entry": N_("entry ({of}) of the Coriolis matrix"),
+    "C_entry": N_("entry ({of}) of the Coriolis matrix"),
     "C v": N_("the Coriolis and centrifugal torques"),
-    "C v entry": N_("the Coriolis and centrifugal torque of {joint}"),
+    "C_v_entry": N_("the Coriolis and centrifugal torque of {joint}"),
     "gravity": N_("the gravity torques"),
-    "gravity entry": N_("the gravity torque of {joint}"),
+    "gravity_entry": N_("the gravity torque of {joint}"),
     "tau": N_("the joint torques"),
-    "tau entry": N_("the torque of {joint}"),
-    "tau without rotor": N_("the torque of {joint} without its rotor"),
+    "tau_entry": N_("the torque of {joint}"),
+    "tau_without_rotor": N_("the torque of {joint} without its rotor"),
     "k": N_("the kinetic energy of {link}"),
-    "k linear": N_("the translational kinetic energy of {link}"),
-    "k rotational": N_("the rotational kinetic energy of {link}"),
+    "k_linear": N_("the translational kinetic energy of {link}"),
+    "k_rotational": N_("the rotational kinetic energy of {link}"),
     "u": N_("the potential energy of {link}"),
     "kinetic": N_("the kinetic energy"),
     "potential": N_("the potential energy"),
@@ -132,18 +132,18 @@ PHRASES = {
 """What things are called, by their key."""
 
 _KINDS = (
-    ("axis", "z axis", "R0", "R", "tool rotation", "sine", "cosine"),
-    ("origin", "centre", "coordinate", "centre coordinate", "tool coordinate", "tool point")
-    + ("lever", "far lever", "tool lever", "own centre", "joint centre", "far centre")
-    + ("centre distance",),
+    ("axis", "z_axis", "R0", "R", "tool_rotation", "sine", "cosine"),
+    ("origin", "centre", "coordinate", "centre_coordinate", "tool_coordinate", "tool_point")
+    + ("lever", "far_lever", "tool_lever", "own_centre", "joint_centre", "far_centre")
+    + ("centre_distance",),
     ("w",),
     ("dw",),
-    ("v", "vc", "tool velocity", "wP", "wc", "wr"),
+    ("v", "vc", "tool_velocity", "wP", "wc", "wr"),
     ("dv", "dv-g", "dvc", "dvc-g", "g", "wwP", "wwc", "wwr", "aP", "ac", "ar", "Coriolis"),
-    ("F", "F-g", "weight", "f", "load force"),
-    ("N", "n", "I dw", "w x Iw", "c x F", "r x F", "P x f", "load moment"),
-    ("k", "k linear", "k rotational", "u", "kinetic", "potential"),
-    ("inertia", "frame inertia", "Izz", "joint Izz"),
+    ("F", "F-g", "weight", "f", "load_force"),
+    ("N", "n", "I dw", "w x Iw", "c x F", "r x F", "P x f", "load_moment"),
+    ("k", "k_linear", "k_rotational", "u", "kinetic", "potential"),
+    ("inertia", "frame_inertia", "Izz", "joint_Izz"),
     ("mass",),
     ("p",),
     ("L",),
@@ -151,7 +151,7 @@ _KINDS = (
 """What has one unit. Things of different units that have one value (a mass of 1 kg makes force and
 acceleration alike) leave it without a name; what is not listed goes with any."""
 
-_CELLS = ("cell", "mass", "centre distance", "Izz", "joint Izz")
+_CELLS = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
 """The arm's own numbers, which do not vary: of these, sums and products may meet another."""
 
 
@@ -272,7 +272,7 @@ def _one_way(known: Glossary, size: float, what: str) -> bool:
     cells = np.unique(np.abs(values[own]))
     near = TOLERANCES.same_relation * size
     others = cells[(np.abs(cells - size) > near) & (cells > near)]
-    parts = () if what == "centre distance" else (2.0, 0.5, 3.0, 1.0 / 3.0, 4.0, 0.25)
+    parts = () if what == "centre_distance" else (2.0, 0.5, 3.0, 1.0 / 3.0, 4.0, 0.25)
     made = [np.add.outer(others, others), np.subtract.outer(others, others)]
     made += [np.multiply.outer(others, others), *(k * others for k in parts)]
     return not any(bool(np.any(np.abs(x - size) <= near)) for x in made)
@@ -287,18 +287,15 @@ def _plain(value: object) -> Array | None:
     return array if array.size and bool(np.all(np.isfinite(array))) else None
 
 
-_LEAST = 1e-9
-"""Values below this may be what rounding leaves of nothing."""
-
-
 def _trivial(value: Array) -> bool:
     """Whether a value is too plain to tell: nearly 0, halves and whole numbers, parts of pi."""
-    if float(np.max(np.abs(value))) < _LEAST:
+    if float(np.max(np.abs(value))) < TOLERANCES.plain_value:
         return True
     units = (0.5, np.pi / 12.0) if value.ndim == 0 else (0.5,)
     within = bool(np.all(np.abs(value) <= 10.0))
     return within and any(
-        bool(np.all(np.abs(value / x - np.round(value / x)) <= _LEAST)) for x in units
+        bool(np.all(np.abs(value / x - np.round(value / x)) <= TOLERANCES.plain_value))
+        for x in units
     )
 
 

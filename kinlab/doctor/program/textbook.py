@@ -64,9 +64,11 @@ def meanings(robot: Robot, arguments: dict[str, Array]) -> Glossary:
         arguments: ``q`` and, where the quantity has them, ``v``, ``a``, ``tau``, ``wrench``, one
             state each. What needs an argument that is missing is not known.
     """
-    if robot.table is None or "q" not in arguments:
+    sizes = {"q": robot.n, "v": robot.n, "a": robot.n, "tau": robot.n, "wrench": 6}
+    given = {name: np.asarray(x) for name, x in arguments.items() if name in sizes}
+    one_state = all(x.shape == (sizes[name],) for name, x in given.items())
+    if robot.table is None or "q" not in given or not one_state:
         return Glossary()
-    given = {name: np.asarray(x, dtype=np.float64) for name, x in arguments.items()}
     if {"v", "tau"} <= set(given) and "a" not in given and not robot.singular_mass:
         given["a"] = dynamics.forward_dynamics(robot, given["q"], given["v"], given["tau"])
     return _Gathered(robot, given).glossary()
@@ -150,50 +152,50 @@ class _Gathered:
         p, origins = tool[:3, 3], frames[:, :3, 3]
         self.each("T0", frames[1:])
         self.each("T", steps, rank=1)
-        self.each("T0 inverse", np.linalg.inv(frames[1:]))
-        self.each("T inverse", np.linalg.inv(steps), rank=1)
+        self.each("T0_inverse", np.linalg.inv(frames[1:]))
+        self.each("T_inverse", np.linalg.inv(steps), rank=1)
         self.each("R0", self.R)
         self.each("R", steps[:, :3, :3], rank=1)
-        self.put("tool pose", tool, rank=1)
-        self.put("tool rotation", tool[:3, :3], rank=1)
+        self.put("tool_pose", tool, rank=1)
+        self.put("tool_rotation", tool[:3, :3], rank=1)
         self.vector(0, {"axis": self.z})
-        self.vector(1, {"lever": self.P, "own centre": self.c})
-        self.vector(2, {"joint centre": self.c + self.P})
+        self.vector(1, {"lever": self.P, "own_centre": self.c})
+        self.vector(2, {"joint_centre": self.c + self.P})
         for k, frame in enumerate(frames):
-            self.put("z axis", frame[:3, 2], k, rank=2)
+            self.put("z_axis", frame[:3, 2], k, rank=2)
         centres = self.o + self.c
         for what, points in (("origin", self.o), ("centre", centres)):
             self.each(what, points)
-            name = "coordinate" if what == "origin" else "centre coordinate"
+            name = "coordinate" if what == "origin" else "centre_coordinate"
             for k, point in enumerate(points, 1):
                 for c, letter in enumerate("xyz"):
                     self.put(name, point[c], k, of=letter, rank=1)
         for c, letter in enumerate("xyz"):
-            self.put("tool coordinate", p[c], of=letter, rank=2)
-        self.put("tool point", p, rank=1)
+            self.put("tool_coordinate", p[c], of=letter, rank=2)
+        self.put("tool_point", p, rank=1)
         for k, origin in enumerate(origins):
-            self.put("tool lever", p - origin, k, "base", rank=3)
+            self.put("tool_lever", p - origin, k, "base", rank=3)
             for i in range(k + 2, n + 1):
-                self.put("far lever", origins[i] - origin, i, "base", str(k), rank=4)
-                self.put("far centre", centres[i - 1] - origin, i, "base", str(k), rank=4)
+                self.put("far_lever", origins[i] - origin, i, "base", str(k), rank=4)
+                self.put("far_centre", centres[i - 1] - origin, i, "base", str(k), rank=4)
         J = kinematics.jacobian(self.robot, q)
         self.put("J", J, frame="base")
         self.put("J", kinematics.jacobian(self.robot, q, "tool"), frame="tool")
         self.put("Jv", J[:3])
         self.put("Jw", J[3:])
-        self.each("Jv column", J[:3].T, rank=1)
-        self.each("J column", J.T)
+        self.each("Jv_column", J[:3].T, rank=1)
+        self.each("J_column", J.T)
         task = J[[0, 1, 5]][:n] if self.plane and n in (2, 3) else J
         if self.plane:
             self.put("J", J[[0, 1, 5]])
         if len(task) == n:
-            self.put("J inverse", np.linalg.pinv(task))
+            self.put("J_inverse", np.linalg.pinv(task))
         self.Jc = links.com_jacobians(self.robot, q)
         self.each("Jvc", self.Jc[:, :3], rank=1)
         self.each("Jwc", self.Jc[:, 3:], rank=1)
         for i, columns in enumerate(self.Jc, 1):
             for j, column in enumerate(columns[:3].T[:i], 1):
-                self.put("Jvc column", column, i, of=str(j), rank=2)
+                self.put("Jvc_column", column, i, of=str(j), rank=2)
 
     def cells(self) -> None:
         """The table's own numbers, and what does not move in the links' axes."""
@@ -215,15 +217,15 @@ class _Gathered:
         turned = self.R @ np.stack(shifted) @ np.swapaxes(self.R, 1, 2)
         for what, own, base in (
             ("inertia", self.tensor, self.I),
-            ("frame inertia", np.stack(shifted), turned),
+            ("frame_inertia", np.stack(shifted), turned),
         ):
             self.each(what, own, "own", rank=int(what != "inertia"))
             self.each(what, base, "base", rank=int(what != "inertia"))
         if self.plane:
             arms = np.linalg.norm((self.o + self.c - self.joint)[:, :2], axis=1)
-            self.each("centre distance", arms)
+            self.each("centre_distance", arms)
             self.each("Izz", self.I[:, 2, 2])
-            self.each("joint Izz", self.I[:, 2, 2] + self.mass * arms**2, rank=1)
+            self.each("joint_Izz", self.I[:, 2, 2] + self.mass * arms**2, rank=1)
 
     def angles(self) -> None:
         q = self.given["q"]
@@ -243,8 +245,8 @@ class _Gathered:
 
     def load(self, wrench: Array) -> None:
         self.put("load", wrench)
-        self.put("load force", wrench[:3])
-        self.put("load moment", wrench[3:])
+        self.put("load_force", wrench[:3])
+        self.put("load_moment", wrench[3:])
         self.put("J^T F", kinematics.statics(self.robot, self.given["q"], wrench))
         if "v" not in self.given and not self.robot.singular_mass:
             self.wrenches(links.static_wrenches(self.robot, self.given["q"], wrench))
@@ -262,7 +264,7 @@ class _Gathered:
         self.each("qd", v)
         twist = kinematics.jacobian(robot, q) @ v
         self.put("twist", twist)
-        self.put("tool velocity", twist[:3], rank=1)
+        self.put("tool_velocity", twist[:3], rank=1)
         vo = at + _x(w, r)
         self.vc = vo + _x(w, c)
         Iw = np.einsum("nij,nj->ni", self.I, w)
@@ -275,8 +277,8 @@ class _Gathered:
         self.vector(2, {"w x z qd": _x(w, z * v[:, None])})
         if self.standard:
             self.vector(3, {"wr": _x(w, c + P), "wwr": _x(w, _x(w, c + P))})
-        self.each("k linear", 0.5 * self.mass * np.sum(self.vc**2, axis=1), rank=1)
-        self.each("k rotational", 0.5 * np.sum(w * Iw, axis=1), rank=1)
+        self.each("k_linear", 0.5 * self.mass * np.sum(self.vc**2, axis=1), rank=1)
+        self.each("k_rotational", 0.5 * np.sum(w * Iw, axis=1), rank=1)
         if "a" in self.given:
             self.acceleration(self.given["a"], w, bearer, Iw)
 
@@ -314,23 +316,23 @@ class _Gathered:
             arms = _x(self.P, f)
         self.vector(2, {"P x f": arms})
         along = np.sum(np.where(self.hinge[:, None], n, f) * self.z, axis=1)
-        self.each("tau without rotor", along, rank=1)
+        self.each("tau_without_rotor", along, rank=1)
 
     def dynamics(self) -> None:
         robot, given, q = self.robot, self.given, self.given["q"]
         M, gravity = dynamics.mass_matrix(robot, q), dynamics.gravity_torques(robot, q)
         self.put("M", M)
-        self.put("M inverse", np.linalg.inv(M))
-        self.each("M row", M)
+        self.put("M_inverse", np.linalg.inv(M))
+        self.each("M_row", M)
         for i in range(self.n):
             for j in range(i, self.n):
-                self.put("M entry", M[i, j], of=f"{i + 1}, {j + 1}")
+                self.put("M_entry", M[i, j], of=f"{i + 1}, {j + 1}")
         linear, angular = self.Jc[:, :3], self.Jc[:, 3:]
         mass = self.mass[:, None, None] * (np.swapaxes(linear, 1, 2) @ linear)
         self.each("m Jv^T Jv", mass, rank=1)
         self.each("Jw^T I Jw", np.swapaxes(angular, 1, 2) @ self.I @ angular, rank=1)
         self.put("gravity", gravity)
-        self.each("gravity entry", gravity)
+        self.each("gravity_entry", gravity)
         self.each("u", links.link_potential_energies(robot, q))
         self.put("potential", np.asarray(dynamics.potential_energy(robot, q)))
         if "v" in given:
@@ -338,9 +340,9 @@ class _Gathered:
             C = dynamics.coriolis_matrix(robot, q, v)
             self.put("C", C)
             self.put("C v", C @ v)
-            self.each("C v entry", C @ v)
+            self.each("C_v_entry", C @ v)
             for (i, j), x in np.ndenumerate(C):
-                self.put("C entry", np.asarray(x), of=f"{i + 1}, {j + 1}", rank=1)
+                self.put("C_entry", np.asarray(x), of=f"{i + 1}, {j + 1}", rank=1)
             self.each("k", links.link_kinetic_energies(robot, q, v))
             self.put("kinetic", np.asarray(dynamics.kinetic_energy(robot, q, v)))
         if "a" in given:
@@ -350,7 +352,7 @@ class _Gathered:
             tau = dynamics.inverse_dynamics(robot, q, given["v"], given["a"], given.get("wrench"))
         if tau is not None:
             self.put("tau", tau)
-            self.each("tau entry", tau)
+            self.each("tau_entry", tau)
 
 
 def _turned(turn: Array, vectors: Array) -> Array:
