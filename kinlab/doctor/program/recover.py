@@ -156,7 +156,11 @@ def _definition(made: Made, name: str) -> ast.FunctionDef:
     if (text := docstring(code)) is not None:
         head.insert(0, ast.Expr(ast.Constant(text)))
     tree = ast.FunctionDef(
-        name, _arguments(made), head + (body or [ast.Pass()]), made.decorators, made.notes.get("return")
+        name,
+        _arguments(made),
+        head + (body or [ast.Pass()]),
+        made.decorators,
+        made.notes.get("return"),
     )
     line = code.co_firstlineno
     last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
@@ -417,8 +421,8 @@ class _Reader:
                     three.no,
                     three.value,
                 ):
-                    parts = (two, three) if falls is one.yes else (three, two)
-                    node = ast.IfExp(one.test, parts[0].test, parts[1].test)
+                    test = one.test if falls is one.yes else _not(one.test)
+                    node = ast.IfExp(test, two.test, three.test)
                     paths = two.paths + three.paths
                     joined = Decision(
                         node, two.yes, two.no, two.value, three.falls, paths, one.span
@@ -463,7 +467,8 @@ class _Reader:
             found = [step for step in both if stops.get(step) == kind]
             if found:
                 return min(found, key=lambda step: step.index)
-        return None
+        on = [step for step in reachable([one], stops) if stops.get(step) == "on"]
+        return min(on, key=lambda step: step.index, default=None)
 
     # Loops
 
@@ -513,7 +518,7 @@ class _Reader:
         inside: list[object] = [*stack, Iterated(over), Element()]
         first: list[ast.stmt] = []
         step = self.statement(body, inside, {}, first, base=len(inside) - 1)
-        (stored,) = first or [ast.Pass()]
+        stored = first[0] if len(first) == 1 else None
         if not isinstance(stored, ast.Assign):
             raise UnreadError("a loop without a name")
         lines = _tail(self.region(step, inside, {head: "continue", end: "break"}))
@@ -607,23 +612,22 @@ def _joined(one: Decision, two: Decision, falls: Step, other: Step) -> Decision 
     holds = falls is one.yes
     if other not in (two.yes, two.no):
         return None
-    both = (other is two.no) == holds or two.value
-    if two.value:
-        op: ast.boolop = ast.And() if holds else ast.Or()
-        first = one.test
-    elif holds:
-        op, first = (ast.And(), one.test) if both else (ast.Or(), _not(one.test))
-    else:
-        op, first = (ast.Or(), one.test) if other is two.yes else (ast.And(), _not(one.test))
+    first, second, yes, no = one.test, two.test, two.yes, two.no
+    plain = two.value or (other is two.no) == holds
+    if not plain and two.falls is two.no:  # what goes on, goes on where the whole holds
+        second, yes, no = _not(second), no, yes
+    elif not plain:
+        first, holds = _not(first), not holds
+    op = ast.And() if holds else ast.Or()
     values: list[ast.expr] = []
-    for node in (first, two.test):
+    for node in (first, second):
         same = isinstance(node, ast.BoolOp) and type(node.op) is type(op)
         values.extend(node.values if same and isinstance(node, ast.BoolOp) else [node])
     paths = one.paths + two.paths
     del paths[falls]
     node = ast.BoolOp(op, values)
     _place(node)
-    return Decision(node, two.yes, two.no, two.value, two.falls, paths, one.span)
+    return Decision(node, yes, no, two.value, two.falls, paths, one.span)
 
 
 def _together(one: Decision, two: Decision) -> bool:

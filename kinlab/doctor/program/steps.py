@@ -23,6 +23,7 @@ from kinlab.doctor.program.expressions import (
     Unpacked,
     at,
     literal,
+    span_of,
 )
 from kinlab.doctor.program.instructions import Span, Step, UnreadError
 
@@ -192,7 +193,9 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
         case "DELETE_ATTR":
             hand.out.append(ast.Delete([at(ast.Attribute(pop(), name, ast.Del()), span)]))
         case "RETURN_VALUE":
-            hand.out.append(at(ast.Return(pop()), span))
+            given = pop()
+            alone = _none(given) and span_of(given) == span
+            hand.out.append(at(ast.Return(None if alone else given), span))
         case "RAISE_VARARGS":
             parts_ = many(number)
             hand.out.append(at(ast.Raise(*parts_), span))
