@@ -180,7 +180,7 @@ PROGRAMS = {
             x, y0 = (y, x)
             if (n := len(x)) > 1:
                 x.append(n)
-            return (x, y0, o.a, o.b, first, rest, -0.0, 1e300 * 10, {1, 2, 3} & {2})
+            return (x, y0, o.a, o.b, first, rest, -0.0, 1e301, {1, 2, 3} & {2})
     """,
     "newton": """
         def f(q):

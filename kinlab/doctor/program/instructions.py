@@ -52,7 +52,22 @@ class Step:
 PACING = {"NOP", "RESUME", "CACHE", "PRECALL", "EXTENDED_ARG", "MAKE_CELL", "COPY_FREE_VARS"}
 PACING |= {"TO_BOOL", "NOT_TAKEN"}
 JUMPS = {"JUMP_FORWARD", "JUMP_BACKWARD", "JUMP_BACKWARD_NO_INTERRUPT"}
-LAST = {"RETURN_VALUE", "RAISE_VARARGS", "RERAISE"}
+ENDING = 0 if sys.version_info < (3, 12) else 1 if sys.version_info < (3, 13) else 2
+"""How many instructions end a loop that has run out: ``END_FOR``, then ``POP_TOP`` too."""
+
+SAME = {
+    "LOAD_FAST_CHECK": "LOAD_FAST",
+    "LOAD_FAST_BORROW": "LOAD_FAST",
+    "LOAD_SMALL_INT": "LOAD_CONST",
+    "POP_ITER": "POP_TOP",
+}
+DOUBLE = {
+    "LOAD_FAST_LOAD_FAST": ("LOAD_FAST", "LOAD_FAST"),
+    "LOAD_FAST_BORROW_LOAD_FAST_BORROW": ("LOAD_FAST", "LOAD_FAST"),
+    "STORE_FAST_STORE_FAST": ("STORE_FAST", "STORE_FAST"),
+    "STORE_FAST_LOAD_FAST": ("STORE_FAST", "LOAD_FAST"),
+}
+LAST = {"RETURN_CONST", "RETURN_VALUE", "RAISE_VARARGS", "RERAISE"}
 BITS = {"LOAD_GLOBAL"} if sys.version_info < (3, 12) else {"LOAD_GLOBAL", "LOAD_ATTR"}
 FLAGS = inspect.CO_OPTIMIZED | inspect.CO_NEWLOCALS | inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 FLAGS |= inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
@@ -64,9 +79,11 @@ def entry(code: CodeType) -> Step:
     Raises:
         UnreadError: It catches exceptions, waits, or loops without doing anything.
     """
-    if code.co_exceptiontable:
-        raise UnreadError("exceptions are caught")
     instructions = list(dis.get_instructions(code))
+    if code.co_exceptiontable and (
+        sys.version_info < (3, 12) or any(i.opname == "PUSH_EXC_INFO" for i in instructions)
+    ):  # from 3.12 on generators and comprehensions have tables of their own
+        raise UnreadError("exceptions are caught")
     place = {i.offset: n for n, i in enumerate(instructions)}
     steps = [_step(code, n, i) for n, i in enumerate(instructions)]
 
@@ -98,9 +115,15 @@ def entry(code: CodeType) -> Step:
             step.after = [other, following] if holds else [following, other]
             step.falls = 1 if holds else 0
         elif step.op in ("AND", "OR", "FOR_ITER"):
-            step.after = [following, at(place[_target(instructions[n])])]
+            behind = place[_target(instructions[n])]
+            behind += ENDING if step.op == "FOR_ITER" else 0
+            step.after = [following, at(behind)]
         else:
             step.after = [following]
+    for step in steps:
+        _in_parts(step)
+    for step in steps:
+        _keeping(step)
     first = at(0)
     if first.op == "RETURN_GENERATOR":
         first = first.after[0].after[0]
@@ -109,6 +132,29 @@ def entry(code: CodeType) -> Step:
 
 def _target(instruction: dis.Instruction) -> int:
     return int(instruction.argval)
+
+
+def _in_parts(step: Step) -> None:
+    """A step that does two things, as two."""
+    names, span, index = step.value, step.span, step.index
+    second = None
+    if step.op == "RETURN_CONST":
+        second, step.op = Step("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
+    elif step.op in DOUBLE and isinstance(names, tuple):
+        second = Step(DOUBLE[step.op][1], names[1], 0, span, index, step.after)
+        step.op, step.value = DOUBLE[step.op][0], names[0]
+    if second is not None:
+        step.after = [second]
+
+
+def _keeping(step: Step) -> None:
+    """``COPY``, a test and ``POP_TOP`` as one step that keeps its value where it jumps."""
+    test = step.after[0] if step.op == "COPY" and step.value == 1 and step.after else step
+    if test.op == "TEST" and test.value is True:
+        falls, jumps = test.after[test.falls], test.after[1 - test.falls]
+        if falls.op == "POP_TOP" and step is not test:
+            step.op, step.value = ("OR" if test.falls else "AND"), True
+            step.span, step.after = test.span, [falls.after[0], jumps]
 
 
 def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
@@ -126,6 +172,10 @@ def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
         value = code.co_consts[instruction.arg or 0]
     elif op == "BINARY_OP":
         value = instruction.arg
+    elif op == "LOAD_ATTR" and bit:
+        op = "LOAD_METHOD"
+    elif op in SAME:
+        op = SAME[op]
     p = instruction.positions
     span = None
     if p is not None and p.lineno is not None:

@@ -27,6 +27,7 @@ from kinlab.doctor.program.expressions import (
     Iterated,
     Made,
     Module,
+    Saved,
     at,
     span_of,
 )
@@ -282,6 +283,9 @@ class _Reader:
                 stack.append(decision.test)
                 step = decision.yes
                 continue
+            if step.op == "FOR_ITER" and _gathers(stack):
+                step = self.gathered(step, stack)
+                continue
             if step.op == "FOR_ITER":
                 if len(stack) != base + 1:
                     raise UnreadError("a loop within an expression")
@@ -390,6 +394,9 @@ class _Reader:
                     return None
                 return Decision(test, step, step, True, None, Counter([step]), None)
             fresh = False
+            if step.op == "FOR_ITER" and _gathers(hand.stack[height:]):
+                step = self.gathered(step, hand.stack)
+                continue
             if step.op in LAST or step.op == "FOR_ITER":
                 return None
             size = step.value if isinstance(step.value, int) else 0
@@ -574,27 +581,49 @@ class _Reader:
             stack.append(makers[kind])
             first = first.after[0]
         made = stack[0] if stack else None
-        lines = self.region(first, stack, {})
-        generators: list[ast.comprehension] = []
-        while lines and isinstance(loop := lines[0], ast.For):
-            source = loop.iter if generators else over
-            generators.append(ast.comprehension(loop.target, source, [], 0))
-            lines = loop.body
-            while isinstance(inner := lines[0], ast.If) and not inner.orelse and len(lines) == 1:
-                generators[-1].ifs.append(inner.test)
-                lines = inner.body
-        if not generators or len(lines) != 1:
+        return _comprehension(self.region(first, stack, {}), made, over)
+
+    def gathered(self, head: Step, stack: list[object]) -> Step:
+        """A comprehension within its function (3.12 on), left on the stack; the step after it."""
+        through, made, lines = stack[-1], stack[-2], list[ast.stmt]()
+        behind = self.turns(head, stack, {}, lines)
+        if behind is None or not isinstance(through, Iterated):
             raise UnreadError("no comprehension")
-        if isinstance(made, ast.Dict) and len(made.keys) == 1 and made.keys[0] is not None:
-            return ast.DictComp(made.keys[0], made.values[0], generators)
-        if isinstance(made, ast.List) and len(made.elts) == 1:
-            return ast.ListComp(made.elts[0], generators)
-        if isinstance(made, ast.Set) and len(made.elts) == 1:
-            return ast.SetComp(made.elts[0], generators)
-        given = lines[0].value if isinstance(lines[0], ast.Expr) else None
-        if made is None and isinstance(given, ast.Yield) and given.value is not None:
-            return ast.GeneratorExp(given.value, generators)
+        stack[-1] = at(_comprehension(lines, made, through.over), head.span)
+        return behind
+
+
+def _gathers(stack: list[object]) -> bool:
+    """Whether a loop gathers its elements for a comprehension."""
+    return (
+        len(stack) > 2
+        and isinstance(stack[-2], (ast.List, ast.Set, ast.Dict))
+        and isinstance(stack[-3], Saved)
+    )
+
+
+def _comprehension(lines: list[ast.stmt], made: object, over: ast.expr) -> ast.expr:
+    """A comprehension from its loops, what they fill, and what the first is over."""
+    generators: list[ast.comprehension] = []
+    while lines and isinstance(loop := lines[0], ast.For):
+        source = loop.iter if generators else over
+        generators.append(ast.comprehension(loop.target, source, [], 0))
+        lines = loop.body
+        while isinstance(inner := lines[0], ast.If) and not inner.orelse and len(lines) == 1:
+            generators[-1].ifs.append(inner.test)
+            lines = inner.body
+    if not generators or len(lines) != 1:
         raise UnreadError("no comprehension")
+    if isinstance(made, ast.Dict) and len(made.keys) == 1 and made.keys[0] is not None:
+        return ast.DictComp(made.keys[0], made.values[0], generators)
+    if isinstance(made, ast.List) and len(made.elts) == 1:
+        return ast.ListComp(made.elts[0], generators)
+    if isinstance(made, ast.Set) and len(made.elts) == 1:
+        return ast.SetComp(made.elts[0], generators)
+    given = lines[0].value if isinstance(lines[0], ast.Expr) else None
+    if made is None and isinstance(given, ast.Yield) and given.value is not None:
+        return ast.GeneratorExp(given.value, generators)
+    raise UnreadError("no comprehension")
 
 
 def _value(lines: list[ast.stmt]) -> ast.expr:

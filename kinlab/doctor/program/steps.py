@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Callable
 from types import CodeType
 
@@ -20,12 +21,16 @@ from kinlab.doctor.program.expressions import (
     Made,
     Module,
     Raw,
+    Saved,
     Unpacked,
     at,
     literal,
     span_of,
 )
 from kinlab.doctor.program.instructions import Span, Step, UnreadError
+
+NULL_ABOVE = sys.version_info >= (3, 13)
+"""Whether the empty entry of a call lies above its function, not below."""
 
 Finish = Callable[[Made, "ast.expr | None", "Span | None"], ast.expr]
 """A function just made as an expression: a lambda, or a comprehension over what is given."""
@@ -61,9 +66,13 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
 
     match op:
         case "LOAD_FAST" | "LOAD_GLOBAL" | "LOAD_DEREF" | "LOAD_NAME":
-            if op == "LOAD_GLOBAL" and step.bit:
+            if step.bit and not NULL_ABOVE:
                 stack.append(NULL)
             push(ast.Name(name, ast.Load()))
+            if step.bit and NULL_ABOVE:
+                stack.append(NULL)
+        case "LOAD_FAST_AND_CLEAR":
+            stack.append(Saved())
         case "LOAD_CLOSURE":
             push(ast.Name(name, ast.Load()))
         case "LOAD_CONST":
@@ -93,6 +102,13 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
         case "BINARY_SUBSCR":
             index, whole = pop(), pop()
             push(ast.Subscript(whole, index, ast.Load()))
+        case "BINARY_SLICE":
+            parts = [None if _none(part) else part for part in many(2)]
+            push(ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Load()))
+        case "STORE_SLICE":
+            parts = [None if _none(part) else part for part in many(2)]
+            whole = ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Store())
+            hand.store(hand.pop(), at(whole, span))
         case "COMPARE_OP" | "IS_OP" | "CONTAINS_OP" | "CHAIN":
             _compare(step, hand, pop)
         case "LOAD_ATTR":
@@ -147,19 +163,41 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
                 into.values.append(more)
         case "LIST_TO_TUPLE":
             push(ast.Tuple(_list(pop()).elts, ast.Load()))
+        case "CALL_INTRINSIC_1" if number == 5:
+            push(ast.UnaryOp(ast.UAdd(), pop()))
+        case "CALL_INTRINSIC_1" if number == 6:
+            push(ast.Tuple(_list(pop()).elts, ast.Load()))
         case "FORMAT_VALUE":
             flags = step.value
             if not isinstance(flags, tuple):
                 raise UnreadError("FORMAT_VALUE")
             spec = _joined([pop()], span) if flags[1] else None
-            conversion = {None: -1, str: 115, repr: 114, ascii: 97}[flags[0]]
+            conversion = _conversion(flags[0])
             push(ast.JoinedStr([at(ast.FormattedValue(pop(), conversion, spec), span)]))
+        case "CONVERT_VALUE":
+            push(ast.FormattedValue(pop(), _conversion(value), None))
+        case "FORMAT_SIMPLE" | "FORMAT_WITH_SPEC":
+            spec = _joined([pop()], span) if op == "FORMAT_WITH_SPEC" else None
+            part = pop()
+            if not isinstance(part, ast.FormattedValue):
+                part = at(ast.FormattedValue(part, -1, None), span)
+            part.format_spec = spec
+            push(ast.JoinedStr([part]))
         case "BUILD_STRING":
             stack.append(_joined(many(number), span))
         case "KW_NAMES":
             if not isinstance(value, tuple):
                 raise UnreadError("KW_NAMES")
             hand.keywords = value
+        case "CALL_KW":
+            hand.keywords = _names(hand.pop())
+            _call(hand, number, pop, many, finish, span)
+        case "SET_FUNCTION_ATTRIBUTE":
+            function = hand.pop()
+            if not isinstance(function, Made):
+                raise UnreadError("no function")
+            _attribute(function, number, pop)
+            stack.append(function)
         case "CALL":
             _call(hand, number, pop, many, finish, span)
         case "CALL_FUNCTION_EX":
@@ -219,6 +257,14 @@ def _none(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and node.value is None
 
 
+def _conversion(by: object) -> int:
+    """The letter of ``!s``, ``!r`` or ``!a`` in an f-string, by its function; -1 for none."""
+    for function, letter in ((None, -1), (str, ord("s")), (repr, ord("r")), (ascii, ord("a"))):
+        if by is function:
+            return letter
+    raise UnreadError("a conversion")
+
+
 def _dict(node: object) -> ast.Dict:
     if not isinstance(node, ast.Dict):
         raise UnreadError("no dict")
@@ -261,6 +307,8 @@ def _compare(step: Step, hand: Hand, pop: Callable[[], ast.expr]) -> None:
             raise UnreadError("CHAIN")
         kind, value = value
     if kind == "COMPARE_OP":
+        if str(value) not in COMPARE:
+            raise UnreadError(f"a comparison by {value}")
         op: ast.cmpop = COMPARE[str(value)]()
     elif kind == "IS_OP":
         op = ast.IsNot() if value else ast.Is()
@@ -293,7 +341,8 @@ def _call(
     upper, lower = hand.pop(), hand.pop()
     if upper is SELF:
         function = hand.as_expr(lower)
-    elif lower is NULL:
+    elif lower is NULL or upper is NULL:
+        upper, lower = (lower, upper) if upper is NULL else (upper, lower)
         function = finish(upper, None, span) if isinstance(upper, Made) else hand.as_expr(upper)
     elif isinstance(lower, Made) and isinstance(upper, Iterated):
         hand.stack.append(finish(lower, upper.over, span))
@@ -331,9 +380,11 @@ def _call_stars(hand: Hand, named: int, pop: Callable[[], ast.expr], span: Span 
         arguments = stars.elts
     else:
         arguments = [at(ast.Starred(stars, ast.Load()), span)]
-    function = pop()
-    if hand.pop() is not NULL:
+    pair = [hand.pop(), hand.pop()]
+    if NULL not in pair:
         raise UnreadError("a call of nothing known")
+    pair.remove(NULL)
+    function = hand.as_expr(pair[0])
     hand.stack.append(at(ast.Call(function, arguments, keywords), span))
 
 
@@ -346,6 +397,13 @@ def _made(hand: Hand, flags: int, pop: Callable[[], ast.expr]) -> Made:
     if not isinstance(code, Raw) or not isinstance(code.value, CodeType):
         raise UnreadError("a function without code")
     made = Made(code.value, [], {}, {})
+    for flag in (8, 4, 2, 1):
+        _attribute(made, flags & flag, pop)
+    return made
+
+
+def _attribute(made: Made, flags: int, pop: Callable[[], ast.expr]) -> None:
+    """What a function is made with: closure, annotations, defaults."""
     if flags & 8:
         pop()
     if flags & 4:
@@ -361,7 +419,13 @@ def _made(hand: Hand, flags: int, pop: Callable[[], ast.expr]) -> Made:
         if not isinstance(defaults, ast.Tuple):
             raise UnreadError("defaults")
         made.defaults = defaults.elts
-    return made
+
+
+def _names(node: object) -> tuple[str, ...]:
+    """The names of keywords, a tuple of strings."""
+    if not isinstance(node, ast.Tuple):
+        raise UnreadError("names that are no tuple")
+    return tuple(str(e.value) for e in node.elts if isinstance(e, ast.Constant))
 
 
 def _named(
