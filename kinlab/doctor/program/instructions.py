@@ -113,7 +113,9 @@ def entry(code: CodeType) -> Step:
             other = at(place[_target(instructions[n])])
             holds = name.endswith(("IF_TRUE", "IF_NONE"))
             step.after = [other, following] if holds else [following, other]
-            step.falls = 1 if holds else 0
+            behind = steps[n + 1]
+            turned = behind.op == "JUMP_BACKWARD" and behind.span == step.span
+            step.falls = int(holds != turned)  # a test may only leap over its own jump (3.12)
         elif step.op in ("AND", "OR", "FOR_ITER"):
             behind = place[_target(instructions[n])]
             behind += ENDING if step.op == "FOR_ITER" else 0
@@ -136,7 +138,7 @@ def _target(instruction: dis.Instruction) -> int:
 
 def _in_parts(step: Step) -> None:
     """A step that does two things, as two."""
-    names, span, index = step.value, step.span, step.index
+    names, span, index = step.value, step.span, step.index + 1
     second = None
     if step.op == "RETURN_CONST":
         second, step.op = Step("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
@@ -181,7 +183,7 @@ def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
     if p is not None and p.lineno is not None:
         end = p.lineno if p.end_lineno is None else p.end_lineno
         span = (p.lineno, end, p.col_offset or 0, p.end_col_offset or 0)
-    return Step(op, value, bit, span, n)
+    return Step(op, value, bit, span, 2 * n)
 
 
 def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:

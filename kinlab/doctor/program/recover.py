@@ -224,7 +224,7 @@ class _Reader:
 
     def _unchain(self) -> None:
         """Make ``a < b < c`` one path: the way out in its middle only throws a value away."""
-        for step in reachable([self.first]):
+        for step in sorted(reachable([self.first]), key=lambda step: step.index):
             path = [step]
             while len(path) < 4 and len(path[-1].after) == 1:
                 path.append(path[-1].after[0])
@@ -707,8 +707,9 @@ def _asserts(raised: ast.expr | None) -> bool:
     return isinstance(named, ast.Name) and getattr(named, "asserted", False)
 
 
-def _start(node: ast.expr) -> tuple[int, int]:
-    return (getattr(node, "lineno", 0), getattr(node, "col_offset", 0))
+def _turn(node: ast.expr) -> int:
+    """When an expression is done, among the others of its statement."""
+    return max(getattr(part, "turn", -1) for part in ast.walk(node))
 
 
 def _stamp(lines: list[ast.stmt], step: Step) -> None:

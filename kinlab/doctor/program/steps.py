@@ -48,6 +48,7 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
     name = value if isinstance(value, str) else ""
 
     def push(node: ast.expr) -> None:
+        setattr(node, "turn", step.index)  # noqa: B010
         stack.append(at(node, span))
 
     def pop() -> ast.expr:
