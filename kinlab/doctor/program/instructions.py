@@ -117,9 +117,8 @@ def entry(code: CodeType) -> Step:
             turned = behind.op == "JUMP_BACKWARD" and behind.span == step.span
             step.falls = int(holds != turned)  # a test may only leap over its own jump (3.12)
         elif step.op in ("AND", "OR", "FOR_ITER"):
-            behind = place[_target(instructions[n])]
-            behind += ENDING if step.op == "FOR_ITER" else 0
-            step.after = [following, at(behind)]
+            ending = ENDING if step.op == "FOR_ITER" else 0
+            step.after = [following, at(place[_target(instructions[n])] + ending)]
         else:
             step.after = [following]
     for step in steps:
@@ -229,6 +228,24 @@ def folded(first: Step) -> Step:
     for step in steps:
         step.after = [root(s) for s in step.after]
     return root(first)
+
+
+def unchain(first: Step) -> None:
+    """Make ``a < b < c`` one path: the way out in its middle only throws a value away."""
+    for step in sorted(reachable([first]), key=lambda step: step.index):
+        path = [step]
+        while len(path) < 4 and len(path[-1].after) == 1:
+            path.append(path[-1].after[0])
+        if [s.op for s in path[:2]] != ["SWAP", "COPY"] or len(path) < 4:
+            continue
+        compare, branch = path[2:]
+        if branch.op not in ("TEST", "AND") or (path[0].value, path[1].value) != (2, 2):
+            continue
+        out = branch.after[1]
+        if branch.op == "TEST" and out.op != "POP_TOP":
+            continue
+        step.op, step.value = "CHAIN", (compare.op, compare.value)
+        step.span, step.after = compare.span, [branch.after[0]]
 
 
 def constant(value: object) -> object:
