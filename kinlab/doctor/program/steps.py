@@ -77,7 +77,10 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
         case "LOAD_CLOSURE":
             push(ast.Name(name, ast.Load()))
         case "LOAD_CONST":
-            stack.append(Raw(value) if isinstance(value, CodeType) else literal(value, span))
+            if isinstance(value, CodeType):
+                stack.append(Raw(value))
+            else:
+                push(literal(value, span))
         case "PUSH_NULL":
             stack.append(NULL)
         case "LOAD_ASSERTION_ERROR":
