@@ -115,9 +115,6 @@ class Hand:
             raise UnreadError("an empty stack")
         return self.stack.pop()
 
-    def many(self, count: int) -> list[ast.expr]:
-        return [self.expr() for _ in range(count)][::-1]
-
     def expr(self) -> ast.expr:
         return self.as_expr(self.pop())
 

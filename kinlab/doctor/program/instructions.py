@@ -199,6 +199,23 @@ def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:
     return seen
 
 
+def leading(to: Step, within: set[Step], stops: Iterable[Step] = ()) -> set[Step]:
+    """The steps among some that can lead to one, not past the stops."""
+    end = set(stops)
+    before: dict[Step, list[Step]] = {}
+    for step in within - end:
+        for after in step.after:
+            before.setdefault(after, []).append(step)
+    seen: set[Step] = set()
+    left = [to]
+    while left:
+        step = left.pop()
+        if step not in seen:
+            seen.add(step)
+            left.extend(before.get(step, ()))
+    return seen & (within | {to})
+
+
 def folded(first: Step) -> Step:
     """The graph with the compiler's copies of one piece of source made one again.
 
@@ -296,6 +313,8 @@ def arguments(code: CodeType) -> tuple[str, ...]:
 
 def docstring(code: CodeType) -> str | None:
     """The docstring of a function: its first constant, if that is a string."""
+    if sys.version_info >= (3, 14) and not code.co_flags & 0x4000000:  # CO_HAS_DOCSTRING
+        return None
     first = code.co_consts[0] if code.co_consts else None
     return first if isinstance(first, str) and not code.co_name.startswith("<") else None
 

@@ -29,6 +29,7 @@ from kinlab.doctor.program.instructions import (
     docstring,
     entry,
     folded,
+    leading,
     reachable,
     unchain,
 )
@@ -359,8 +360,7 @@ class Reader:
                 lines = _tail(self.region(body, list(stack), inner))
                 out.append(ast.While(test, lines, orelse))
                 return end
-        inside = {s for s in reachable(head.after, around) if head in reachable([s], stops)}
-        inside.add(head)
+        inside = leading(head, reachable(head.after, around), stops)
         ends = [a for s in inside for a in s.after if a not in inside]
         last = max(ends, key=lambda step: step.index, default=None)
         inner = {head: "continue"}
@@ -400,7 +400,7 @@ class Reader:
     ) -> tuple[Step, list[ast.stmt]]:
         """Where a loop's ``break`` leads, and the lines of its ``else``."""
         around = [*stops, head]
-        within = {s for s in reachable(body, around) if head in reachable([s], stops)}
+        within = leading(head, reachable(body, around), stops)
         broken = [a for s in within - {head} for a in s.after if a not in within]
         broken += [s for s in body if s not in within]
         out = reachable(broken, around)

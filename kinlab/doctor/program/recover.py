@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import ast
 import math
+import warnings
 from types import CodeType, FunctionType
 
 from kinlab.doctor.program.expressions import Made
@@ -80,7 +81,9 @@ def _compiled(tree: ast.FunctionDef, code: CodeType) -> CodeType | None:
     imports: list[ast.stmt] = [ast.Import([ast.alias(name)]) for name in modules]
     module = ast.fix_missing_locations(ast.Module(imports + body, []))
     try:
-        found = compile(module, "<recovered>", "exec", dont_inherit=True)
+        with warnings.catch_warnings():  # told when the function was written
+            warnings.simplefilter("ignore", SyntaxWarning)
+            found = compile(module, "<recovered>", "exec", dont_inherit=True)
     except (SyntaxError, ValueError, TypeError):
         return None
     inner = [c for c in found.co_consts if isinstance(c, CodeType)]

@@ -101,8 +101,8 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
                 push(ast.BinOp(left, BINARY[number](), right))
             elif number < 2 * len(BINARY):
                 stack.append(Changed(left, BINARY[number - len(BINARY)](), right))
-            else:
-                raise UnreadError(f"BINARY_OP {number}")
+            else:  # 3.14
+                push(ast.Subscript(left, right, ast.Load()))
         case "BINARY_SUBSCR":
             index, whole = pop(), pop()
             push(ast.Subscript(whole, index, ast.Load()))
