@@ -52,17 +52,23 @@ def joined(one: Decision, two: Decision, falls: Step, other: Step) -> Decision |
     del paths[falls]
     node = ast.BoolOp(op, values)
     place(node)
-    return Decision(node, yes, no, two.value, two.falls, paths, one.span)
+    span = two.span if one.span is None or _holds(two.span, one.span) else one.span
+    return Decision(node, yes, no, two.value, two.falls, paths, span)
 
 
 def together(one: Decision, two: Decision) -> bool:
     """Whether two conditions may stand in one expression: not those of nested statements."""
     if two.value or one.span is None or two.span is None or one.span == two.span:
         return True
-    first, second = one.span, two.span
-    within = (first[0], first[2]) <= (second[0], second[2])
-    within &= (second[1], second[3]) <= (first[1], first[3])
-    return not within or span_of(two.test) == second
+    return not _holds(one.span, two.span) or span_of(two.test) == two.span
+
+
+def _holds(outer: Span | None, inner: Span) -> bool:
+    """Whether a part of the source has another in it."""
+    if outer is None:
+        return False
+    begins = (outer[0], outer[2]) <= (inner[0], inner[2])
+    return begins and (inner[1], inner[3]) <= (outer[1], outer[3])
 
 
 def negated(test: ast.expr) -> ast.expr:

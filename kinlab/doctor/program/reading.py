@@ -43,10 +43,10 @@ Stops = dict[Step, str]
 """Where a part of a function ends, and how one gets there: ``on``, ``continue``, ``break``."""
 
 
-def definition(made: Made, name: str) -> ast.FunctionDef:
+def definition(made: Made, name: str, again: bool = False) -> ast.FunctionDef:
     """A function's definition from its code object."""
     code = made.code
-    reader = Reader(code)
+    reader = Reader(code, again)
     body = reader.statements()
     if body and isinstance(body[-1], ast.Return) and is_none(body[-1].value) and len(body) > 1:
         body.pop()
@@ -92,8 +92,8 @@ def _arguments(made: Made) -> ast.arguments:
 class Reader:
     """Reads one code object."""
 
-    def __init__(self, code: CodeType) -> None:
-        self.code = code
+    def __init__(self, code: CodeType, again: bool = False) -> None:
+        self.code, self.again = code, again
         self.first = folded(entry(code))
         unchain(self.first)
         steps = reachable([self.first])
@@ -208,7 +208,7 @@ class Reader:
         if isinstance(value, Made):
             if value.code.co_name == "<lambda>":
                 return [ast.Assign([target], self.finish(value, None, None))]
-            return [definition(value, target.id)]
+            return [definition(value, target.id, self.again)]
         if isinstance(value, Module):
             top = value.name.partition(".")[0]
             return [ast.Import([ast.alias(value.name, None if top == target.id else target.id)])]
@@ -404,15 +404,22 @@ class Reader:
         broken = [a for s in within - {head} for a in s.after if a not in within]
         broken += [s for s in body if s not in within]
         out = reachable(broken, around)
-        if leave in out:
+        last = max((step.index for step in within), default=head.index)
+        beyond = [s for s in out if s.index > (last if leave in stops else leave.index)]
+        beyond = [] if leave in out and not (self.again and leave in stops) else beyond
+        if leave in out and not beyond:
             return leave, []
-        both = out & reachable([leave], around)
+        both = set[Step]() if leave in stops else out & reachable([leave], around)
         for known in (False, True):
             found = [s for s in both if (s in stops) is known and s is not head]
             if found:
                 end = min(found, key=lambda step: step.index)
-                return end, self.region(leave, list(stack), {**stops, end: "on"})
-        return leave, []
+                break
+        else:
+            if not beyond:
+                return leave, []
+            end = min(beyond, key=lambda step: step.index)
+        return end, self.region(leave, list(stack), {**stops, end: "on"})
 
     # Functions within
 
@@ -420,11 +427,11 @@ class Reader:
         """A lambda, or a comprehension, as an expression."""
         code = made.code
         if code.co_name == "<lambda>" and over is None:
-            body = Reader(code).region_value()
+            body = Reader(code, self.again).region_value()
             return at(ast.Lambda(_arguments(made), body), span)
         if over is None or made.defaults or made.keywords:
             raise UnreadError("a function without a name")
-        return at(Reader(code).comprehension(over), span)
+        return at(Reader(code, self.again).comprehension(over), span)
 
     def region_value(self) -> ast.expr:
         """The value of a lambda."""
