@@ -192,6 +192,32 @@ PROGRAMS = {
                     break
             return x
     """,
+    "ways out": """
+        def f(q):
+            x = q[0]
+            for it in range(8):
+                step = (x * x - 0.4) / (2 * x)
+                if abs(step) < 1e-09:
+                    break
+                x = x - step
+            else:
+                raise ValueError('no convergence')
+            for a in q:
+                for b in q:
+                    if b > 0.6:
+                        x = x + b
+                        break
+                else:
+                    continue
+                y = x + a
+                if y > 2:
+                    for c in q:
+                        if c > 0.6:
+                            return (x, c, 1)
+                elif y < 0.1:
+                    return 3
+            return (x, it)
+    """,
     "generator": """
         def f(q):
             def each(n):

@@ -38,6 +38,7 @@ class Step:
         index: Its place in the byte code.
         after: The steps that may be next.
         falls: Which of ``after`` stands next in the byte code.
+        ends: Of a ``for``: the index at which its lines have ended.
     """
 
     op: str
@@ -47,6 +48,7 @@ class Step:
     index: int
     after: list[Step] = field(default_factory=list)
     falls: int = 0
+    ends: int = 0
 
 
 PACING = {"NOP", "RESUME", "CACHE", "PRECALL", "EXTENDED_ARG", "MAKE_CELL", "COPY_FREE_VARS"}
@@ -118,6 +120,7 @@ def entry(code: CodeType) -> Step:
             step.falls = int(holds != turned)  # a test may only leap over its own jump (3.12)
         elif step.op in ("AND", "OR", "FOR_ITER"):
             ending = ENDING if step.op == "FOR_ITER" else 0
+            step.ends = 2 * place[_target(instructions[n])] if step.op == "FOR_ITER" else 0
             step.after = [following, at(place[_target(instructions[n])] + ending)]
         else:
             step.after = [following]

@@ -43,10 +43,10 @@ Stops = dict[Step, str]
 """Where a part of a function ends, and how one gets there: ``on``, ``continue``, ``break``."""
 
 
-def definition(made: Made, name: str, again: bool = False) -> ast.FunctionDef:
+def definition(made: Made, name: str) -> ast.FunctionDef:
     """A function's definition from its code object."""
     code = made.code
-    reader = Reader(code, again)
+    reader = Reader(code)
     body = reader.statements()
     if body and isinstance(body[-1], ast.Return) and is_none(body[-1].value) and len(body) > 1:
         body.pop()
@@ -92,8 +92,8 @@ def _arguments(made: Made) -> ast.arguments:
 class Reader:
     """Reads one code object."""
 
-    def __init__(self, code: CodeType, again: bool = False) -> None:
-        self.code, self.again = code, again
+    def __init__(self, code: CodeType) -> None:
+        self.code = code
         self.first = folded(entry(code))
         unchain(self.first)
         steps = reachable([self.first])
@@ -208,7 +208,7 @@ class Reader:
         if isinstance(value, Made):
             if value.code.co_name == "<lambda>":
                 return [ast.Assign([target], self.finish(value, None, None))]
-            return [definition(value, target.id, self.again)]
+            return [definition(value, target.id)]
         if isinstance(value, Module):
             top = value.name.partition(".")[0]
             return [ast.Import([ast.alias(value.name, None if top == target.id else target.id)])]
@@ -404,21 +404,16 @@ class Reader:
         broken = [a for s in within - {head} for a in s.after if a not in within]
         broken += [s for s in body if s not in within]
         out = reachable(broken, around)
-        last = max((step.index for step in within), default=head.index)
-        beyond = [s for s in out if s.index > (last if leave in stops else leave.index)]
-        beyond = [] if leave in out and not (self.again and leave in stops) else beyond
-        if leave in out and not beyond:
+        last = max((step.index for step in within), default=head.index) + 1
+        first = head.ends or (last if leave in stops else leave.index)
+        inside = [s for s in within | out if head.index < s.index < first]
+        beyond = {a for s in inside for a in s.after if not head.index <= a.index < first}
+        if leave in beyond or (leave in out and leave not in stops):
             return leave, []
-        both = set[Step]() if leave in stops else out & reachable([leave], around)
-        for known in (False, True):
-            found = [s for s in both if (s in stops) is known and s is not head]
-            if found:
-                end = min(found, key=lambda step: step.index)
-                break
-        else:
-            if not beyond:
-                return leave, []
-            end = min(beyond, key=lambda step: step.index)
+        beyond = beyond or (out & reachable([leave], around)) - set(stops) - {head}
+        if not beyond:
+            return leave, []
+        end = min(beyond, key=lambda step: step.index)
         return end, self.region(leave, list(stack), {**stops, end: "on"})
 
     # Functions within
@@ -427,11 +422,11 @@ class Reader:
         """A lambda, or a comprehension, as an expression."""
         code = made.code
         if code.co_name == "<lambda>" and over is None:
-            body = Reader(code, self.again).region_value()
+            body = Reader(code).region_value()
             return at(ast.Lambda(_arguments(made), body), span)
         if over is None or made.defaults or made.keywords:
             raise UnreadError("a function without a name")
-        return at(Reader(code, self.again).comprehension(over), span)
+        return at(Reader(code).comprehension(over), span)
 
     def region_value(self) -> ast.expr:
         """The value of a lambda."""

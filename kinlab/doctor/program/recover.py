@@ -44,21 +44,10 @@ def recovered(function: FunctionType) -> ast.FunctionDef | None:
         if defaults is None or keywords is None:
             defaults, given = [], {}
         made = Made(code, defaults, given, {})
-        for again in (False, True):
-            tree = _attempted(made, code.co_name if named else "function", again)
-            inner = None if tree is None else _compiled(tree, code)
-            if inner is not None and alike(code, inner, named=named):
-                return tree
+        tree = definition(made, code.co_name if named else "function")
+        again = _compiled(tree, code)
+        return tree if again is not None and alike(code, again, named=named) else None
     except (UnreadError, RecursionError):
-        return None
-    return None
-
-
-def _attempted(made: Made, name: str, again: bool) -> ast.FunctionDef | None:
-    """One reading; the second takes a loop's way out at the end of a loop for its ``else``."""
-    try:
-        return definition(made, name, again)
-    except UnreadError:
         return None
 
 
