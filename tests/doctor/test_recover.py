@@ -419,6 +419,11 @@ def done(code: types.CodeType) -> set[tuple[str, str]]:
     for i in dis.get_instructions(code):
         if isinstance(i.argval, types.CodeType):
             found |= done(i.argval)
+        elif isinstance(i.argval, tuple) and i.opname.count("_FAST") == 2:  # 3.13: two in one
+            first, second = i.opname.replace("_LOAD", " LOAD").replace("_STORE", " STORE").split()
+            found |= {(first, repr(i.argval[0])), (second, repr(i.argval[1]))}
+        elif i.opname == "RETURN_CONST":  # 3.12
+            found |= {("LOAD_CONST", repr(i.argval)), ("RETURN_VALUE", "None")}
         elif i.opname not in ("FOR_ITER", "PUSH_NULL") and not any(w in i.opname for w in pacing):
             found.add((i.opname.replace("LOAD_METHOD", "LOAD_ATTR"), repr(i.argval)))
     return found
