@@ -30,6 +30,11 @@ class Iterated:
 
 
 @dataclass(eq=False)
+class Saved:
+    """A variable put aside while a comprehension uses its name."""
+
+
+@dataclass(eq=False)
 class Element:
     """What a loop gives at each turn, not yet stored."""
 
@@ -110,9 +115,6 @@ class Hand:
             raise UnreadError("an empty stack")
         return self.stack.pop()
 
-    def many(self, count: int) -> list[ast.expr]:
-        return [self.expr() for _ in range(count)][::-1]
-
     def expr(self) -> ast.expr:
         return self.as_expr(self.pop())
 
@@ -147,7 +149,7 @@ class Hand:
         if isinstance(value, Imported) and value.module.names and isinstance(target, ast.Name):
             alias = None if value.name == target.id else target.id
             value.module.aliases.append(ast.alias(value.name, alias))
-        else:
+        elif not isinstance(value, Saved):
             self.stored.append((value, target))
 
 

@@ -38,6 +38,7 @@ class Step:
         index: Its place in the byte code.
         after: The steps that may be next.
         falls: Which of ``after`` stands next in the byte code.
+        ends: Of a ``for``: the index at which its lines have ended.
     """
 
     op: str
@@ -47,12 +48,28 @@ class Step:
     index: int
     after: list[Step] = field(default_factory=list)
     falls: int = 0
+    ends: int = 0
 
 
 PACING = {"NOP", "RESUME", "CACHE", "PRECALL", "EXTENDED_ARG", "MAKE_CELL", "COPY_FREE_VARS"}
 PACING |= {"TO_BOOL", "NOT_TAKEN"}
 JUMPS = {"JUMP_FORWARD", "JUMP_BACKWARD", "JUMP_BACKWARD_NO_INTERRUPT"}
-LAST = {"RETURN_VALUE", "RAISE_VARARGS", "RERAISE"}
+ENDING = 0 if sys.version_info < (3, 12) else 1 if sys.version_info < (3, 13) else 2
+"""How many instructions end a loop that has run out: ``END_FOR``, then ``POP_TOP`` too."""
+
+SAME = {
+    "LOAD_FAST_CHECK": "LOAD_FAST",
+    "LOAD_FAST_BORROW": "LOAD_FAST",
+    "LOAD_SMALL_INT": "LOAD_CONST",
+    "POP_ITER": "POP_TOP",
+}
+DOUBLE = {
+    "LOAD_FAST_LOAD_FAST": ("LOAD_FAST", "LOAD_FAST"),
+    "LOAD_FAST_BORROW_LOAD_FAST_BORROW": ("LOAD_FAST", "LOAD_FAST"),
+    "STORE_FAST_STORE_FAST": ("STORE_FAST", "STORE_FAST"),
+    "STORE_FAST_LOAD_FAST": ("STORE_FAST", "LOAD_FAST"),
+}
+LAST = {"RETURN_CONST", "RETURN_VALUE", "RAISE_VARARGS", "RERAISE"}
 BITS = {"LOAD_GLOBAL"} if sys.version_info < (3, 12) else {"LOAD_GLOBAL", "LOAD_ATTR"}
 FLAGS = inspect.CO_OPTIMIZED | inspect.CO_NEWLOCALS | inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
 FLAGS |= inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
@@ -64,9 +81,11 @@ def entry(code: CodeType) -> Step:
     Raises:
         UnreadError: It catches exceptions, waits, or loops without doing anything.
     """
-    if code.co_exceptiontable:
-        raise UnreadError("exceptions are caught")
     instructions = list(dis.get_instructions(code))
+    if code.co_exceptiontable and (
+        sys.version_info < (3, 12) or any(i.opname == "PUSH_EXC_INFO" for i in instructions)
+    ):  # from 3.12 on generators and comprehensions have tables of their own
+        raise UnreadError("exceptions are caught")
     place = {i.offset: n for n, i in enumerate(instructions)}
     steps = [_step(code, n, i) for n, i in enumerate(instructions)]
 
@@ -96,11 +115,19 @@ def entry(code: CodeType) -> Step:
             other = at(place[_target(instructions[n])])
             holds = name.endswith(("IF_TRUE", "IF_NONE"))
             step.after = [other, following] if holds else [following, other]
-            step.falls = 1 if holds else 0
+            behind = steps[n + 1]
+            turned = behind.op == "JUMP_BACKWARD" and behind.span == step.span
+            step.falls = int(holds != turned)  # a test may only leap over its own jump (3.12)
         elif step.op in ("AND", "OR", "FOR_ITER"):
-            step.after = [following, at(place[_target(instructions[n])])]
+            ending = ENDING if step.op == "FOR_ITER" else 0
+            step.ends = 2 * place[_target(instructions[n])] if step.op == "FOR_ITER" else 0
+            step.after = [following, at(place[_target(instructions[n])] + ending)]
         else:
             step.after = [following]
+    for step in steps:
+        _in_parts(step)
+    for step in steps:
+        _keeping(step)
     first = at(0)
     if first.op == "RETURN_GENERATOR":
         first = first.after[0].after[0]
@@ -109,6 +136,29 @@ def entry(code: CodeType) -> Step:
 
 def _target(instruction: dis.Instruction) -> int:
     return int(instruction.argval)
+
+
+def _in_parts(step: Step) -> None:
+    """A step that does two things, as two."""
+    names, span, index = step.value, step.span, step.index + 1
+    second = None
+    if step.op == "RETURN_CONST":
+        second, step.op = Step("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
+    elif step.op in DOUBLE and isinstance(names, tuple):
+        second = Step(DOUBLE[step.op][1], names[1], 0, span, index, step.after)
+        step.op, step.value = DOUBLE[step.op][0], names[0]
+    if second is not None:
+        step.after = [second]
+
+
+def _keeping(step: Step) -> None:
+    """``COPY``, a test and ``POP_TOP`` as one step that keeps its value where it jumps."""
+    test = step.after[0] if step.op == "COPY" and step.value == 1 and step.after else step
+    if test.op == "TEST" and test.value is True:
+        falls, jumps = test.after[test.falls], test.after[1 - test.falls]
+        if falls.op == "POP_TOP" and step is not test:
+            step.op, step.value = ("OR" if test.falls else "AND"), True
+            step.span, step.after = test.span, [falls.after[0], jumps]
 
 
 def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
@@ -126,12 +176,16 @@ def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
         value = code.co_consts[instruction.arg or 0]
     elif op == "BINARY_OP":
         value = instruction.arg
+    elif op == "LOAD_ATTR" and bit:
+        op = "LOAD_METHOD"
+    elif op in SAME:
+        op = SAME[op]
     p = instruction.positions
     span = None
     if p is not None and p.lineno is not None:
         end = p.lineno if p.end_lineno is None else p.end_lineno
         span = (p.lineno, end, p.col_offset or 0, p.end_col_offset or 0)
-    return Step(op, value, bit, span, n)
+    return Step(op, value, bit, span, 2 * n)
 
 
 def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:
@@ -146,6 +200,23 @@ def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:
             if step not in end:
                 left.extend(step.after)
     return seen
+
+
+def leading(to: Step, within: set[Step], stops: Iterable[Step] = ()) -> set[Step]:
+    """The steps among some that can lead to one, not past the stops."""
+    end = set(stops)
+    before: dict[Step, list[Step]] = {}
+    for step in within - end:
+        for after in step.after:
+            before.setdefault(after, []).append(step)
+    seen: set[Step] = set()
+    left = [to]
+    while left:
+        step = left.pop()
+        if step not in seen:
+            seen.add(step)
+            left.extend(before.get(step, ()))
+    return seen & (within | {to})
 
 
 def folded(first: Step) -> Step:
@@ -177,6 +248,24 @@ def folded(first: Step) -> Step:
     for step in steps:
         step.after = [root(s) for s in step.after]
     return root(first)
+
+
+def unchain(first: Step) -> None:
+    """Make ``a < b < c`` one path: the way out in its middle only throws a value away."""
+    for step in sorted(reachable([first]), key=lambda step: step.index):
+        path = [step]
+        while len(path) < 4 and len(path[-1].after) == 1:
+            path.append(path[-1].after[0])
+        if [s.op for s in path[:2]] != ["SWAP", "COPY"] or len(path) < 4:
+            continue
+        compare, branch = path[2:]
+        if branch.op not in ("TEST", "AND") or (path[0].value, path[1].value) != (2, 2):
+            continue
+        out = branch.after[1]
+        if branch.op == "TEST" and out.op != "POP_TOP":
+            continue
+        step.op, step.value = "CHAIN", (compare.op, compare.value)
+        step.span, step.after = compare.span, [branch.after[0]]
 
 
 def constant(value: object) -> object:
@@ -227,6 +316,8 @@ def arguments(code: CodeType) -> tuple[str, ...]:
 
 def docstring(code: CodeType) -> str | None:
     """The docstring of a function: its first constant, if that is a string."""
+    if sys.version_info >= (3, 14) and not code.co_flags & 0x4000000:  # CO_HAS_DOCSTRING
+        return None
     first = code.co_consts[0] if code.co_consts else None
     return first if isinstance(first, str) and not code.co_name.startswith("<") else None
 

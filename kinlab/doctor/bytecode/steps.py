@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Callable
 from types import CodeType
 
@@ -20,11 +21,16 @@ from kinlab.doctor.bytecode.expressions import (
     Made,
     Module,
     Raw,
+    Saved,
     Unpacked,
     at,
     literal,
+    span_of,
 )
 from kinlab.doctor.bytecode.instructions import Span, Step, UnreadError
+
+NULL_ABOVE = sys.version_info >= (3, 13)
+"""Whether the empty entry of a call lies above its function, not below."""
 
 Finish = Callable[[Made, "ast.expr | None", "Span | None"], ast.expr]
 """A function just made as an expression: a lambda, or a comprehension over what is given."""
@@ -42,6 +48,7 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
     name = value if isinstance(value, str) else ""
 
     def push(node: ast.expr) -> None:
+        setattr(node, "turn", step.index)  # noqa: B010
         stack.append(at(node, span))
 
     def pop() -> ast.expr:
@@ -60,13 +67,20 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
 
     match op:
         case "LOAD_FAST" | "LOAD_GLOBAL" | "LOAD_DEREF" | "LOAD_NAME":
-            if op == "LOAD_GLOBAL" and step.bit:
+            if step.bit and not NULL_ABOVE:
                 stack.append(NULL)
             push(ast.Name(name, ast.Load()))
+            if step.bit and NULL_ABOVE:
+                stack.append(NULL)
+        case "LOAD_FAST_AND_CLEAR":
+            stack.append(Saved())
         case "LOAD_CLOSURE":
             push(ast.Name(name, ast.Load()))
         case "LOAD_CONST":
-            stack.append(Raw(value) if isinstance(value, CodeType) else literal(value, span))
+            if isinstance(value, CodeType):
+                stack.append(Raw(value))
+            else:
+                push(literal(value, span))
         case "PUSH_NULL":
             stack.append(NULL)
         case "LOAD_ASSERTION_ERROR":
@@ -87,11 +101,18 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
                 push(ast.BinOp(left, BINARY[number](), right))
             elif number < 2 * len(BINARY):
                 stack.append(Changed(left, BINARY[number - len(BINARY)](), right))
-            else:
-                raise UnreadError(f"BINARY_OP {number}")
+            else:  # 3.14
+                push(ast.Subscript(left, right, ast.Load()))
         case "BINARY_SUBSCR":
             index, whole = pop(), pop()
             push(ast.Subscript(whole, index, ast.Load()))
+        case "BINARY_SLICE":
+            parts = [None if _none(part) else part for part in many(2)]
+            push(ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Load()))
+        case "STORE_SLICE":
+            parts = [None if _none(part) else part for part in many(2)]
+            whole = ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Store())
+            hand.store(hand.pop(), at(whole, span))
         case "COMPARE_OP" | "IS_OP" | "CONTAINS_OP" | "CHAIN":
             _compare(step, hand, pop)
         case "LOAD_ATTR":
@@ -146,19 +167,41 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
                 into.values.append(more)
         case "LIST_TO_TUPLE":
             push(ast.Tuple(_list(pop()).elts, ast.Load()))
+        case "CALL_INTRINSIC_1" if number == 5:
+            push(ast.UnaryOp(ast.UAdd(), pop()))
+        case "CALL_INTRINSIC_1" if number == 6:
+            push(ast.Tuple(_list(pop()).elts, ast.Load()))
         case "FORMAT_VALUE":
             flags = step.value
             if not isinstance(flags, tuple):
                 raise UnreadError("FORMAT_VALUE")
             spec = _joined([pop()], span) if flags[1] else None
-            conversion = {None: -1, str: 115, repr: 114, ascii: 97}[flags[0]]
+            conversion = _conversion(flags[0])
             push(ast.JoinedStr([at(ast.FormattedValue(pop(), conversion, spec), span)]))
+        case "CONVERT_VALUE":
+            push(ast.FormattedValue(pop(), _conversion(value), None))
+        case "FORMAT_SIMPLE" | "FORMAT_WITH_SPEC":
+            spec = _joined([pop()], span) if op == "FORMAT_WITH_SPEC" else None
+            part = pop()
+            if not isinstance(part, ast.FormattedValue):
+                part = at(ast.FormattedValue(part, -1, None), span)
+            part.format_spec = spec
+            push(ast.JoinedStr([part]))
         case "BUILD_STRING":
             stack.append(_joined(many(number), span))
         case "KW_NAMES":
             if not isinstance(value, tuple):
                 raise UnreadError("KW_NAMES")
             hand.keywords = value
+        case "CALL_KW":
+            hand.keywords = _names(hand.pop())
+            _call(hand, number, pop, many, finish, span)
+        case "SET_FUNCTION_ATTRIBUTE":
+            function = hand.pop()
+            if not isinstance(function, Made):
+                raise UnreadError("no function")
+            _attribute(function, number, pop)
+            stack.append(function)
         case "CALL":
             _call(hand, number, pop, many, finish, span)
         case "CALL_FUNCTION_EX":
@@ -192,7 +235,9 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
         case "DELETE_ATTR":
             hand.out.append(ast.Delete([at(ast.Attribute(pop(), name, ast.Del()), span)]))
         case "RETURN_VALUE":
-            hand.out.append(at(ast.Return(pop()), span))
+            given = pop()
+            alone = _none(given) and span_of(given) == span
+            hand.out.append(at(ast.Return(None if alone else given), span))
         case "RAISE_VARARGS":
             parts_ = many(number)
             hand.out.append(at(ast.Raise(*parts_), span))
@@ -214,6 +259,14 @@ def do(step: Step, hand: Hand, finish: Finish) -> None:
 
 def _none(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and node.value is None
+
+
+def _conversion(by: object) -> int:
+    """The letter of ``!s``, ``!r`` or ``!a`` in an f-string, by its function; -1 for none."""
+    for function, letter in ((None, -1), (str, ord("s")), (repr, ord("r")), (ascii, ord("a"))):
+        if by is function:
+            return letter
+    raise UnreadError("a conversion")
 
 
 def _dict(node: object) -> ast.Dict:
@@ -258,6 +311,8 @@ def _compare(step: Step, hand: Hand, pop: Callable[[], ast.expr]) -> None:
             raise UnreadError("CHAIN")
         kind, value = value
     if kind == "COMPARE_OP":
+        if str(value) not in COMPARE:
+            raise UnreadError(f"a comparison by {value}")
         op: ast.cmpop = COMPARE[str(value)]()
     elif kind == "IS_OP":
         op = ast.IsNot() if value else ast.Is()
@@ -290,7 +345,8 @@ def _call(
     upper, lower = hand.pop(), hand.pop()
     if upper is SELF:
         function = hand.as_expr(lower)
-    elif lower is NULL:
+    elif lower is NULL or upper is NULL:
+        upper, lower = (lower, upper) if upper is NULL else (upper, lower)
         function = finish(upper, None, span) if isinstance(upper, Made) else hand.as_expr(upper)
     elif isinstance(lower, Made) and isinstance(upper, Iterated):
         hand.stack.append(finish(lower, upper.over, span))
@@ -328,9 +384,11 @@ def _call_stars(hand: Hand, named: int, pop: Callable[[], ast.expr], span: Span 
         arguments = stars.elts
     else:
         arguments = [at(ast.Starred(stars, ast.Load()), span)]
-    function = pop()
-    if hand.pop() is not NULL:
+    pair = [hand.pop(), hand.pop()]
+    if NULL not in pair:
         raise UnreadError("a call of nothing known")
+    pair.remove(NULL)
+    function = hand.as_expr(pair[0])
     hand.stack.append(at(ast.Call(function, arguments, keywords), span))
 
 
@@ -343,6 +401,13 @@ def _made(hand: Hand, flags: int, pop: Callable[[], ast.expr]) -> Made:
     if not isinstance(code, Raw) or not isinstance(code.value, CodeType):
         raise UnreadError("a function without code")
     made = Made(code.value, [], {}, {})
+    for flag in (8, 4, 2, 1):
+        _attribute(made, flags & flag, pop)
+    return made
+
+
+def _attribute(made: Made, flags: int, pop: Callable[[], ast.expr]) -> None:
+    """What a function is made with: closure, annotations, defaults."""
     if flags & 8:
         pop()
     if flags & 4:
@@ -358,7 +423,13 @@ def _made(hand: Hand, flags: int, pop: Callable[[], ast.expr]) -> Made:
         if not isinstance(defaults, ast.Tuple):
             raise UnreadError("defaults")
         made.defaults = defaults.elts
-    return made
+
+
+def _names(node: object) -> tuple[str, ...]:
+    """The names of keywords, a tuple of strings."""
+    if not isinstance(node, ast.Tuple):
+        raise UnreadError("names that are no tuple")
+    return tuple(str(e.value) for e in node.elts if isinstance(e, ast.Constant))
 
 
 def _named(

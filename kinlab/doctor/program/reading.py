@@ -1,0 +1,539 @@
+"""Steps as statements: loops and branches told from where the paths part and meet."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from collections import Counter
+from types import CodeType
+
+from kinlab.doctor.program.conditions import Decision, is_none, joined, negated, place, together
+from kinlab.doctor.program.expressions import (
+    Changed,
+    Element,
+    Hand,
+    Imported,
+    Iterated,
+    Made,
+    Module,
+    Saved,
+    at,
+    span_of,
+)
+from kinlab.doctor.program.instructions import (
+    LAST,
+    Span,
+    Step,
+    UnreadError,
+    arguments,
+    docstring,
+    entry,
+    folded,
+    leading,
+    reachable,
+    unchain,
+)
+from kinlab.doctor.program.steps import do
+
+BRANCHES = {"TEST", "AND", "OR"}
+GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
+"""What puts an element into what lies below on the stack: at once, so not to be tried."""
+
+Stops = dict[Step, str]
+"""Where a part of a function ends, and how one gets there: ``on``, ``continue``, ``break``."""
+
+
+def definition(made: Made, name: str) -> ast.FunctionDef:
+    """A function's definition from its code object."""
+    code = made.code
+    reader = Reader(code)
+    body = reader.statements()
+    if body and isinstance(body[-1], ast.Return) and is_none(body[-1].value) and len(body) > 1:
+        body.pop()
+    outer = sorted(reader.outside & set(code.co_freevars))
+    world = sorted(reader.world)
+    head: list[ast.stmt] = [ast.Global(world)] if world else []
+    head += [ast.Nonlocal(outer)] if outer else []
+    if (text := docstring(code)) is not None:
+        head.insert(0, ast.Expr(ast.Constant(text)))
+    tree = ast.FunctionDef(
+        name,
+        _arguments(made),
+        head + (body or [ast.Pass()]),
+        made.decorators,
+        made.notes.get("return"),
+    )
+    line = code.co_firstlineno
+    last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
+    at(tree, (line, max(line, last), 0, 0))
+    place(tree)
+    return tree
+
+
+def _arguments(made: Made) -> ast.arguments:
+    code, names = made.code, list(arguments(made.code))
+    args = [ast.arg(name, made.notes.get(name)) for name in names]
+    plain, only = code.co_argcount, code.co_kwonlyargcount
+    rest = args[plain + only :]
+    star = rest.pop(0) if code.co_flags & inspect.CO_VARARGS else None
+    twice = rest.pop(0) if code.co_flags & inspect.CO_VARKEYWORDS else None
+    keywords = args[plain : plain + only]
+    return ast.arguments(
+        args[: code.co_posonlyargcount],
+        args[code.co_posonlyargcount : plain],
+        star,
+        keywords,
+        [made.keywords.get(arg.arg) for arg in keywords],
+        twice,
+        made.defaults,
+    )
+
+
+class Reader:
+    """Reads one code object."""
+
+    def __init__(self, code: CodeType) -> None:
+        self.code = code
+        self.first = folded(entry(code))
+        unchain(self.first)
+        steps = reachable([self.first])
+        self.left = 4 * len(steps)
+        self.into = Counter(after for step in steps for after in step.after)
+        self.into[self.first] += 1
+        self.world = {str(s.value) for s in steps if s.op in ("STORE_GLOBAL", "DELETE_GLOBAL")}
+        self.outside = {str(s.value) for s in steps if s.op in ("STORE_DEREF", "DELETE_DEREF")}
+        self.heads = {a for s in steps for a in s.after if a.index <= s.index}
+
+    def statements(self) -> list[ast.stmt]:
+        """The statements of a function."""
+        return self.region(self.first, [], {})
+
+    def region(self, step: Step | None, stack: list[object], stops: Stops) -> list[ast.stmt]:
+        """The statements from a step on, up to the stops."""
+        out: list[ast.stmt] = []
+        while step is not None:
+            if step in stops:
+                if stops[step] == "continue":
+                    out.append(ast.Continue())
+                elif stops[step] == "break":
+                    out.append(ast.Break())
+                break
+            if step in self.heads and step.op != "FOR_ITER":
+                behind = reachable(step.after, stops)
+                if step in behind:
+                    step = self.loop(step, stack, stops, out)
+                    continue
+            step = self.statement(step, stack, stops, out)
+        return out
+
+    def statement(
+        self, step: Step, stack: list[object], stops: Stops, out: list[ast.stmt], base: int = -1
+    ) -> Step | None:
+        """One statement; the step after it."""
+        base = len(stack) if base < 0 else base
+        self.left -= 1
+        if self.left < 0:
+            raise UnreadError("read again and again")
+        hand = Hand(stack, [], out)
+        start, lines = step, len(out)
+        while True:
+            if step.op in BRANCHES:
+                decision = self.reduced(self.branch(step, hand), stack)
+                if not decision.value:
+                    if len(stack) != base:
+                        raise UnreadError("a branch within an expression")
+                    return self.condition(decision, stack, stops, out)
+                if decision.paths[decision.yes] != self.into[decision.yes]:
+                    raise UnreadError("a value from elsewhere")
+                stack.append(decision.test)
+                step = decision.yes
+                continue
+            if step.op == "FOR_ITER" and _gathers(stack):
+                step = self.gathered(step, stack)
+                continue
+            if step.op == "FOR_ITER":
+                if len(stack) != base + 1:
+                    raise UnreadError("a loop within an expression")
+                return self.turns(step, stack, stops, out)
+            do(step, hand, self.finish)
+            if len(stack) <= base:
+                self.flush(hand)
+                _stamp(out[lines:], start)
+                return step.after[0] if step.after else None
+            if not step.after:
+                raise UnreadError("an end within an expression")
+            step = step.after[0]
+
+    def flush(self, hand: Hand) -> None:
+        """Make what was stored into statements."""
+        stored, hand.stored = hand.stored, []
+        values: list[object] = []
+        for value, _ in stored:
+            if not any(value is known for known in values):
+                values.append(value)
+        if not values:
+            return
+        targets = [[t for v, t in stored if v is value] for value in values]
+        value = values[0]
+        if len(values) == 1 and len(targets[0]) == 1 and not isinstance(value, ast.expr):
+            hand.out.extend(self.bound(value, targets[0][0]))
+            return
+        nodes: list[tuple[ast.expr, list[ast.expr]]] = []
+        for value, found in zip(values, targets, strict=True):
+            if isinstance(value, Made):
+                nodes.append((self.finish(value, None, None), found))
+            elif isinstance(value, ast.expr):
+                nodes.append((value, found))
+            else:
+                raise UnreadError("stored with others")
+        if len(nodes) == 1:
+            hand.out.append(ast.Assign(nodes[0][1], nodes[0][0]))
+            return
+        if any(len(found) > 1 for _, found in nodes):
+            raise UnreadError("several values, several times")
+        nodes.sort(key=lambda pair: _turn(pair[0]))
+        left = ast.Tuple([found[0] for _, found in nodes], ast.Store())
+        hand.out.append(ast.Assign([left], ast.Tuple([node for node, _ in nodes], ast.Load())))
+
+    def bound(self, value: object, target: ast.expr) -> list[ast.stmt]:
+        """A name given to what is no expression."""
+        if isinstance(value, Changed):
+            return [ast.AugAssign(_stored(value.target, target), value.op, value.by)]
+        if isinstance(value, Element):
+            return [ast.Assign([target], ast.Constant(None))]
+        if not isinstance(target, ast.Name):
+            if isinstance(value, Made):
+                return [ast.Assign([target], self.finish(value, None, None))]
+            raise UnreadError("no name")
+        if isinstance(value, Made):
+            if value.code.co_name == "<lambda>":
+                return [ast.Assign([target], self.finish(value, None, None))]
+            return [definition(value, target.id)]
+        if isinstance(value, Module):
+            top = value.name.partition(".")[0]
+            return [ast.Import([ast.alias(value.name, None if top == target.id else target.id)])]
+        if isinstance(value, Imported):
+            return [ast.Import([ast.alias(value.module.name, target.id)])]
+        raise UnreadError("not stored here")
+
+    # Conditions
+
+    def branch(self, step: Step, hand: Hand) -> Decision:
+        """A conditional jump as a decision, its value taken from the stack."""
+        top = hand.pop()
+        test = self.finish(top, None, step.span) if isinstance(top, Made) else hand.as_expr(top)
+        if hand.stored or hand.keywords:
+            raise UnreadError("stored before a branch")
+        first, second = step.after
+        if step.op == "OR":
+            first, second = second, first
+        if step.op == "TEST" and step.value is None:
+            none = at(ast.Constant(None), step.span)
+            test = at(ast.Compare(test, [ast.Is()], [none]), step.span)
+        falls = step.after[step.falls]
+        return Decision(test, first, second, False, falls, Counter(step.after), step.span)
+
+    def decide(self, step: Step, stack: list[object]) -> Decision | None:
+        """The condition or the value that begins at a step; None if a statement begins there."""
+        try:
+            return self._decide(step, stack)
+        except UnreadError:
+            return None
+
+    def _decide(self, step: Step, stack: list[object]) -> Decision | None:
+        hand = Hand(list(stack))
+        height, fresh, start = len(stack), False, step
+        while True:
+            if step.op in BRANCHES:
+                decision = self.reduced(self.branch(step, hand), hand.stack)
+                inner = len(hand.stack) > height
+                if decision.value and decision.paths[decision.yes] == self.into[decision.yes]:
+                    hand.stack.append(decision.test)
+                    step, fresh = decision.yes, True
+                    continue
+                return None if inner else decision
+            whole = len(hand.stack) == height + 1 and step is not start
+            if whole and not fresh and self.into[step] > 1:
+                test = hand.expr()
+                if hand.stored:
+                    return None
+                return Decision(test, step, step, True, None, Counter([step]), None)
+            fresh = False
+            if step.op == "FOR_ITER" and _gathers(hand.stack[height:]):
+                step = self.gathered(step, hand.stack)
+                continue
+            if step.op in LAST or step.op == "FOR_ITER":
+                return None
+            size = step.value if isinstance(step.value, int) else 0
+            if step.op in GROWING and size + 1 > len(hand.stack) - height:
+                return None
+            do(step, hand, self.finish)
+            if (
+                len(hand.stack) <= height
+                or hand.out
+                or any(a is not b for a, b in zip(stack, hand.stack, strict=False))
+            ):
+                return None
+            step = step.after[0]
+
+    def reduced(self, one: Decision, stack: list[object]) -> Decision:
+        """A decision with those that follow within the same expression taken in."""
+        while not one.value and (falls := one.falls) is not None:
+            if self.into[falls] != one.paths[falls]:
+                break
+            two = self.decide(falls, stack)
+            if two is None or not together(one, two):
+                break
+            other = one.no if falls is one.yes else one.yes
+            both = joined(one, two, falls, other)
+            if both is None and self.into[other] == one.paths[other]:
+                three = self.decide(other, stack)
+                if three is not None and (two.yes, two.no, two.value) == (
+                    three.yes,
+                    three.no,
+                    three.value,
+                ):
+                    test = one.test if falls is one.yes else negated(one.test)
+                    node = ast.IfExp(test, two.test, three.test)
+                    paths = two.paths + three.paths
+                    both = Decision(node, two.yes, two.no, two.value, three.falls, paths, one.span)
+            if both is None:
+                break
+            one = both
+        return one
+
+    def condition(
+        self, decision: Decision, stack: list[object], stops: Stops, out: list[ast.stmt]
+    ) -> Step | None:
+        """An ``if``; the step after it."""
+        body_step = decision.falls or decision.yes
+        holds = body_step is decision.yes
+        other = decision.no if holds else decision.yes
+        test = decision.test if holds else negated(decision.test)
+        follow = self.meeting(body_step, other, stops)
+        inner = stops if follow is None else {**stops, follow: "on"}
+        node = ast.If(test, [], [])
+        out.append(node)
+        if follow is body_step:
+            node.body = [ast.Pass()]
+            node.orelse = self.region(other, list(stack), inner)
+            return follow
+        node.body = self.region(body_step, list(stack), inner) or [ast.Pass()]
+        raised = node.body[0]
+        if follow in (None, other):
+            if len(node.body) == 1 and isinstance(raised, ast.Raise) and _asserts(raised.exc):
+                message = raised.exc.args[0] if isinstance(raised.exc, ast.Call) else None
+                out[-1] = ast.Assert(negated(test), message)
+            return other
+        node.orelse = self.region(other, list(stack), inner)
+        return follow
+
+    def meeting(self, one: Step, two: Step, stops: Stops) -> Step | None:
+        """Where two paths meet again before the part of the function ends."""
+        if one in stops and stops[one] != "on":
+            return None
+        both = reachable([one], stops) & reachable([two], stops)
+        for kind in (None, "on", "continue"):
+            found = [step for step in both if stops.get(step) == kind]
+            if found:
+                return min(found, key=lambda step: step.index)
+        on = [step for step in reachable([one], stops) if stops.get(step) == "on"]
+        return min(on, key=lambda step: step.index, default=None)
+
+    # Loops
+
+    def loop(
+        self, head: Step, stack: list[object], stops: Stops, out: list[ast.stmt]
+    ) -> Step | None:
+        """A ``while``; the step after it."""
+        decision = self.decide(head, stack)
+        around = [*stops, head]
+        if decision is not None and not decision.value and decision.yes is not decision.no:
+            turns = [head in reachable([s], stops) for s in (decision.yes, decision.no)]
+            if turns[0] != turns[1]:
+                body, leave = decision.yes, decision.no
+                test = decision.test
+                if turns[1]:
+                    body, leave, test = leave, body, negated(test)
+                end, orelse = self.leaving(head, [body], leave, stack, stops)
+                inner: Stops = {head: "continue", end: "break"}
+                lines = _tail(self.region(body, list(stack), inner))
+                out.append(ast.While(test, lines, orelse))
+                return end
+        inside = leading(head, reachable(head.after, around), stops)
+        ends = [a for s in inside for a in s.after if a not in inside]
+        last = max(ends, key=lambda step: step.index, default=None)
+        inner = {head: "continue"}
+        if last is not None:
+            inner[last] = "break"
+        again = ast.While(ast.Constant(True), [], [])
+        out.append(again)
+        self.heads.discard(head)
+        first = self.statement(head, (inside_stack := list(stack)), inner, again.body)
+        rest = self.region(first, inside_stack, inner)
+        again.body = _tail(again.body + rest)
+        return last
+
+    def turns(
+        self, head: Step, stack: list[object], stops: Stops, out: list[ast.stmt]
+    ) -> Step | None:
+        """A ``for``; the step after it."""
+        through = stack.pop()
+        over = through.over if isinstance(through, Iterated) else through
+        if not isinstance(over, ast.expr):
+            raise UnreadError("a loop over no expression")
+        body, leave = head.after
+        end, orelse = self.leaving(head, [body], leave, stack, stops)
+        inside: list[object] = [*stack, Iterated(over), Element()]
+        first: list[ast.stmt] = []
+        step = self.statement(body, inside, {}, first, base=len(inside) - 1)
+        stored = first[0] if len(first) == 1 else None
+        if not isinstance(stored, ast.Assign):
+            raise UnreadError("a loop without a name")
+        lines = _tail(self.region(step, inside, {head: "continue", end: "break"}))
+        node = ast.For(stored.targets[0], over, lines, orelse)
+        out.append(node)
+        return end
+
+    def leaving(
+        self, head: Step, body: list[Step], leave: Step, stack: list[object], stops: Stops
+    ) -> tuple[Step, list[ast.stmt]]:
+        """Where a loop's ``break`` leads, and the lines of its ``else``."""
+        around = [*stops, head]
+        within = leading(head, reachable(body, around), stops)
+        broken = [a for s in within - {head} for a in s.after if a not in within]
+        broken += [s for s in body if s not in within]
+        out = reachable(broken, around)
+        last = max((step.index for step in within), default=head.index) + 1
+        first = head.ends or (last if leave in stops else leave.index)
+        inside = [s for s in within | out if head.index < s.index < first]
+        beyond = {a for s in inside for a in s.after if not head.index <= a.index < first}
+        if leave in beyond or (leave in out and leave not in stops):
+            return leave, []
+        beyond = beyond or (out & reachable([leave], around)) - set(stops) - {head}
+        if not beyond:
+            return leave, []
+        end = min(beyond, key=lambda step: step.index)
+        return end, self.region(leave, list(stack), {**stops, end: "on"})
+
+    # Functions within
+
+    def finish(self, made: Made, over: ast.expr | None, span: Span | None) -> ast.expr:
+        """A lambda, or a comprehension, as an expression."""
+        code = made.code
+        if code.co_name == "<lambda>" and over is None:
+            body = Reader(code).region_value()
+            return at(ast.Lambda(_arguments(made), body), span)
+        if over is None or made.defaults or made.keywords:
+            raise UnreadError("a function without a name")
+        return at(Reader(code).comprehension(over), span)
+
+    def region_value(self) -> ast.expr:
+        """The value of a lambda."""
+        return _value(self.statements())
+
+    def comprehension(self, over: ast.expr) -> ast.expr:
+        """A comprehension, over what its first loop is given."""
+        first, stack = self.first, list[object]()
+        kind = first.op
+        makers: dict[str, ast.expr] = {
+            "BUILD_LIST": ast.List([], ast.Load()),
+            "BUILD_SET": ast.Set([]),
+        }
+        makers["BUILD_MAP"] = ast.Dict([], [])
+        if kind in makers:
+            stack.append(makers[kind])
+            first = first.after[0]
+        made = stack[0] if stack else None
+        return _comprehension(self.region(first, stack, {}), made, over)
+
+    def gathered(self, head: Step, stack: list[object]) -> Step:
+        """A comprehension within its function (3.12 on), left on the stack; the step after it."""
+        through, made, lines = stack[-1], stack[-2], list[ast.stmt]()
+        behind = self.turns(head, stack, {}, lines)
+        if behind is None or not isinstance(through, Iterated):
+            raise UnreadError("no comprehension")
+        stack[-1] = at(_comprehension(lines, made, through.over), head.span)
+        return behind
+
+
+def _gathers(stack: list[object]) -> bool:
+    """Whether a loop gathers its elements for a comprehension."""
+    return (
+        len(stack) > 2
+        and isinstance(stack[-2], (ast.List, ast.Set, ast.Dict))
+        and isinstance(stack[-3], Saved)
+    )
+
+
+def _comprehension(lines: list[ast.stmt], made: object, over: ast.expr) -> ast.expr:
+    """A comprehension from its loops, what they fill, and what the first is over."""
+    generators: list[ast.comprehension] = []
+    while lines and isinstance(loop := lines[0], ast.For):
+        source = loop.iter if generators else over
+        generators.append(ast.comprehension(loop.target, source, [], 0))
+        lines = loop.body
+        while isinstance(inner := lines[0], ast.If) and not inner.orelse and len(lines) == 1:
+            generators[-1].ifs.append(inner.test)
+            lines = inner.body
+    if not generators or len(lines) != 1:
+        raise UnreadError("no comprehension")
+    if isinstance(made, ast.Dict) and len(made.keys) == 1 and made.keys[0] is not None:
+        return ast.DictComp(made.keys[0], made.values[0], generators)
+    if isinstance(made, ast.List) and len(made.elts) == 1:
+        return ast.ListComp(made.elts[0], generators)
+    if isinstance(made, ast.Set) and len(made.elts) == 1:
+        return ast.SetComp(made.elts[0], generators)
+    given = lines[0].value if isinstance(lines[0], ast.Expr) else None
+    if made is None and isinstance(given, ast.Yield) and given.value is not None:
+        return ast.GeneratorExp(given.value, generators)
+    raise UnreadError("no comprehension")
+
+
+def _value(lines: list[ast.stmt]) -> ast.expr:
+    """Statements that only return, as one expression."""
+    line = lines[0] if lines else None
+    if isinstance(line, ast.Return) and line.value is not None:
+        return line.value
+    if isinstance(line, ast.If):
+        return ast.IfExp(line.test, _value(line.body), _value(line.orelse or lines[1:]))
+    raise UnreadError("a lambda that does more than return")
+
+
+def _tail(lines: list[ast.stmt]) -> list[ast.stmt]:
+    """The lines of a loop without a ``continue`` at their end, where it goes without saying."""
+    if lines and isinstance(lines[-1], ast.Continue):
+        lines = lines[:-1]
+    if lines and isinstance(last := lines[-1], ast.If):
+        last.body = _tail(last.body)
+        if last.orelse:
+            last.orelse = _tail(last.orelse)
+    return lines or [ast.Pass()]
+
+
+def _stored(loaded: ast.expr, target: ast.expr) -> ast.Name | ast.Attribute | ast.Subscript:
+    """The target of an augmented assignment: what was loaded before."""
+    if not isinstance(target, (ast.Name, ast.Attribute, ast.Subscript)):
+        raise UnreadError("stored in several places")
+    if ast.unparse(loaded) != ast.unparse(target):
+        raise UnreadError("stored in another place")
+    return target
+
+
+def _asserts(raised: ast.expr | None) -> bool:
+    named = raised.func if isinstance(raised, ast.Call) else raised
+    if isinstance(raised, ast.Call) and (len(raised.args) != 1 or raised.keywords):
+        return False
+    return isinstance(named, ast.Name) and getattr(named, "asserted", False)
+
+
+def _turn(node: ast.expr) -> int:
+    """When an expression is done, among the others of its statement."""
+    return max(getattr(part, "turn", -1) for part in ast.walk(node))
+
+
+def _stamp(lines: list[ast.stmt], step: Step) -> None:
+    """A place for statements that have no expression to take it from."""
+    for line in lines:
+        if isinstance(line, (ast.Import, ast.ImportFrom)):
+            at(line, step.span)
