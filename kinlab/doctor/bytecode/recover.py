@@ -19,7 +19,7 @@ from types import CodeType, FunctionType
 
 from kinlab.doctor.bytecode.expressions import Made
 from kinlab.doctor.bytecode.instructions import UnreadError, alike
-from kinlab.doctor.program.reading import definition
+from kinlab.doctor.bytecode.reading import definition
 
 
 def recovered(function: FunctionType) -> ast.FunctionDef | None:

@@ -59,9 +59,7 @@ class Scope:
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
-        self.counters = [
-            name for name in self.counters if self.shapes.get(name, ()) == ()
-        ]
+        self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         for name, value in trial.program.space.items():
             if name[:1] != "_" and isinstance(value, int | float | list | tuple | np.ndarray):
                 shape = _shape(value)

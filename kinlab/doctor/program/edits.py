@@ -431,13 +431,15 @@ def _orders(part: int, tree: ast.FunctionDef) -> Iterator[Edit]:
 def _sets(node: ast.AST) -> set[str]:
     return {
         n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
-    } | ({node.target.id} if isinstance(node, ast.AugAssign) and hasattr(node.target, "id") else set())
+    } | (
+        {node.target.id}
+        if isinstance(node, ast.AugAssign) and hasattr(node.target, "id")
+        else set()
+    )
 
 
 def _uses(node: ast.AST) -> set[str]:
-    return {
-        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
-    }
+    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
 
 
 # -------- Data

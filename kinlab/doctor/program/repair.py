@@ -94,7 +94,7 @@ class Search:
 
     @property
     def written_out(self) -> bool:
-        """Whether the program has neither loops nor products of matrices: formulas, term by term."""
+        """Whether it is a formula written out: no loops, no products of matrices."""
         return not any(
             isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
             or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))

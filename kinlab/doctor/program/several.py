@@ -29,6 +29,9 @@ _EXCHANGED = 0.5
 _DEEPEST = 2
 """Edits that may stand already when more are looked for."""
 
+Tried = list[tuple[Edit, Array]]
+"""Edits, each with the answers at the first states."""
+
 
 def several(search: Search) -> list[Repair]:
     """Two edits, or else three, that make the program right; the likeliest first.
@@ -42,7 +45,7 @@ def several(search: Search) -> list[Repair]:
         return _found(search, (), search.tried)
 
 
-def _found(search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]]) -> list[Repair]:
+def _found(search: Search, stand: tuple[Edit, ...], tried: Tried) -> list[Repair]:
     """Repairs of which some edits stand already."""
     found = [*_adding_up(search, stand, tried, 2)]
     if not found and len(stand) < _DEEPEST:
@@ -53,7 +56,7 @@ def _found(search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Arra
 
 
 def _adding_up(
-    search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]], count: int
+    search: Search, stand: tuple[Edit, ...], tried: Tried, count: int
 ) -> Iterator[Repair]:
     wanted = search.wanted[search.first]
     sizes = search.sizes[search.first].reshape(-1, *[1] * (wanted.ndim - 1))
@@ -79,9 +82,7 @@ def _adding_up(
     yield from _verified(search, (stand + one for one in both[:_VERIFIED]))
 
 
-def _distinct(
-    tried: list[tuple[Edit, Array]], own: Array, sizes: Array
-) -> tuple[list[Edit], Array]:
+def _distinct(tried: Tried, own: Array, sizes: Array) -> tuple[list[Edit], Array]:
     """Of edits with one effect the likeliest; those without are left out."""
     kept: dict[bytes, tuple[Edit, Array]] = {}
     for edit, values in tried:
@@ -95,9 +96,7 @@ def _distinct(
     return [edit for edit, _effect in one], np.array([effect for _edit, effect in one])
 
 
-def _one_after_another(
-    search: Search, stand: tuple[Edit, ...], tried: list[tuple[Edit, Array]]
-) -> Iterator[Repair]:
+def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) -> Iterator[Repair]:
     """Edits that make entries right and spoil none, and then what is left."""
     own = search.values(search.first)
     if own is None:
@@ -109,7 +108,7 @@ def _one_after_another(
         if np.all(after >= before) and after.sum() > before.sum():
             gains.append((-int(after.sum()), edit.cost, len(gains), edit))
     seen: set[bytes] = set()
-    for _gain, _cost_, _k, edit in sorted(gains)[: 4 * _STEPS]:
+    for *_gain, edit in sorted(gains)[: 4 * _STEPS]:
         with changed(search.trial, (edit,)):
             values = search.values(search.first)
             key = b"" if values is None else np.round(values, 7).tobytes()
@@ -141,5 +140,3 @@ def _cost(way: tuple[Edit, ...]) -> float:
     kinds = {edit.kind for edit in way}
     swapped = _EXCHANGED if {"extra term", "missing term"} <= kinds else 0.0
     return sum(edit.cost for edit in way) + swapped
-
-

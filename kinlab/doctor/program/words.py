@@ -166,5 +166,3 @@ def _text(node: ast.AST) -> str:
 
 def _typed(text: str) -> str:
     return re.sub(r" (\*\*|\*|/) ", r"\1", text)
-
-

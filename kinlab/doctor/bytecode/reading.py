@@ -7,8 +7,8 @@ import inspect
 from collections import Counter
 from types import CodeType
 
-from kinlab.doctor.program.conditions import Decision, is_none, joined, negated, place, together
-from kinlab.doctor.program.expressions import (
+from kinlab.doctor.bytecode.conditions import Decision, is_none, joined, negated, place, together
+from kinlab.doctor.bytecode.expressions import (
     Changed,
     Element,
     Hand,
@@ -20,7 +20,7 @@ from kinlab.doctor.program.expressions import (
     at,
     span_of,
 )
-from kinlab.doctor.program.instructions import (
+from kinlab.doctor.bytecode.instructions import (
     LAST,
     Span,
     Step,
@@ -33,7 +33,7 @@ from kinlab.doctor.program.instructions import (
     reachable,
     unchain,
 )
-from kinlab.doctor.program.steps import do
+from kinlab.doctor.bytecode.steps import do
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}

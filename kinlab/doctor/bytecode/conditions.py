@@ -6,8 +6,8 @@ import ast
 from collections import Counter
 from dataclasses import dataclass
 
-from kinlab.doctor.program.expressions import at, span_of
-from kinlab.doctor.program.instructions import Span, Step
+from kinlab.doctor.bytecode.expressions import at, span_of
+from kinlab.doctor.bytecode.instructions import Span, Step
 
 
 @dataclass
