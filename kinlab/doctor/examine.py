@@ -166,8 +166,8 @@ def _explained(
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         if program is not None and not edited:
-            likely = _PLAIN if program.written_out else _FETCHED
-            if all(cause.cost > likely for cause in exact or rough):
+            limit = _PLAIN if program.written_out else _FETCHED
+            if all(cause.cost > limit for cause in exact or rough):
                 edited = _exactly(in_lines(program, several(program)), worst)
         if program is not None and edited:
             return _meant(edited, [] if program.written_out else exact or rough), (), None, None

@@ -62,9 +62,9 @@ class Scope:
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         for name, value in trial.program.space.items():
             if name[:1] != "_" and isinstance(value, int | float | list | tuple | np.ndarray):
-                shape = _shape(value)
-                if shape is not None:
-                    self.shapes.setdefault(name, shape)
+                known = _shape(value)
+                if known is not None:
+                    self.shapes.setdefault(name, known)
         self.turned = {
             n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
         }
@@ -133,10 +133,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
     trig = isinstance(parent, ast.Call) and called(parent) in ANGLES
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
-    if not isinstance(node, ast.UnaryOp) and (first or not operated):
-        if not isinstance(parent, ast.UnaryOp):
-            cost = 1.0 if whole or first else 1.1
-            yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
+    negative = isinstance(node, ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
+    if not negative and (first or not operated):
+        cost = 1.0 if whole or first else 1.1
+        yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
         for value in (2, 0.5):

@@ -8,24 +8,27 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
 from math import pi
-from typing import Any
-
-import numpy as np
 
 from kinlab.doctor.program.additions import Scope, as_a_term
+from kinlab.doctor.program.data import of_data
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, Edit, Here, called, number, places
+from kinlab.doctor.program.operators import (
+    negated,
+    of_call,
+    of_comparison,
+    of_constant,
+    of_name,
+    of_operator,
+    of_sequence,
+    of_subscript,
+    plus,
+    shifted,
+    value_of,
+    whole_constant,
+)
+from kinlab.doctor.program.places import Edit, Here, number, places
 from kinlab.doctor.program.trial import Change, Trial
-
-_TRIG = ("sin", "cos", "tan")
-_ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
-_PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
-_TABLE = 60
-"""Numbers of an array of which any may be wrong."""
-_LONGEST = 6
-"""Entries of a list of which any two may have been exchanged."""
 
 
 def edits(trial: Trial, observed: Observed) -> list[Edit]:
@@ -41,7 +44,7 @@ def edits(trial: Trial, observed: Observed) -> list[Edit]:
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += _orders(part, tree)
-    found += _data(trial)
+    found += of_data(trial)
     return sorted(found, key=lambda edit: edit.cost)
 
 
@@ -61,284 +64,34 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
     )
     whole = seen is not None and seen.whole and shape == ()
     if isinstance(node, ast.BinOp):
-        yield from _operator(here, observed, index or whole)
+        yield from of_operator(here, observed, index or whole)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         yield here.instead(node.operand, "sign", 1.0)
     elif isinstance(node, ast.Call):
-        yield from _call(here, scope, observed)
+        yield from of_call(here, scope, observed)
     elif isinstance(node, ast.Subscript):
-        yield from _subscript(here, scope, observed)
+        yield from of_subscript(here, scope, observed)
     elif isinstance(node, ast.Name):
-        yield from _name(here, scope, observed, index or whole)
+        yield from of_name(here, scope, observed, index or whole)
     elif isinstance(node, ast.Attribute):
         if node.attr == "T":
             yield here.instead(node.value, "transposed", 1.02)
     elif isinstance(node, ast.Constant):
-        yield from _constant(here, index)
+        yield from of_constant(here, index)
     elif isinstance(node, ast.List | ast.Tuple):
-        yield from _sequence(here)
+        yield from of_sequence(here)
     elif isinstance(node, ast.IfExp):
-        yield here.within(node, "test", _not(node.test), "condition", 1.3)
+        yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):
-        yield from _comparison(here)
+        yield from of_comparison(here)
     if index or (whole and not isinstance(node, ast.Call)):
         if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple):
             for step in (1, -1):
-                if not _shifted(node):
-                    yield here.instead(_plus(node, step), "index", 1.1)
+                if not shifted(node):
+                    yield here.instead(plus(node, step), "index", 1.1)
         return
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
-
-
-def _shifted(node: ast.expr) -> bool:
-    return (
-        isinstance(node, ast.BinOp)
-        and isinstance(node.op, ast.Add | ast.Sub)
-        and isinstance(node.right, ast.Constant)
-    )
-
-
-def _operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
-    node = here.node
-    left, right, op = node.left, node.right, node.op
-    if isinstance(op, ast.Add | ast.Sub):
-        other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
-        kind = "index" if index else "sign"
-        yield here.within(node, "op", other, kind, 1.1 if index else 0.98)
-        extra = "index" if index else "extra term"
-        yield here.instead(left, extra, 1.08)
-        alone = right if isinstance(op, ast.Add) else ast.UnaryOp(ast.USub(), right)
-        yield here.instead(alone, extra, 1.1)
-        if index:
-            return
-        for side, inner in (("left", left), ("right", right)):
-            if isinstance(inner, ast.BinOp) and isinstance(inner.op, _PRODUCTS):
-                # a*b + c for a*(b + c)
-                first, last = (inner.left, inner.right)
-                both = (last, right) if side == "left" else (left, first)
-                together = ast.BinOp(both[0], op, both[1])
-                new = (
-                    ast.BinOp(first, inner.op, together)
-                    if side == "left"
-                    else ast.BinOp(together, inner.op, last)
-                )
-                yield here.instead(new, "parentheses", 1.2)
-            if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
-                into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
-                yield here.instead(into, "parentheses", 1.15)
-        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub | ast.Add):
-            turned = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
-            if isinstance(left.op, ast.Sub):  # a - b + c for a - (b + c)
-                rest = ast.BinOp(left.right, turned if isinstance(op, ast.Sub) else op, right)
-                yield here.instead(ast.BinOp(left.left, ast.Sub(), rest), "parentheses", 1.2)
-    elif isinstance(op, _PRODUCTS):
-        for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
-            if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
-                # a*(b + c) for a*b + c
-                one, other = sum_.left, sum_.right
-                if name == "right":
-                    new = ast.BinOp(ast.BinOp(outer, op, one), sum_.op, other)
-                else:
-                    new = ast.BinOp(one, sum_.op, ast.BinOp(other, op, outer))
-                yield here.instead(new, "parentheses", 1.15)
-        matrices = [observed.shape(side) for side in (left, right)]
-        yield here.instead(left, "extra factor", 1.15)
-        yield here.instead(right, "extra factor", 1.17)
-        if isinstance(op, ast.MatMult):
-            yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
-            yield from _turned(here)
-        elif isinstance(op, ast.Mult):
-            yield here.within(node, "op", ast.Div(), "factor", 1.35)
-            if all(shape for shape in matrices):
-                yield here.within(node, "op", ast.MatMult(), "product", 1.1)
-            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Div):
-                below = ast.BinOp(left.right, ast.Mult(), right)
-                yield here.instead(ast.BinOp(left.left, ast.Div(), below), "parentheses", 1.2)
-        else:
-            yield here.within(node, "op", ast.Mult(), "factor", 1.3)
-            yield here.instead(ast.BinOp(right, ast.Div(), left), "order", 1.3)
-            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
-                for side, name in ((left.left, "left"), (left.right, "right")):
-                    divided = ast.BinOp(side, ast.Div(), right)
-                    both = (divided, left.right) if name == "left" else (left.left, divided)
-                    yield here.instead(ast.BinOp(both[0], left.op, both[1]), "parentheses", 1.25)
-    elif isinstance(op, ast.Pow):
-        yield here.instead(left, "power", 1.1)
-
-
-def _turned(here: Here) -> Iterator[Edit]:
-    """R I R.T for R.T I R."""
-    node = here.node
-    first, last = node.left, node.right
-    inner = first.right if isinstance(first, ast.BinOp) else None
-    if inner is None or not isinstance(first.op, ast.MatMult):
-        return
-    for one, other in ((first.left, last), (last, first.left)):
-        if isinstance(one, ast.Attribute) and ast.dump(one.value) == ast.dump(other):
-            turned = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner), ast.MatMult(), first.left)
-            yield here.instead(turned, "transposed", 1.03)
-
-
-def _call(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
-    node = here.node
-    name = called(node)
-    if name in _TRIG:
-        for other in _TRIG:
-            if other != name:
-                cost = 1.0 if {other, name} == {"sin", "cos"} else 1.5
-                if isinstance(node.func, ast.Attribute):
-                    yield here.within(node.func, "attr", other, "sin/cos", cost)
-                else:
-                    new = ast.Name(other, ast.Load())
-                    yield here.within(node, "func", new, "sin/cos", cost)
-        if node.args:
-            argument = ast.unparse(node.args[0])
-            for text, angle in scope.angles.items():
-                if text != argument:
-                    yield here.within(node.args, 0, angle, "argument", 1.15)
-    if name == "range":
-        yield from _range(here, scope)
-    plain = [a for a in node.args if not isinstance(a, ast.Starred)]
-    if len(plain) == len(node.args):
-        for k in range(len(plain) - 1):
-            swapped = [*plain]
-            swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
-            cost = 1.05 if name in _ORDERED else 1.15
-            yield here.within(node, "args", swapped, "order", cost)
-        if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in _TRIG:
-            yield here.instead(plain[0], "extra factor", 1.25)
-        if name == "inv" and observed.shape(plain[0]) is not None:
-            yield here.instead(ast.Attribute(plain[0], "T", ast.Load()), "inverse", 1.15)
-        if name == "solve" and len(plain) == 2:
-            product = ast.BinOp(plain[0], ast.MatMult(), plain[1])
-            yield here.instead(product, "inverse", 1.25)
-
-
-def _range(here: Here, scope: Scope) -> Iterator[Edit]:
-    node = here.node
-    args = node.args
-    for k, argument in enumerate(args):
-        for step in (1, -1):
-            new = [*args]
-            new[k] = _plus(argument, step)
-            yield here.within(node, "args", new, "loop", 1.1)
-    inner = [name for name in dict.fromkeys(scope.counters)]
-    if len(args) == 1:
-        for name in inner:
-            load = ast.Name(name, ast.Load())
-            for new in ([load], [_plus(load, 1)], [load, args[0]], [_plus(load, 1), args[0]]):
-                yield here.within(node, "args", new, "loop", 1.2)
-        yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
-    else:
-        yield here.within(node, "args", [args[1]], "loop", 1.25)
-        for name in inner:
-            load = ast.Name(name, ast.Load())
-            yield here.within(node, "args", [load, *args[1:]], "loop", 1.25)
-            yield here.within(node, "args", [_plus(load, 1), *args[1:]], "loop", 1.25)
-
-
-def _subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
-    node = here.node
-    shape = observed.shape(node.value)
-    keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-    single = not isinstance(node.slice, ast.Tuple)
-    for k, key in enumerate(keys):
-        holder, field = (node, "slice") if single else (keys, k)
-        size = shape[k] if shape is not None and k < len(shape) else 0
-        if isinstance(key, ast.Slice):
-            if key.lower is None and key.upper is not None and key.step is None:
-                yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", 1.1)
-            elif key.upper is None and key.lower is not None and key.step is None:
-                yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", 1.1)
-        elif _whole_constant(key):
-            for other in range(-1, max(size, 4 if not size else 0)):
-                if other != _value(key) and not (other == -1 and size):
-                    near = abs(other - _value(key)) == 1
-                    yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
-    if not single and len(keys) == 2:
-        swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
-        yield here.within(node, "slice", swapped, "transposed", 1.1)
-    if single and shape is not None and len(shape) == 2 and not isinstance(keys[0], ast.Slice):
-        column = ast.Tuple([ast.Slice(None, None, None), keys[0]], ast.Load())
-        yield here.within(node, "slice", column, "transposed", 1.15)
-
-
-def _name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterator[Edit]:
-    node = here.node
-    shape = observed.shape(node)
-    if shape is None:
-        for other, known in scope.shapes.items():
-            if False and known:
-                yield here.instead(ast.Name(other, ast.Load()), "parameter", 1.4)
-        return
-    if index:
-        for other in dict.fromkeys(scope.counters):
-            if other != node.id:
-                yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
-        return
-    for other, known in scope.shapes.items():
-        if other != node.id and known == shape and other not in scope.counters:
-            near = _alike(other, node.id)
-            kind = "index" if near and _letters(other) == _letters(node.id) else "parameter"
-            yield here.instead(ast.Name(other, ast.Load()), kind, 1.1 if near else 1.25)
-
-
-def _letters(name: str) -> str:
-    return name.rstrip("0123456789")
-
-
-def _alike(one: str, other: str) -> bool:
-    """Names that are easily mistaken: of one first letter."""
-    return one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
-
-
-def _constant(here: Here, index: bool) -> Iterator[Edit]:
-    value = here.node.value
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return
-    if index:
-        if isinstance(here.parent, ast.Slice):
-            for step in (1, -1):
-                yield here.within(here.node, "value", value + step, "index", 1.15)
-        return
-    for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
-        new = value * factor
-        new = int(new) if new == int(new) else new
-        yield here.within(here.node, "value", new, "factor", 1.15)
-    if isinstance(value, int):
-        for new in (value + 1, value - 1):
-            power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
-            kind = "power" if power else "number"
-            yield here.within(here.node, "value", new, kind, 1.08 if power else 1.18)
-
-
-def _sequence(here: Here) -> Iterator[Edit]:
-    elements = here.node.elts
-    if any(isinstance(e, ast.Starred) for e in elements) or len(elements) > _LONGEST:
-        return
-    if isinstance(here.parent, ast.Subscript) and here.field == "slice":
-        return
-    for i in range(len(elements)):
-        for j in range(i + 1, len(elements)):
-            if ast.dump(elements[i]) != ast.dump(elements[j]):
-                swapped = [*elements]
-                swapped[i], swapped[j] = swapped[j], swapped[i]
-                yield here.within(here.node, "elts", swapped, "entries swapped", 1.12)
-
-
-def _comparison(here: Here) -> Iterator[Edit]:
-    node = here.node
-    if len(node.ops) != 1:
-        return
-    pairs = {ast.Lt: ast.LtE, ast.LtE: ast.Lt, ast.Gt: ast.GtE, ast.GtE: ast.Gt}
-    other = pairs.get(type(node.ops[0]))
-    if other is not None:
-        yield here.within(node, "ops", [other()], "condition", 1.15)
-    if isinstance(node.ops[0], ast.Eq | ast.NotEq | ast.Lt | ast.Gt):
-        opposite = {ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Lt: ast.Gt, ast.Gt: ast.Lt}
-        new = opposite[type(node.ops[0])]()
-        yield here.within(node, "ops", [new], "condition", 1.2)
 
 
 # -------- Statements
@@ -381,7 +134,7 @@ def _comparison_of(here: Here, test: ast.expr) -> Iterator[Edit]:
     if isinstance(test, ast.Compare) and len(test.comparators) == 1:
         right = test.comparators[0]
         for step in (1, -1):
-            yield here.within(test, "comparators", [_plus(right, step)], "condition", 1.25)
+            yield here.within(test, "comparators", [plus(right, step)], "condition", 1.25)
 
 
 def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
@@ -399,12 +152,12 @@ def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
                 yield here.within(holder, field, ast.Slice(one.upper, None, None), "rows", 1.12)
             elif one.upper is None and one.lower is not None:
                 yield here.within(holder, field, ast.Slice(None, one.lower, None), "rows", 1.12)
-        elif _whole_constant(one):
+        elif whole_constant(one):
             for step in (1, -1):
-                yield here.within(holder, field, number(_value(one) + step), "index", 1.15)
+                yield here.within(holder, field, number(value_of(one) + step), "index", 1.15)
         else:
             for step in (1, -1):
-                yield here.within(holder, field, _plus(one, step), "index", 1.15)
+                yield here.within(holder, field, plus(one, step), "index", 1.15)
 
 
 def _orders(part: int, tree: ast.FunctionDef) -> Iterator[Edit]:
@@ -440,130 +193,3 @@ def _sets(node: ast.AST) -> set[str]:
 
 def _uses(node: ast.AST) -> set[str]:
     return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
-
-
-# -------- Data
-
-
-def _data(trial: Trial) -> Iterator[Edit]:
-    for name in trial.program.data:
-        yield from _numbers_in(trial.space, name, name, ())
-
-
-def _numbers_in(holder: Any, key: Any, name: str, place: tuple[Any, ...]) -> Iterator[Edit]:
-    value = holder[key]
-    if isinstance(value, bool):
-        return
-    if isinstance(value, int | float):
-        if value:
-            for new, kind, cost in (
-                (-value, "sign", 1.05),
-                (2 * value, "factor", 1.2),
-                (value / 2, "factor", 1.2),
-                (value * pi / 180, "degrees", 1.15),
-            ):
-                yield Edit(DATA, (Change(holder, key, new),), kind, cost, name, place)
-    elif isinstance(value, dict):
-        for k in value:
-            yield from _numbers_in(value, k, name, (*place, k))
-    elif isinstance(value, list):
-        for k in range(len(value)):
-            yield from _numbers_in(value, k, name, (*place, k))
-    elif hasattr(value, "ndim"):
-        if value.dtype.kind == "f" and 0 < value.size <= 60:
-            yield Edit(DATA, (Change(holder, key, -value),), "sign", 1.1, name, place)
-            if value.ndim == 2:
-                yield Edit(DATA, (Change(holder, key, value.T),), "transposed", 1.1, name, place)
-            for index in np.ndindex(value.shape):
-                if value[index]:
-                    change = Change(value, index, -value[index])
-                    yield Edit(DATA, (change,), "sign", 1.1, name, (*place, *index))
-
-
-# -------- Numbers
-
-
-@dataclass(frozen=True, eq=False)
-class Place:
-    """A number in the text of a program, or in its data."""
-
-    value: float
-    part: int
-    holder: Any
-    field: Any
-    node: Any
-    place: tuple[Any, ...] = ()
-
-    def edit(self, value: float) -> Edit:
-        """Another number there."""
-        change = Change(self.holder, self.field, value)
-        return Edit(self.part, (change,), "number", 1.15, self.node, self.place)
-
-
-def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
-    """Numbers that are no index."""
-    for part, tree in enumerate(trial.trees):
-        for here in places(part, tree):
-            node = here.node
-            if isinstance(node, ast.Constant) and observed.of(node) is not None:
-                if isinstance(node.value, float) or (
-                    type(node.value) is int and isinstance(here.parent, ast.BinOp)
-                ):
-                    yield Place(node.value, part, node, "value", node)
-    for name in trial.program.data:
-        for holder, key, place in _leaves(trial.space, name, ()):
-            yield Place(float(holder[key]), DATA, holder, key, name, place)
-
-
-def _leaves(holder: Any, key: Any, place: tuple[Any, ...]) -> Iterator[tuple[Any, Any, Any]]:
-    value = holder[key]
-    if isinstance(value, float | int) and not isinstance(value, bool):
-        yield holder, key, place
-    elif isinstance(value, dict):
-        for k in value:
-            yield from _leaves(value, k, (*place, k))
-    elif isinstance(value, list):
-        for k in range(len(value)):
-            yield from _leaves(value, k, (*place, k))
-    elif isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size <= _TABLE:
-        for index in np.ndindex(value.shape):
-            yield value, index, (*place, *index)
-
-
-# -------- Small trees
-
-
-def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
-    """The names that an assignment sets, each with its value."""
-    if isinstance(target, ast.Name):
-        yield target.id, value
-    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        for one, part in zip(target.elts, value.elts, strict=False):
-            yield from _set(one, part)
-
-
-def _plus(node: ast.expr, step: int) -> ast.expr:
-    if isinstance(node, ast.Constant) and isinstance(node.value, int):
-        return number(node.value + step)
-    if _shifted(node):
-        assert isinstance(node, ast.BinOp) and isinstance(node.right, ast.Constant)
-        sign = 1 if isinstance(node.op, ast.Add) else -1
-        total = sign * node.right.value + step
-        return node.left if total == 0 else _plus(node.left, total)
-    return ast.BinOp(node, ast.Add() if step > 0 else ast.Sub(), number(abs(step)))
-
-
-def _not(test: ast.expr) -> ast.expr:
-    return ast.UnaryOp(ast.Not(), test)
-
-
-def _whole_constant(node: ast.AST) -> bool:
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        node = node.operand
-    return isinstance(node, ast.Constant) and type(node.value) is int
-
-
-def _value(node: Any) -> int:
-    if isinstance(node, ast.UnaryOp):
-        return -int(node.operand.value)
-    return int(node.value)

@@ -47,9 +47,7 @@ class Observed:
         nodes = [_watched(tree) for tree in trial.trees]
         parts = trial.program.parts
         originals = [trial.space[part.name] for part in parts]
-        self._by_number = [
-            {number: node for number, node in enumerate(ast.walk(tree))} for tree in trial.trees
-        ]
+        self._by_number = [dict(enumerate(ast.walk(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         self.work: dict[int, int] = {}
         """Expressions evaluated at all the states by what depends on a part, by its number."""

@@ -18,7 +18,8 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.program.edits import Place, edits, numbers
+from kinlab.doctor.program.data import Place, numbers
+from kinlab.doctor.program.edits import edits
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Edit, called
 from kinlab.doctor.program.read import Program

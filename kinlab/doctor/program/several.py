@@ -102,7 +102,7 @@ def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) ->
     if own is None:
         return
     before = search.right(own)
-    gains = []
+    gains: list[tuple[int, float, int, Edit]] = []
     for edit, values in tried:
         after = search.right(values)
         if np.all(after >= before) and after.sum() > before.sum():
@@ -110,9 +110,9 @@ def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) ->
     seen: set[bytes] = set()
     for *_gain, edit in sorted(gains)[: 4 * _STEPS]:
         with changed(search.trial, (edit,)):
-            values = search.values(search.first)
-            key = b"" if values is None else np.round(values, 7).tobytes()
-            if values is None or key in seen or len(seen) == _STEPS:
+            there = search.values(search.first)
+            key = b"" if there is None else np.round(there, 7).tobytes()
+            if not key or key in seen or len(seen) == _STEPS:
                 continue
             seen.add(key)
             here = search.beside((*stand, edit))

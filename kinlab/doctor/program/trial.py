@@ -180,7 +180,7 @@ def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
     own.args.kw_defaults = [None] * len(own.args.kwonlyargs)
     for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
         name.annotation = None
-    own = _Quiet().visit(own)
+    _Quiet().visit(own)
     return ast.fix_missing_locations(own)
 
 
