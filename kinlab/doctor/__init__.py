@@ -26,6 +26,7 @@ module            what it holds
 ``confusions/``   What people take differently: a known confusion, and what the engine would say if
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
+``glossary/``      What a value in somebody's program is, by the arm's own quantities
 ``program/``       A student's Python function, read: which edit of which line makes it right
 ``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
                   closed form is not

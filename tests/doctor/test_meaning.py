@@ -14,8 +14,8 @@ import pytest
 from random_tables import random_inertia, random_pose, random_table
 
 import kinlab as kl
-from kinlab.doctor.program.meaning import PHRASES, meaning_of, said
-from kinlab.doctor.program.textbook import Sense, meanings
+from kinlab.doctor.glossary.meaning import PHRASES, meaning_of, said
+from kinlab.doctor.glossary.textbook import Sense, meanings
 from kinlab.host.language import speaking
 
 E_Z = np.array([0.0, 0.0, 1.0])

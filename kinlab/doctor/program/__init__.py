@@ -6,8 +6,6 @@ module            what it holds
 ``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
 ``data``          The numbers of a program: those in its text, and those in the data that it uses
 ``edits``         What could stand in a place of a program instead
-``meaning``       What a value in somebody's program is: the axis of joint 2, the angular velocity
-                  of link 1
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
@@ -16,8 +14,6 @@ module            what it holds
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
 ``repair``        The edits that make a program right
 ``several``       Two or three edits that together make a program right
-``textbook``      The textbooks' vectors, matrices and numbers of an arm at one state, each with
-                  what it is
 ``trial``         A program run with edits in it
 ``words``         A repair in words: the line, what stands there, what should
 ================  =================================================================================

@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.meaning import meaning_of, said
+from kinlab.doctor.glossary.meaning import meaning_of, said
+from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, Edit
 from kinlab.doctor.program.repair import Search
-from kinlab.doctor.program.textbook import Glossary, Sense, meanings
 
 
 def named(edit: Edit, search: Search) -> list[tuple[str, str]]:

@@ -76,10 +76,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
             yield here.within(node, "op", ast.Mult(), "factor", 1.3)
             yield here.instead(ast.BinOp(right, ast.Div(), left), "order", 1.3)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
-                for part, name in ((left.left, "left"), (left.right, "right")):
-                    divided = ast.BinOp(side, ast.Div(), right)
-                    both = (divided, left.right) if name == "left" else (left.left, divided)
-                    yield here.instead(ast.BinOp(both[0], left.op, both[1]), "parentheses", 1.25)
+                # (a + b)/c for a + b/c
+                tail = ast.BinOp(left.right, ast.Div(), right)
+                yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
         yield here.instead(left, "power", 1.1)
 
@@ -258,43 +257,38 @@ def of_comparison(here: Here) -> Iterator[Edit]:
 # -------- Small trees
 
 
-def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
-    """The names that an assignment sets, each with its value."""
-    if isinstance(target, ast.Name):
-        yield target.id, value
-    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        for one, part in zip(target.elts, value.elts, strict=False):
-            yield from _set(one, part)
-
-
 def plus(node: ast.expr, step: int) -> ast.expr:
+    """A whole number more: ``i + 1`` of ``i``, and ``i`` of ``i - 1``."""
     if isinstance(node, ast.Constant) and isinstance(node.value, int):
         return number(node.value + step)
-    if shifted(node):
-        assert isinstance(node, ast.BinOp) and isinstance(node.right, ast.Constant)
+    if isinstance(node, ast.BinOp) and shifted(node) and whole_constant(node.right):
         sign = 1 if isinstance(node.op, ast.Add) else -1
-        total = sign * node.right.value + step
+        total = sign * value_of(node.right) + step
         return node.left if total == 0 else plus(node.left, total)
     return ast.BinOp(node, ast.Add() if step > 0 else ast.Sub(), number(abs(step)))
 
 
 def negated(test: ast.expr) -> ast.expr:
+    """The opposite condition."""
     return ast.UnaryOp(ast.Not(), test)
 
 
 def whole_constant(node: ast.AST) -> bool:
+    """Whether a node is a whole number as it is written."""
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         node = node.operand
     return isinstance(node, ast.Constant) and type(node.value) is int
 
 
 def value_of(node: Any) -> int:
+    """A whole number as it is written."""
     if isinstance(node, ast.UnaryOp):
         return -int(node.operand.value)
     return int(node.value)
 
 
 def shifted(node: ast.expr) -> bool:
+    """Whether a number is added to something."""
     return (
         isinstance(node, ast.BinOp)
         and isinstance(node.op, ast.Add | ast.Sub)

@@ -24,7 +24,7 @@ class Sense:
     """What a value is.
 
     Attributes:
-        what: a key of :data:`kinlab.doctor.program.meaning.PHRASES`.
+        what: a key of :data:`kinlab.doctor.glossary.meaning.PHRASES`.
         number: of which link, joint, frame or row, from 1 on; None where of one of several.
         frame: the axes of a vector or tensor: ``"base"``, its ``"own"`` frame's, those of the frame
             ``"before"`` or ``"next"``; empty where there is nothing to tell.

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.program.textbook import Glossary, Row, Sense
+from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.host.language import N_, _
 from kinlab.tolerances import TOLERANCES
 
@@ -159,7 +159,7 @@ def meaning_of(known_at_states: Sequence[Glossary], values: Sequence[Array]) -> 
     """What a value is, if it is one thing at all the states and nothing else.
 
     Args:
-        known_at_states: :func:`kinlab.doctor.program.textbook.meanings` at each state.
+        known_at_states: :func:`kinlab.doctor.glossary.textbook.meanings` at each state.
         values: the value at each of them.
 
     Returns:

@@ -1,0 +1,10 @@
+"""What a value in somebody's program is, by the arm's own quantities.
+
+============  ====================================================================================
+module        what it holds
+============  ====================================================================================
+``meaning``   What a value is: the axis of joint 2, the angular velocity of link 1
+``textbook``  The textbooks' vectors, matrices and numbers of an arm at one state, each with what it
+              is
+============  ====================================================================================
+"""
