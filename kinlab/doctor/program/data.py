@@ -77,7 +77,7 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
             if not isinstance(node, ast.Constant) or observed.of(node) is None:
                 continue
             counts = type(node.value) is int and isinstance(here.parent, ast.BinOp)
-            if isinstance(node.value, float) or counts:
+            if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
                 yield Place(node.value, part, node, "value", node)
     for name in trial.program.data:
         for holder, key, place in _leaves(trial.space, name, ()):

@@ -275,16 +275,13 @@ def negated(test: ast.expr) -> ast.expr:
 
 def whole_constant(node: ast.AST) -> bool:
     """Whether a node is a whole number as it is written."""
-    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        node = node.operand
-    return isinstance(node, ast.Constant) and type(node.value) is int
+    inner = node.operand if isinstance(node, ast.UnaryOp) else node
+    return isinstance(inner, ast.Constant) and type(inner.value) is int
 
 
 def value_of(node: Any) -> int:
     """A whole number as it is written."""
-    if isinstance(node, ast.UnaryOp):
-        return -int(node.operand.value)
-    return int(node.value)
+    return -int(node.operand.value) if isinstance(node, ast.UnaryOp) else int(node.value)
 
 
 def shifted(node: ast.expr) -> bool:

@@ -7,7 +7,7 @@ import inspect
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from types import CodeType, FunctionType, MethodType
+from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,16 @@ from kinlab.doctor.bytecode.recover import recovered
 
 _MOST = 40
 """Functions of one program that are read."""
+_ARITHMETIC = frozenset(
+    "builtins types math cmath numpy itertools functools operator collections fractions "
+    "dataclasses typing __future__".split()
+)
+"""Modules that a program may use if it is to be tried with edits in it."""
+_REACHING_OUT = frozenset(
+    "open exec eval compile input exit quit breakpoint __import__ globals locals vars setattr "
+    "delattr".split()
+)
+"""Functions that reach beyond arithmetic."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +67,8 @@ def read(function: Callable[..., Any]) -> Program | None:
         bound, function = (function.__self__,), function.__func__
     if not isinstance(function, FunctionType):
         return None
+    if not all(_harmless(one, function.__module__) for one in bound):
+        return None
     space = dict(function.__globals__)
     parts: dict[str, Part] = {}
     data: list[str] = []
@@ -64,10 +76,8 @@ def read(function: Callable[..., Any]) -> Program | None:
     while waiting:
         name, one = waiting.pop(0)
         tree = tree_of(one)
-        if tree is None or len(parts) == _MOST:
-            if not parts:
-                return None
-            continue  # stays as it is
+        if tree is None or len(parts) == _MOST or not _plain(tree):
+            return None
         parts[name] = Part(name, tree, one)
         free = _free(one)
         for label, value in free.items():
@@ -76,6 +86,8 @@ def read(function: Callable[..., Any]) -> Program | None:
             space[label] = value
         for label in _used(one.__code__):
             value = free.get(label, function.__globals__.get(label))
+            if not _harmless(value, function.__module__):
+                return None
             if isinstance(value, FunctionType) and value.__module__ == function.__module__:
                 known = label in parts or any(label == other for other, _ in waiting)
                 if not known and value.__globals__ is function.__globals__:
@@ -99,11 +111,47 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
     found = [node for node in module.body if isinstance(node, ast.FunctionDef)]
     if len(found) != 1 or found[0].name != function.__name__:
         return None
-    if any(isinstance(node, ast.Nonlocal | ast.Yield | ast.Await) for node in ast.walk(found[0])):
-        return None
     tree = ast.increment_lineno(found[0], first - 1)
     tree.decorator_list = []
     return tree
+
+
+def _plain(tree: ast.FunctionDef) -> bool:
+    """Whether a definition asks for nothing but arithmetic."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Nonlocal | ast.Global | ast.Yield | ast.Await | ast.With | ast.Try):
+            return False
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        if any(name.partition(".")[0] not in _ARITHMETIC for name in names):
+            return False
+        if isinstance(node, ast.Name) and node.id in _REACHING_OUT:
+            return False
+    return True
+
+
+def _harmless(value: Any, module: str | None, depth: int = 3) -> bool:
+    """Whether an edited program may be given a value: what is only arithmetic cannot be hurt.
+
+    Code in C that is called with a wrong index may end the process; files, processes and whatever
+    else a program may reach are not to be tried in vain.
+    """
+    if isinstance(value, ModuleType):
+        return value.__name__.partition(".")[0] in _ARITHMETIC
+    if isinstance(value, list | tuple | set | frozenset | dict):
+        inner = [*value.values()] if isinstance(value, dict) else [*value]
+        return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])
+    if isinstance(value, FunctionType | type):
+        of = value.__module__ or ""
+        return of == module or of.partition(".")[0] in _ARITHMETIC
+    home = type(value).__module__ or ""
+    if home == module:
+        held = [*getattr(value, "__dict__", {}).values()]
+        for method in vars(type(value)).values():
+            if isinstance(method, FunctionType):
+                held += [method.__globals__.get(name) for name in _used(method.__code__)]
+        return depth > 0 and all(_harmless(one, module, depth - 1) for one in held)
+    return home.partition(".")[0] in _ARITHMETIC
 
 
 def _free(function: FunctionType) -> dict[str, Any]:
