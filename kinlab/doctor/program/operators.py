@@ -279,9 +279,9 @@ def whole_constant(node: ast.AST) -> bool:
     return isinstance(inner, ast.Constant) and type(inner.value) is int
 
 
-def value_of(node: Any) -> int:
+def value_of(node: ast.expr) -> int:
     """A whole number as it is written."""
-    return -int(node.operand.value) if isinstance(node, ast.UnaryOp) else int(node.value)
+    return int(ast.literal_eval(node))
 
 
 def shifted(node: ast.expr) -> bool:
