@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -17,22 +16,17 @@ from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
-from kinlab.doctor.text.meanings import stands_for
-from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
+from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
-from kinlab.formulas.text import FormulaFile, formula_file, parse
+from kinlab.formulas.text import FormulaFile, formula_file
 from kinlab.host.files import read_text
 from kinlab.host.language import _
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
-from kinlab.tolerances import TOLERANCES
-
-_DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 
 _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
@@ -97,7 +91,7 @@ def examine_formulas(
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
         return [one for found in done.values() for one in found]
-    named, said = _gravity_named(file, robot)
+    named, said = constants_named(file, robot)
     if not said:
         return [one for found in done.values() for one in found]
     again = _by_quantity(named, robot, samples, seed)
@@ -140,53 +134,16 @@ def _in_tool_axes(
     return [replace(one, remarks=(*one.remarks, said)) for one in found]
 
 
-def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
-    """The file with a name for g for each decimal that is g rounded, and what is to be said of it.
-
-    A slip is told beside a rounded number only where the number is read as what it stands for.
-    """
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    size = words.get("g", 0.0)
-    said: dict[str, str] = {}
-    numbers: dict[str, str] = {}
-
-    def named(found: re.Match[str]) -> str:
-        if not size or not may_be(found[0], size):
-            return found[0]
-        if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
-            said[found[0]] = stands_for(found[0], f"g = {size:.10g}")
-        name = f"g_{found[0].replace('.', '_')}"
-        numbers[name] = found[0]
-        return name
-
-    texts = {entry: _DECIMAL.sub(named, text) for entry, text in file.texts.items()}
-    if not said:
-        return file, said
-    formulas = {
-        entry: formula if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
-        for entry, formula in file.formulas.items()
-    }
-    return (
-        replace(
-            file,
-            texts=texts,
-            formulas=formulas,
-            numbers=numbers,
-            symbols=file.symbols | dict.fromkeys(numbers, tree.sym("g")),
-            symbol_texts=file.symbol_texts | dict.fromkeys(numbers, "g"),
-        ),
-        said,
-    )
-
-
 def _read_better(
     first: Diagnosis, second: Diagnosis, file: FormulaFile, said: dict[str, str]
 ) -> Diagnosis:
     """The second reading, in which rounded numbers are what they stand for, where it says more."""
     if first.agrees or not (second.agrees or second.causes):
         return first
+    if first.causes and second.causes and len(second.causes[0].kinds) > len(first.causes[0].kinds):
+        return first
     texts = (file.texts.get(entry, "") for entry in first.function.split(", "))
-    here = {digits for text in texts for digits in _DECIMAL.findall(text)}
+    here = {digits for text in texts for digits in DECIMAL.findall(text)}
     notes = tuple(told for digits, told in said.items() if digits in here)
     second = replace(second, error_before=first.error_before)
     if second.agrees:

@@ -193,7 +193,7 @@ def in_text(
     held = [float(derived.arm.values[name]) for name in left_out]
     bare = tree.names(written.node).isdisjoint(names.parameters)
     numbers = any(
-        not one.exponent and ("." in one.text or one.value in held or (bare and one.half > 0))
+        not one.exponent and (bare or "." in one.text or one.value in held)
         for one in written.literals
     )
     plain, lines = [], []

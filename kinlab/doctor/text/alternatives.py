@@ -130,10 +130,12 @@ def _number(line: Line, place: Place) -> None:
             value = np.full(line.count, right)
             line.instead(place, shown, value, "coefficient", 1.15 + doubt)
     if line.numeric and line.only_numbers:
-        for size in line.fronts:  # nearly a coefficient: 17 for 17.1675, beside another slip
-            if 0 < abs(size - place.value[0]) <= CLOSE * size:
+        for size in line.fronts:  # a coefficient, beside another slip: 17 for 17.1675
+            gap = abs(size - place.value[0])
+            if gap > 0:
+                cost = 1.2 if gap <= CLOSE * size else 1.5
                 shown = np.format_float_positional(size, 12, fractional=False, trim="-")
-                line.instead(place, shown, np.full(line.count, size), "coefficient", 1.2)
+                line.instead(place, shown, np.full(line.count, size), "coefficient", cost)
 
 
 def _fitting(line: Line, place: Place) -> float:
