@@ -206,6 +206,8 @@ def in_text(
     if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
         lines = plain  # nothing else is wrong: the digits are too few
     tried = [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
+    if bare:  # without a name the other numbers are the robot's own
+        lines.sort(key=lambda line: not line.numeric)
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),
