@@ -77,7 +77,8 @@ def mended(line: Line, most: int = 3) -> list[Mended]:
 def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tuple[int, ...]]:
     found = [tuple(pair) for pair in pairs_adding_up(effects, wanted, allowed)]
     for place in line.places:
-        if not is_term(place) or inside_call(place) or is_sum(place.node):
+        whole = place is line.root  # a factor of all of it, and a slip in it
+        if not is_term(place) or inside_call(place) or (is_sum(place.node) and not whole):
             continue
         inside = _inside(line, place)
         if len(inside) > 1:
@@ -88,7 +89,7 @@ def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tu
 
 def _inside(line: Line, place: Place) -> list[int]:
     """The changes within a term, and of the sign in front of it."""
-    start, end = place.span
+    start, end = place.span if place is not line.root else (0, len(line.source))
     if place.role == 1 and place.above is not None and is_sum(place.above.node):
         start = line.siblings[id(place.above)][0].span[1]
     return [
