@@ -152,7 +152,7 @@ class Typing:
         old = [token for token, _, _ in self._plain]
         steps = SequenceMatcher(None, old, new, False).get_opcodes()
         plain = [step[1:] for step in steps if step[0] != "equal"]
-        told = [(i, j, new[k:m]) for i, j, k, m in plain]
+        told = [one for i, j, k, m in plain for one in _shares_apart(i, j, new[k:m])]
         whole = [(i, j, new[k:m]) for i, j, k, m in _whole(plain, old, new)]
         ways = [*((told, deep) for deep in range(_DEEP)), (whole, 0)]
         if r"\frac" in self.typed:
@@ -325,6 +325,13 @@ def _tokens(text: str) -> list[tuple[str, int, int]]:
 
 _Edit = tuple[int, int, list[str]]
 """The tokens that go, from the first to behind the last, and those that come."""
+
+
+def _shares_apart(i: int, j: int, new: list[str]) -> list[_Edit]:
+    """A division by a number, and what comes behind it, as two changes."""
+    if len(new) > 2 and new[0] == "/" and new[1].isdigit():
+        return [(i, i, new[:2]), (i, j, new[2:])]
+    return [(i, j, new)]
 
 
 def _in_front(tokens: list[str], change: _Edit) -> _Edit:
