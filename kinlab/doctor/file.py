@@ -111,7 +111,10 @@ def _by_quantity(
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles))
         if plain == "statics" and not all(one.agrees for one in done[plain]):
-            done[plain] = _in_tool_axes(formulas, titles, robot, file, samples, seed) or done[plain]
+            turned = _in_tool_axes(formulas, titles, robot, file, samples, seed)
+            settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
+            if all(one.agrees for one in turned) or settled == [False, True]:
+                done[plain] = turned
     return done
 
 
@@ -123,15 +126,23 @@ def _in_tool_axes(
     samples: int,
     seed: int,
 ) -> list[Diagnosis]:
-    """The diagnoses where the wrench is in tool axes, which its names leave open; if all agree."""
+    """The diagnoses where the wrench is in tool axes, which its names leave open."""
     there = {label.replace("statics", "statics_tool"): text for label, text in formulas.items()}
     named = {label.replace("statics", "statics_tool"): name for label, name in titles.items()}
     answers = _answers("statics_tool", there, named, robot, file, samples, seed)
     found = list(_of_quantity("statics_tool", answers, named))
-    if not all(one.agrees for one in found):
-        return []
     said = _("the wrench is read in tool axes")
-    return [replace(one, remarks=(*one.remarks, said)) for one in found]
+    return [
+        _also_said(one, (said,)) if one.causes else replace(one, remarks=(*one.remarks, said))
+        for one in found
+    ]
+
+
+def _also_said(found: Diagnosis, notes: tuple[str, ...]) -> Diagnosis:
+    """A diagnosis with more in the sentence of its first cause."""
+    first, *rest = found.causes
+    told = _("; ").join((first.sentence, *notes))
+    return replace(found, causes=(replace(first, sentence=told), *rest))
 
 
 def _read_better(
@@ -149,10 +160,7 @@ def _read_better(
     if second.agrees:
         form = second.form or "rounded"
         return replace(second, form=form, remarks=(*notes, *second.remarks))
-    first_cause, *rest = second.causes
-    told = _("; ").join((first_cause.sentence, *notes))
-    causes = (replace(first_cause, sentence=told), *rest)
-    return replace(second, causes=causes)
+    return _also_said(second, notes)
 
 
 def require_sound(file: FormulaFile, robot: Robot) -> None:
@@ -252,9 +260,7 @@ def _of_one_split(found: Diagnosis) -> Diagnosis:
     if found.agrees or not found.causes:
         return found
     told = _("Christoffel's C is meant; with the whole row given, another valid C would be told")
-    first, *rest = found.causes
-    sentence = _("; ").join((first.sentence, told))
-    return replace(found, causes=(replace(first, sentence=sentence), *rest))
+    return _also_said(found, (told,))
 
 
 def _complete_rows(

@@ -160,7 +160,8 @@ def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
     """What may stand in a formula of this quantity."""
     arm = derived.arm
     letters = tuple(LETTERS[a] for a in arguments if a in LETTERS)
-    return Names(arm.trig.parameters, arm.n, letters)
+    loads = derived.loads
+    return Names(tuple(p for p in arm.trig.parameters if p not in loads), arm.n, letters, loads)
 
 
 def in_text(
@@ -182,8 +183,10 @@ def in_text(
     """
     if not searchable(poly):
         return []
-    names = names_for(derived, arguments)
     here = environment(derived, states)
+    named = [name for name in derived.loads if np.any(here[name])]
+    poly, names = derived.held(poly, named), names_for(derived, arguments)
+    names = replace(names, loads=tuple(named))
     right = derived.tree(poly)
     forms = [_split(form) for form in _forms(derived, poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
@@ -314,7 +317,7 @@ def in_function(
         states: the comparison's states.
         others: derived entries whose joint functions may be met.
     """
-    if len(poly) > _WRITTEN_OUT:
+    if len(poly) > _WRITTEN_OUT or derived.loads:
         return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
     everywhere = environment(derived, states)
@@ -459,4 +462,4 @@ def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:
     for letter in ("q", "qd", "qdd"):
         for i in range(names.n):
             at[f"{letter}{i + 1}"] = rng.uniform(-2.5, 2.5, _POINTS)
-    return at
+    return at | {name: rng.uniform(-2.0, 2.0, _POINTS) for name in names.loads}

@@ -26,7 +26,7 @@ from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
-_OF_JOINT = re.compile(r"the angle (q\d)")
+_JOINT = re.compile(r"q\d")
 _FEWEST = 10
 """Targets at which a line must have a value."""
 
@@ -233,8 +233,8 @@ class _Line:
 
 def joint_of(step: Step) -> str:
     """The joint whose line a step of a closed form is in: ``"q1"``; ``""`` where it is none's."""
-    found = _OF_JOINT.fullmatch(step.about)
-    return found[1] if found else ""
+    words = step.about.split()  # "the angle q1", but "the cosine of q2" is another line
+    return words[2] if len(words) == 3 and _JOINT.fullmatch(words[2]) else ""
 
 
 def believed(causes: list[Cause], study: LineStudy, case: Case) -> list[Cause]:

@@ -299,6 +299,7 @@ def _as_factor(line: Line, place: Place) -> None:
     front, before = _openings(line, place)
     for name, value in line.atoms.items():
         at = front if name[0] in "mM" else before
+        at = place.span[1] if name in line.names.loads else at
         for power, more in ((1, 0.0), (2, 0.4)):
             word = name if power == 1 else f"{name}**{power}"
             _times(line, place, word, value**power, 1.4 + more + extra, at)
@@ -349,7 +350,8 @@ def _moves(line: Line, node: ast.expr) -> bool:
         return _moves(line, node.left)
     if isinstance(node, ast.Name):
         meant = _meaning(line, node.id)
-        return meant.op != "sym" or _MOTION.fullmatch(str(meant.value)) is not None
+        word = str(meant.value)
+        return meant.op != "sym" or word in line.names.loads or bool(_MOTION.fullmatch(word))
     return isinstance(node, ast.Call) or is_sum(node)
 
 

@@ -38,11 +38,13 @@ class Names:
         parameters: l1, m1, g, ...
         n: number of joints.
         letters: which of q, qd, qdd the quantity depends on.
+        loads: parts of a wrench, fx, nz, ...
     """
 
     parameters: tuple[str, ...]
     n: int
     letters: tuple[str, ...]
+    loads: tuple[str, ...] = ()
 
     @property
     def angles(self) -> tuple[Node, ...]:
@@ -205,7 +207,7 @@ class Line:
             if not self.turns(name):
                 found[name] = self._named(name)
         mine = set(self.spelling)
-        for name in self.names.parameters:
+        for name in (*self.names.parameters, *self.names.loads):
             if name not in mine:
                 found[name] = np.asarray(self.at[name])
         return found

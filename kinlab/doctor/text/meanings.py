@@ -12,6 +12,7 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.text.written import Literal, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -45,7 +46,8 @@ class Meanings:
     @classmethod
     def at(cls, values: Mapping[str, Array]) -> Meanings:
         """From the values of all names at some states."""
-        return cls({name: float(x[0]) for name, x in values.items() if name[0] != "q"})
+        own = (name for name in values if name[0] != "q" and name not in WRENCH)
+        return cls({name: float(values[name][0]) for name in own})
 
     @cached_property
     def products(self) -> Array:

@@ -7,8 +7,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from kinlab.doctor.derived import LETTERS
-from kinlab.doctor.text.claims import WRENCH
+from kinlab.doctor.derived import LETTERS, WRENCH
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
