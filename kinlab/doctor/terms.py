@@ -218,6 +218,8 @@ def in_text(
         ((line, mended(line)) for line in lines),
     )
     for line, found in ways:
+        if line.numeric:
+            found = [one for one in found if _no_coincidence(line, one, right, derived)]
         if found:
             return [_mended(line.text, one, here) for one in found]
     if not numbers:
@@ -228,6 +230,25 @@ def in_text(
     ]
     written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
+
+
+def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -> bool:
+    """Whether a repair at the robot's own numbers is one where the names in the text have others.
+
+    A text with decimals may have a number in one place and its name in another.
+    """
+    text, own = replace(line.text, text=one.text), dict(line.at)
+    if any(not n.whole and 12 * n.value % 1 and not n.exponent for n in text.literals):
+        return True
+    here, other = text.values(own), anywhere(line.names)
+    for name in line.names.parameters:
+        moved = text.values(own | {name: 1.3 * own[name]})
+        if np.array_equal(moved, here):
+            other[name] = own[name]  # it stands there as a number, or not at all
+    other = as_rods(other, text, derived)
+    target = tree.evaluate(right, other)
+    gap = np.max(np.abs(text.values(other) - target))
+    return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
 
 
 _MOTION = re.compile(r"(qdd?)\d+")

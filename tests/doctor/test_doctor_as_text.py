@@ -89,3 +89,35 @@ def test_a_slip_beside_a_force_of_the_tool(formulas, told, right):
     assert not unread
     assert told in found.causes[0].sentence
     assert [text.replace("**", "^") for text in found.causes[0].shown.values()] == [right]
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "right"),
+    [
+        (
+            "planar3r",
+            "g2",
+            "m1*g*l2*c12 + m3*g*(l2*c12 + l3/2*c123)",
+            "m2*g*l2*c12/2 + m3*g*(l2*c12 + l3/2*c123)",
+        ),
+        (
+            "planar2r_rods",
+            "V",
+            "g*(l2/2*s1 + m2*(l1*s1 + l2/2*sin(q2+q2)))",
+            "g*(m1*l1/2*s1 + m2*(l1*s1 + l2/2*sin(q1+q2)))",
+        ),
+        (
+            "planar2r",
+            "T",
+            "0.5*(m2+m2)*l1*qd1^2 + 0.5*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)",
+            "0.5*(m1+m2)*l1^2*qd1^2 + 0.5*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)",
+        ),
+    ],
+)
+def test_no_repair_holds_at_the_robots_own_numbers_alone(robot, entry, text, right):
+    """m1 is 3 and m2 is 2 in the planar 3R arm: one sign less would give the same torque."""
+    (found,), _unread = of_document({"robot": robot, "formulas": {entry: text}}, "f.toml", 60)
+    assert found.causes[0].shown[entry].replace("**", "^") in (
+        right,
+        right.replace("m1+m2", "m2+m1"),
+    )
