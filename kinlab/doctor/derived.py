@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -17,7 +17,7 @@ from kinlab.model.dh import DHTable
 from kinlab.symbolic import dynamics, fourier, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
 from kinlab.symbolic.kinematics import Grid
-from kinlab.symbolic.trig import Poly
+from kinlab.symbolic.trig import Poly, TrigRing
 
 # -------- What stands between the energies and the torques, derived: momentum, its rate,
 #          gradients
@@ -129,6 +129,22 @@ def _coriolis_torques(a: SymbolicArm) -> Any:
     return _column(kinematics.product(a, dynamics.coriolis_grid(a), speeds))
 
 
+def _statics(frame: str) -> Callable[[SymbolicArm], Any]:
+    """J^T of a wrench whose parts are names."""
+
+    def torques(a: SymbolicArm) -> Any:
+        parts = [[a.trig.gens[name]] for name in WRENCH]
+        turned = [list(column) for column in zip(*_jacobian(frame)(a), strict=True)]
+        return _column(kinematics.product(a, turned, parts))
+
+    return torques
+
+
+def _loaded_torques(a: SymbolicArm) -> Any:
+    free, held = _column(dynamics.torque_column(a)), _statics("base")(a)
+    return [one + two for one, two in zip(free, held, strict=True)]
+
+
 def _isotropy_conditions(a: SymbolicArm) -> Any:
     one, two = _jacobian("base")(a)[:2]
     both = list(zip(one, two, strict=True))
@@ -170,6 +186,14 @@ _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "dh_poses": lambda a: kinematics.link_frames(a)[1:],
 }
 
+_LOADED: dict[str, Callable[[SymbolicArm], Any]] = {
+    "statics": _statics("base"),
+    "statics_tool": _statics("tool"),
+    "inverse_dynamics_loaded": _loaded_torques,
+}
+"""Those with a force and a moment of the tool."""
+WRENCH = ("fx", "fy", "fz", "nx", "ny", "nz")
+"""The names of a wrench's parts, in order."""
 LETTERS = {"q": "q", "v": "qd", "a": "qdd"}
 """Arguments of the quantities and the letters of their symbols."""
 
@@ -185,6 +209,19 @@ class Derivation:
 
     arm: SymbolicArm
     polys: Any
+
+    @property
+    def loads(self) -> tuple[str, ...]:
+        """The names of the wrench's parts, where there is one."""
+        return tuple(name for name in WRENCH if name in self.arm.trig.parameters)
+
+    def held(self, poly: Poly, named: Collection[str]) -> Poly:
+        """An entry where only some parts of the wrench are not zero."""
+        gone = [self.arm.trig.index[name] for name in self.loads if name not in named]
+        if not gone:
+            return poly
+        left = {powers: x for powers, x in poly.items() if not any(powers[k] for k in gone)}
+        return self.arm.trig.ring.from_dict(left)
 
     def tree(self, poly: Poly) -> Node:
         """One entry as a sum of terms."""
@@ -214,11 +251,18 @@ def derivation(table: DHTable, quantity: str) -> Derivation | None:
         make = _KINEMATIC[quantity]
     elif quantity in _DYNAMIC and table.n <= _DYNAMIC_JOINTS:
         make = _DYNAMIC[quantity]
+    elif quantity in _LOADED and table.n <= _DYNAMIC_JOINTS:
+        make = _LOADED[quantity]
     else:
         return None
-    named = arm(table)
+    named = _with_wrench(arm(table)) if quantity in _LOADED else arm(table)
     made = make(named)
     return Derivation(named, _objects(made)) if made is not None else None
+
+
+def _with_wrench(a: SymbolicArm) -> SymbolicArm:
+    trig = TrigRing((*a.trig.parameters, *WRENCH), a.trig.angles, a.n)
+    return replace(a, trig=trig)
 
 
 def searchable(poly: Poly) -> bool:
@@ -229,11 +273,14 @@ def searchable(poly: Poly) -> bool:
 def environment(derived: Derivation, states: dict[str, Array]) -> dict[str, Array]:
     """Values of every name: the joints' from the states, the parameters' from the table."""
     count = len(next(iter(states.values())))
-    at = {name: np.full(count, derived.arm.values[name]) for name in derived.arm.trig.parameters}
+    values = derived.arm.values
+    at = {n: np.full(count, values[n]) for n in derived.arm.trig.parameters if n in values}
     for argument, stack in states.items():
         if argument in LETTERS:
             for i in range(derived.arm.n):
                 at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+        if argument == "wrench" and derived.loads:
+            at |= dict(zip(WRENCH, stack.T, strict=True))
     return at
 
 
@@ -254,7 +301,7 @@ def grouped(a: SymbolicArm, poly: Poly) -> Node:
 
 def collected(a: SymbolicArm, poly: Poly) -> Node:
     """Sums what stands in front of each product of speeds and accelerations."""
-    rates = {s.name for s in (*a.qd, *a.qdd)}
+    rates = {*(s.name for s in (*a.qd, *a.qdd)), *WRENCH}
     fronts: dict[Any, list[Node]] = {}
     for term, factor in fourier.terms(a.trig, poly, a.groups).items():
         parts = [p for p in term.as_ordered_factors() if {s.name for s in p.free_symbols} & rates]

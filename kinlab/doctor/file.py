@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import replace
 from pathlib import Path
@@ -17,22 +16,17 @@ from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
-from kinlab.doctor.text.meanings import stands_for
-from kinlab.doctor.text.own_names import in_robot_names, may_be, written_as
+from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
-from kinlab.formulas.text import FormulaFile, formula_file, parse
+from kinlab.formulas.text import FormulaFile, formula_file
 from kinlab.host.files import read_text
 from kinlab.host.language import _
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
-from kinlab.tolerances import TOLERANCES
-
-_DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 
 _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
@@ -97,7 +91,7 @@ def examine_formulas(
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
         return [one for found in done.values() for one in found]
-    named, said = _gravity_named(file, robot)
+    named, said = constants_named(file, robot)
     if not said:
         return [one for found in done.values() for one in found]
     again = _by_quantity(named, robot, samples, seed)
@@ -117,7 +111,10 @@ def _by_quantity(
         answers = _answers(plain, formulas, titles, robot, file, samples, seed)
         done[plain] = list(_of_quantity(plain, answers, titles))
         if plain == "statics" and not all(one.agrees for one in done[plain]):
-            done[plain] = _in_tool_axes(formulas, titles, robot, file, samples, seed) or done[plain]
+            turned = _in_tool_axes(formulas, titles, robot, file, samples, seed)
+            settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
+            if all(one.agrees for one in turned) or settled == [False, True]:
+                done[plain] = turned
     return done
 
 
@@ -129,54 +126,23 @@ def _in_tool_axes(
     samples: int,
     seed: int,
 ) -> list[Diagnosis]:
-    """The diagnoses where the wrench is in tool axes, which its names leave open; if all agree."""
+    """The diagnoses where the wrench is in tool axes, which its names leave open."""
     there = {label.replace("statics", "statics_tool"): text for label, text in formulas.items()}
     named = {label.replace("statics", "statics_tool"): name for label, name in titles.items()}
     answers = _answers("statics_tool", there, named, robot, file, samples, seed)
     found = list(_of_quantity("statics_tool", answers, named))
-    if not all(one.agrees for one in found):
-        return []
     said = _("the wrench is read in tool axes")
-    return [replace(one, remarks=(*one.remarks, said)) for one in found]
+    return [
+        _also_said(one, (said,)) if one.causes else replace(one, remarks=(*one.remarks, said))
+        for one in found
+    ]
 
 
-def _gravity_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
-    """The file with a name for g for each decimal that is g rounded, and what is to be said of it.
-
-    A slip is told beside a rounded number only where the number is read as what it stands for.
-    """
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    size = words.get("g", 0.0)
-    said: dict[str, str] = {}
-    numbers: dict[str, str] = {}
-
-    def named(found: re.Match[str]) -> str:
-        if not size or not may_be(found[0], size):
-            return found[0]
-        if abs(float(found[0]) - size) > TOLERANCES.same_number * abs(size):
-            said[found[0]] = stands_for(found[0], f"g = {size:.10g}")
-        name = f"g_{found[0].replace('.', '_')}"
-        numbers[name] = found[0]
-        return name
-
-    texts = {entry: _DECIMAL.sub(named, text) for entry, text in file.texts.items()}
-    if not said:
-        return file, said
-    formulas = {
-        entry: formula if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
-        for entry, formula in file.formulas.items()
-    }
-    return (
-        replace(
-            file,
-            texts=texts,
-            formulas=formulas,
-            numbers=numbers,
-            symbols=file.symbols | dict.fromkeys(numbers, tree.sym("g")),
-            symbol_texts=file.symbol_texts | dict.fromkeys(numbers, "g"),
-        ),
-        said,
-    )
+def _also_said(found: Diagnosis, notes: tuple[str, ...]) -> Diagnosis:
+    """A diagnosis with more in the sentence of its first cause."""
+    first, *rest = found.causes
+    told = _("; ").join((first.sentence, *notes))
+    return replace(found, causes=(replace(first, sentence=told), *rest))
 
 
 def _read_better(
@@ -185,17 +151,16 @@ def _read_better(
     """The second reading, in which rounded numbers are what they stand for, where it says more."""
     if first.agrees or not (second.agrees or second.causes):
         return first
+    if first.causes and second.causes and len(second.causes[0].kinds) > len(first.causes[0].kinds):
+        return first
     texts = (file.texts.get(entry, "") for entry in first.function.split(", "))
-    here = {digits for text in texts for digits in _DECIMAL.findall(text)}
+    here = {digits for text in texts for digits in DECIMAL.findall(text)}
     notes = tuple(told for digits, told in said.items() if digits in here)
     second = replace(second, error_before=first.error_before)
     if second.agrees:
         form = second.form or "rounded"
         return replace(second, form=form, remarks=(*notes, *second.remarks))
-    first_cause, *rest = second.causes
-    told = _("; ").join((first_cause.sentence, *notes))
-    causes = (replace(first_cause, sentence=told), *rest)
-    return replace(second, causes=causes)
+    return _also_said(second, notes)
 
 
 def require_sound(file: FormulaFile, robot: Robot) -> None:
@@ -295,9 +260,7 @@ def _of_one_split(found: Diagnosis) -> Diagnosis:
     if found.agrees or not found.causes:
         return found
     told = _("Christoffel's C is meant; with the whole row given, another valid C would be told")
-    first, *rest = found.causes
-    sentence = _("; ").join((first.sentence, told))
-    return replace(found, causes=(replace(first, sentence=sentence), *rest))
+    return _also_said(found, (told,))
 
 
 def _complete_rows(

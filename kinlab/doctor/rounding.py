@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
@@ -15,7 +14,7 @@ from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.changes import Case
 from kinlab.doctor.confusions.robots import with_gravity
 from kinlab.doctor.numbers import rounded_robots
-from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, stands_for
+from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -79,7 +78,7 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
         columns: dict[str, Any] = {}
         for column in ("alpha", "theta"):
             value = float(getattr(link, column))
-            exact = _angle(value)
+            exact = exact_angle(value)
             if exact is not None:
                 columns[column] = exact
                 told = _(
@@ -92,16 +91,6 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
     if not said:
         return None
     return Robot.from_dh(replace(table, links=links)), tuple(said)
-
-
-def _angle(value: float) -> float | None:
-    """The multiple of 15 degrees that an angle is, rounded; None where it is exact or none."""
-    one = literal(f"{abs(value):.15g}")
-    exact = round(value / (math.pi / 12)) * math.pi / 12
-    gap = abs(value - exact)
-    if not 0 < one.half <= 0.006 or gap <= 1e-14:
-        return None
-    return exact if gap <= one.half * (1 + TOLERANCES.same_relation) else None
 
 
 def gravity_rounded(case: Case, engine: Array) -> tuple[str, ...] | None:

@@ -160,7 +160,8 @@ def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
     """What may stand in a formula of this quantity."""
     arm = derived.arm
     letters = tuple(LETTERS[a] for a in arguments if a in LETTERS)
-    return Names(arm.trig.parameters, arm.n, letters)
+    loads = derived.loads
+    return Names(tuple(p for p in arm.trig.parameters if p not in loads), arm.n, letters, loads)
 
 
 def in_text(
@@ -182,8 +183,10 @@ def in_text(
     """
     if not searchable(poly):
         return []
-    names = names_for(derived, arguments)
     here = environment(derived, states)
+    named = [name for name in derived.loads if np.any(here[name])]
+    poly, names = derived.held(poly, named), names_for(derived, arguments)
+    names = replace(names, loads=tuple(named))
     right = derived.tree(poly)
     forms = [_split(form) for form in _forms(derived, poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
@@ -193,7 +196,7 @@ def in_text(
     held = [float(derived.arm.values[name]) for name in left_out]
     bare = tree.names(written.node).isdisjoint(names.parameters)
     numbers = any(
-        not one.exponent and ("." in one.text or one.value in held or (bare and one.half > 0))
+        not one.exponent and (bare or "." in one.text or one.value in held)
         for one in written.literals
     )
     plain, lines = [], []
@@ -206,6 +209,8 @@ def in_text(
     if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
         lines = plain  # nothing else is wrong: the digits are too few
     tried = [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
+    if bare:  # without a name the other numbers are the robot's own
+        lines.sort(key=lambda line: not line.numeric)
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),
@@ -213,6 +218,8 @@ def in_text(
         ((line, mended(line)) for line in lines),
     )
     for line, found in ways:
+        if line.numeric:
+            found = [one for one in found if _no_coincidence(line, one, right, derived)]
         if found:
             return [_mended(line.text, one, here) for one in found]
     if not numbers:
@@ -223,6 +230,25 @@ def in_text(
     ]
     written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
+
+
+def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -> bool:
+    """Whether a repair at the robot's own numbers is one where the names in the text have others.
+
+    A text with decimals may have a number in one place and its name in another.
+    """
+    text, own = replace(line.text, text=one.text), dict(line.at)
+    if any(not n.whole and 12 * n.value % 1 and not n.exponent for n in text.literals):
+        return True
+    here, other = text.values(own), anywhere(line.names)
+    for name in line.names.parameters:
+        moved = text.values(own | {name: 1.3 * own[name]})
+        if np.array_equal(moved, here):
+            other[name] = own[name]  # it stands there as a number, or not at all
+    other = as_rods(other, text, derived)
+    target = tree.evaluate(right, other)
+    gap = np.max(np.abs(text.values(other) - target))
+    return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
 
 
 _MOTION = re.compile(r"(qdd?)\d+")
@@ -312,7 +338,7 @@ def in_function(
         states: the comparison's states.
         others: derived entries whose joint functions may be met.
     """
-    if len(poly) > _WRITTEN_OUT:
+    if len(poly) > _WRITTEN_OUT or derived.loads:
         return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
     everywhere = environment(derived, states)
@@ -457,4 +483,4 @@ def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:
     for letter in ("q", "qd", "qdd"):
         for i in range(names.n):
             at[f"{letter}{i + 1}"] = rng.uniform(-2.5, 2.5, _POINTS)
-    return at
+    return at | {name: rng.uniform(-2.0, 2.0, _POINTS) for name in names.loads}

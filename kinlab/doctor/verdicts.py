@@ -11,7 +11,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.derived import LETTERS, Derivation, derivation, searchable
+from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
@@ -20,7 +20,6 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
-from kinlab.doctor.text.claims import WRENCH
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
@@ -190,7 +189,7 @@ def elsewhere(
     if not searchable(poly):
         return [], 0.0
     names = names_for(derived, arguments)
-    right = derived.tree(poly)
+    right = derived.tree(derived.held(poly, tree.names(text.node)))
     states = (_one_robot(anywhere(names, seed), names.parameters) for seed in (11, 12, 13))
     at = as_rods(anywhere(names, 10), text, derived)
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))

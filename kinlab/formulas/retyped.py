@@ -32,13 +32,16 @@ _CLOSING = re.compile(r"\s*(?:(?:\\right|\\[bB]igg?r?)?\s*[)\]]|\})")
 _BETWEEN = re.compile(r"\s*(?:\\cdot(?![A-Za-z])|\\times(?![A-Za-z])|\\,|\.?\*|·|×|⋅)\s*|\s+")
 _FRACTION = re.compile(r"\\[dt]?frac\s*$")
 _BRACED = re.compile(r"_\{(\w)\}")
-_BARE = re.compile(r"\\(?:sin|cos|tan)\s*(?:\\theta|[A-Za-z])")
+_BARE = re.compile(r"\\(?:sin|cos|tan)(\s*)(?:\\theta|[A-Za-z])")
 _SINGLE = re.compile(r"(\\(?:sin|cos|tan))\(((?:\\[a-z]+|[A-Za-z])(?:_\w|_\{\w+\})?)\)")
+_MACRO = "\\"
 _HALF = re.compile(r"\(\((\w+)\)/\((\w+)\)\)")
 _BELOW = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 _ABOVE = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 _RAISED = re.compile(r"(?:\^|\*\*)(\d)")
 _SAMPLES = 4
+_DEEP = 4
+"""Brackets around a place, so many or fewer, that something may be put outside of."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +80,20 @@ class Typing:
             return text
         sign = re.match(r"[-+]?\s*", text)
         head, body = (sign.group(), text[sign.end() :]) if sign else ("", text)
-        tokens = [t for t, _, _ in _tokens(body)]
+        bare = [t for t, _, _ in _tokens(body)]
         whole = [t for t, _, _ in self._plain]
         goal = _values(body)
-        for k in range(len(whole) - len(tokens) + 1):
-            span = self._span(k, k + len(tokens)) if whole[k : k + len(tokens)] == tokens else None
-            shown = self.typed[slice(*span)].strip() if span else ""
-            if shown and self._reads_as(shown, goal):
-                return head + shown
-        ways = (self._retold(body), self._anew(body))
+        for tokens in (bare, ["(", *bare, ")"]):  # a fraction is read with parentheses around it
+            for k in range(len(whole) - len(tokens) + 1):
+                met = whole[k : k + len(tokens)] == tokens
+                span = self._span(k, k + len(tokens)) if met else None
+                shown = self.typed[slice(*span)].strip() if span else ""
+                if shown and self._reads_as(shown, goal):
+                    return head + shown
+        ways = [self._retold(body), self._anew(body)]
+        share = re.fullmatch(r"(.*)/(\d+)", body)
+        if share and r"\frac" in self.typed:
+            ways.insert(0, rf"\frac{{1}}{{{share[2]}}} {self.piece(share[1])}")
         return head + next((one for one in ways if self._reads_as(one, goal)), body)
 
     @cached_property
@@ -144,15 +152,21 @@ class Typing:
         old = [token for token, _, _ in self._plain]
         steps = SequenceMatcher(None, old, new, False).get_opcodes()
         plain = [step[1:] for step in steps if step[0] != "equal"]
-        for changes, deep in ((plain, 0), (plain, 1), (plain, 2), (_whole(plain, old, new), 0)):
+        told = [one for i, j, k, m in plain for one in _shares_apart(i, j, new[k:m])]
+        whole = [(i, j, new[k:m]) for i, j, k, m in _whole(plain, old, new)]
+        ways = [*((told, deep) for deep in range(_DEEP)), (whole, 0)]
+        if r"\frac" in self.typed:
+            shares = sorted((_in_front(old, change) for change in told), key=lambda c: c[:2])
+            ways = [*((shares, k) for k in range(_DEEP)), *ways] if shares != told else ways
+        for changes, deep in ways:
             line = self.typed
-            for i, j, k, m in reversed(changes):
-                span = self._place(i, j, new[k:m], deep)
+            for i, j, tokens in reversed(changes):
+                span = self._place(i, j, tokens, deep)
                 if span is None:
                     break
                 start, end = span
-                shown = self._raised("".join(self._shown(new[k:m], i == 0 or old[i - 1] == "(")))
-                if {*old[i:j], *new[k:m]} == {"+", "-"} and i < j and k < m:
+                shown = self._written(tokens, i == 0 or old[i - 1] == "(")
+                if {*old[i:j], *tokens} == {"+", "-"} and i < j and tokens:
                     shown = shown.strip()  # a sign for a sign, in the same place
                 line = _joined(line[:start], shown, line[end:])
             else:
@@ -173,6 +187,8 @@ class Typing:
                 for _ in range(deep):
                     opening = _OPENING.search(self.typed[:at])
                     at = opening.start() if opening else at
+                    fraction = _FRACTION.search(self.typed[:at])
+                    at = fraction.start() if fraction else at
             return at, at
         gone = [token for token, _, _ in self._plain[i:j]]
         span = self._span(i, j)
@@ -212,14 +228,18 @@ class Typing:
             signs = {one.plain, two.plain} & {"+", "-"}
             if not signs and (not between or _BETWEEN.fullmatch(between)):
                 met.append(between)
-        usual = max(met, key=met.count) if met else "*"
+        usual = max(met, key=met.count) if met else " " if self._latex else "*"
         return usual or " "
 
     def _shown(self, tokens: list[str], first: bool = True) -> Iterator[str]:
         """Tokens as the writer types them; ``first`` where a sign is none between two terms."""
-        apart = " " if self._latex or re.search(r"\s[-+]\s", self.typed) else ""
+        wide = " " if self._latex or re.search(r"\s[-+]\s", self.typed) else ""
+        tight = re.search(r"[({][^()\s]*\S[-+]\S", self.typed)  # in a sine's argument
+        depth = 0
         for k, token in enumerate(tokens):
             before = tokens[k - 1] if k else "(" if first else ""
+            depth += (token == "(") - (token == ")")
+            apart = "" if tight and depth > 0 else wide
             if token == "*":
                 yield self._times
             elif token == "**":
@@ -234,19 +254,31 @@ class Typing:
         raised = re.search("[⁰¹²³⁴-⁹₀-₉]", self.typed)
         return _RAISED.sub(lambda m: m[1].translate(_ABOVE), text) if raised else text
 
+    def _written(self, tokens: list[str], first: bool = True) -> str:
+        """Tokens as one piece, sines with parentheses only where the writer has them."""
+        shown = self._raised("".join(self._shown(tokens, first)))
+        if self._latex and (bare := _BARE.search(self.typed)):
+            apart = " " if bare[1] else ""
+            shown = _SINGLE.sub(
+                lambda m: f"{m[1]}{apart if m[2][0] == _MACRO else ' '}{m[2]}", shown
+            )
+        return shown
+
     def _retold(self, text: str) -> str:
         """A formula that the writer has not, as he would type it."""
-        shown = self._raised("".join(self._shown([token for token, _, _ in _tokens(text)])))
-        if not self._latex:
-            return shown
-        if _BARE.search(self.typed):
-            shown = _SINGLE.sub(r"\1 \2", shown).replace(r" \theta", r"\theta")
-        return _HALF.sub(r"\\frac{\1}{\2}", shown).strip()
+        shown = self._written([token for token, _, _ in _tokens(text)])
+        return _HALF.sub(r"\\frac{\1}{\2}", shown).strip() if self._latex else shown
 
     @cached_property
     def _names(self) -> dict[str, str]:
         shown = ((leaf.plain, self.typed[leaf.start : leaf.end]) for leaf in self.leaves)
         return {plain: text for plain, text in shown if "^" not in text}
+
+    @cached_property
+    def _prefix(self) -> str:
+        """What the writer has in front of functions: np. in np.sin."""
+        found = re.search(r"\b(\w+\.)(?:sin|cos|tan|sqrt)\b", self.typed)
+        return found[1] if found else ""
 
     def _name(self, name: str) -> str:
         """A name in the writer's typing: his own, one like his, or the usual one."""
@@ -254,7 +286,7 @@ class Typing:
         if name in known:
             return known[name]
         if name in ("sin", "cos", "tan", "sqrt"):
-            return rf"\{name}" if self._latex else name
+            return rf"\{name}" if self._latex else f"{self._prefix}{name}"
         head, digits = re.fullmatch(r"(.*?)(\d*)", name).groups()  # type: ignore[union-attr]
         for like, shown in known.items():
             found = re.fullmatch(r"(.*?)_?(\d+)", like)
@@ -289,6 +321,31 @@ class Typing:
 
 def _tokens(text: str) -> list[tuple[str, int, int]]:
     return [(found.group(), *found.span()) for found in _TOKEN.finditer(text)]
+
+
+_Edit = tuple[int, int, list[str]]
+"""The tokens that go, from the first to behind the last, and those that come."""
+
+
+def _shares_apart(i: int, j: int, new: list[str]) -> list[_Edit]:
+    """A division by a number, and what comes behind it, as two changes."""
+    if len(new) > 2 and new[0] == "/" and new[1].isdigit():
+        return [(i, i, new[:2]), (i, j, new[2:])]
+    return [(i, j, new)]
+
+
+def _in_front(tokens: list[str], change: _Edit) -> _Edit:
+    """A fraction in front of a term for a division behind it: half of it, a third."""
+    i, j, new = change
+    if i != j or len(new) != 2 or new[0] != "/" or not new[1].isdigit():
+        return change
+    depth = 0
+    for start in range(i, 0, -1):
+        before = tokens[start - 1]
+        depth += (before == ")") - (before == "(")
+        if depth < 0 or (not depth and before in ("+", "-", ",")):
+            return start, start, [rf"\frac{{1}}{{{new[1]}}} "]
+    return 0, 0, [rf"\frac{{1}}{{{new[1]}}} "]
 
 
 def _whole(
@@ -356,6 +413,6 @@ def _joined(left: str, middle: str, right: str) -> str:
     """Three pieces with the blanks that keep commands and names apart."""
     out = left
     for piece in (middle, right):
-        apart = re.search(r"\\[A-Za-z]+$", out) and re.match(r"[A-Za-z]", piece)
+        apart = re.search(r"(?:\\[A-Za-z]+|[}\d])$", out) and re.match(r"[A-Za-z]", piece)
         out += (" " if apart else "") + piece
     return re.sub(r"  +", " ", out).strip()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.report import of_document
 from kinlab.errors import ExpressionError, KinlabError
 
 TAU2 = "m2*l1*l2*c2*qdd1 + m2*l1*l2*s2*qd1**2 + m2*l2*g*c12 + m2*l2**2*(qdd1 + qdd2)"
@@ -48,3 +49,75 @@ def test_the_printed_gradient_of_the_energy_as_text():
     assert kl.diagnose("planar2r", "kinetic_gradient", f"[{', '.join(right)}]").agrees
     found = kl.diagnose("planar2r", "kinetic_gradient", f"[{printed}, {printed}]")
     assert found.causes[0].kinds == ("one number",)
+
+
+@pytest.mark.parametrize(
+    ("formulas", "told", "right"),
+    [
+        (
+            {"tau1": "-(l1*s1 + l2*s12)*fx + (l1*c1 + l2*s12)*fy"},
+            "s12 should be c12 in l2*s12",
+            "-(l1*s1 + l2*s12)*fx + (l1*c1 + l2*c12)*fy",
+        ),
+        (
+            {
+                "tau1": "-(l1*s1 + l2*s12)*fx + (l1*c1 + l2*c12)*fy",
+                "tau2": "-l2*s12*fx + l2*c12*fx",
+            },
+            "fx should be fy",
+            "-l2*s12*fx + l2*c12*fy",
+        ),
+        (
+            {"tau1": "-(l1*s1 + l2*s12)*fx + nz", "tau2": "-l2*s12*fx"},
+            "the term nz is missing",
+            "-l2*s12*fx + nz",
+        ),
+        (
+            {"tau1": "l2*fy + l1*s2*fx + l1*s2*fy", "tau2": "l2*fy"},
+            "the wrench is read in tool axes",
+            "l2*fy + l1*s2*fx + l1*c2*fy",
+        ),
+        (
+            {"tau2": "m2*l2*(l2*(qdd1 + qdd2) + l1*(c2*qdd1 + s2*qd1^2) + g*c12) + l2*c2*fy"},
+            "c2 should be c12 in l2*c2*fy",
+            "m2*l2*(l2*(qdd1 + qdd2) + l1*(c2*qdd1 + s2*qd1^2) + g*c12) + l2*c12*fy",
+        ),
+    ],
+)
+def test_a_slip_beside_a_force_of_the_tool(formulas, told, right):
+    (found,), unread = of_document({"robot": "planar2r", "formulas": formulas}, "f.toml", 60)
+    assert not unread
+    assert told in found.causes[0].sentence
+    assert [text.replace("**", "^") for text in found.causes[0].shown.values()] == [right]
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "right"),
+    [
+        (
+            "planar3r",
+            "g2",
+            "m1*g*l2*c12 + m3*g*(l2*c12 + l3/2*c123)",
+            "m2*g*l2*c12/2 + m3*g*(l2*c12 + l3/2*c123)",
+        ),
+        (
+            "planar2r_rods",
+            "V",
+            "g*(l2/2*s1 + m2*(l1*s1 + l2/2*sin(q2+q2)))",
+            "g*(m1*l1/2*s1 + m2*(l1*s1 + l2/2*sin(q1+q2)))",
+        ),
+        (
+            "planar2r",
+            "T",
+            "0.5*(m2+m2)*l1*qd1^2 + 0.5*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)",
+            "0.5*(m1+m2)*l1^2*qd1^2 + 0.5*m2*l2^2*(qd1+qd2)^2 + m2*l1*l2*c2*qd1*(qd1+qd2)",
+        ),
+    ],
+)
+def test_no_repair_holds_at_the_robots_own_numbers_alone(robot, entry, text, right):
+    """m1 is 3 and m2 is 2 in the planar 3R arm: one sign less would give the same torque."""
+    (found,), _unread = of_document({"robot": robot, "formulas": {entry: text}}, "f.toml", 60)
+    assert found.causes[0].shown[entry].replace("**", "^") in (
+        right,
+        right.replace("m1+m2", "m2+m1"),
+    )

@@ -361,6 +361,22 @@ def test_only_the_line_that_is_wrong_is_accused(first: str, second: str, said: s
     assert len(found.causes[0].kinds) == 1
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "joint"),
+    [
+        ("atan2(y, x) + atan2(l2*sin(q2), l1 + l2*cos(q2))", "acos({law})", "q1"),
+        ("atan2(y, x) - atan2(l2*sin(q2), l1 + l1*cos(q2))", "acos({law})", "q1"),
+        ("atan2(y, x) - atan2(l2*sin(q2), l1 + l2*cos(q2))", "-acos({law}) + pi/2", "q2"),
+    ],
+)
+def test_the_place_of_a_cause_is_the_joint_whose_line_it_is_in(
+    first: str, second: str, joint: str
+) -> None:
+    law = "(x**2 + y**2 - l1**2 - l2**2)/(2*l1*l2)"
+    found = judged("planar2r", {}, q1=first, q2=second.format(law=law))
+    assert found.causes[0].places == (joint,)
+
+
 def test_numbers_alone_give_no_cause_by_their_values() -> None:
     found = judged("planar2r", {}, q1=FIRST, q2="acos((x^2 + y^2 - 0.16)/0.5)")
     assert (found.agrees, found.causes) == (False, ())

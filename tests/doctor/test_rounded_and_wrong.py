@@ -266,3 +266,81 @@ def test_a_number_nearly_a_coefficient_beside_a_slip():
     (found,) = judged(g1="17*c1 - 5.9*c12")
     assert found.causes[0].shown == {"g1": "17.1675*c1 + 5.9*c12"}
     assert set(found.causes[0].kinds) == {"coefficient", "sign"}
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "right", "kinds"),
+    [
+        ("planar2r", "g2", "6*c12", "5.886*c12", ["coefficient"]),
+        ("planar2r", "M22", "1", "0.24", ["coefficient"]),
+        (
+            "planar2r",
+            "T",
+            "0.44*qd1 + 0.12*(qd1 + qd2)^2 + 0.3*c2*qd1*(qd1 + qd2)",
+            "0.44*qd1^2 + 0.12*(qd1 + qd2)^2 + 0.3*c2*qd1*(qd1 + qd2)",
+            ["power"],
+        ),
+        (
+            "planar2r",
+            "tau2",
+            "0.24*(qdd1 + qdd2) + 0.3*c2*qdd1 + 0.3*s2*qd1 + 5.886*s12",
+            "0.24*(qdd1 + qdd2) + 0.3*c2*qdd1 + 0.3*s2*qd1^2 + 5.886*c12",
+            ["power", "sin/cos"],
+        ),
+        (
+            "planar3r",
+            "x",
+            "-0.5*cos(q1) + 0.45*cos(q1+q2) + 0.25*sin(q1+q2+q3)",
+            "0.5*cos(q1) + 0.4*cos(q1+q2) + 0.25*cos(q1+q2+q3)",
+            ["sign", "coefficient", "sin/cos"],
+        ),
+    ],
+)
+def test_slips_in_a_formula_of_numbers_alone(robot, entry, text, right, kinds):
+    (found,) = judged(robot, **{entry: text})
+    first = found.causes[0]
+    assert sorted(first.kinds) == sorted(kinds)
+    assert first.corrected[entry].replace("**", "^") == right
+
+
+IK_1 = "atan2(y, x) - atan2(l2*sin(q2), l1 + l2*cos(q2))"
+IK_2 = "3.1416 - acos((l1^2 + l2^2 - x^2 - y^2)/(2*l1*l2))"
+
+
+@pytest.mark.parametrize(
+    ("formulas", "told", "rounded"),
+    [
+        (
+            {"g1": "(m1+m2)*g*l1*s1 + m2*g*l2*c12", "g2": "m2*g*l2*sin(q1 + q2 + 3.1416/2)"},
+            "g1: s1 should be c1",
+            "3.1416 stands for pi",
+        ),
+        (
+            {"g1": "17.1675*sin(q1 + 1.57) + 5.886*cos(q2)"},
+            "g1: cos(q2) should be cos(q1 + q2)",
+            "1.57 stands for pi/2",
+        ),
+        (
+            {"q1": IK_1.replace(" - ", " + "), "q2": IK_2},
+            "with the opposite sign in the angle q1",
+            "3.1416 stands for pi",
+        ),
+        (
+            {"q1": IK_1, "q2": IK_2.replace("2*l1*l2", "2*l1*l1")},
+            "l1 for l2 in the cosine of q2",
+            "3.1416 stands for pi",
+        ),
+    ],
+)
+def test_a_slip_beside_a_rounded_angle(formulas, told, rounded):
+    (found,) = judged(**formulas)
+    assert not found.agrees
+    first = found.causes[0]
+    assert len(first.kinds) == 1
+    assert told in first.sentence and rounded in first.sentence
+
+
+def test_a_length_near_a_right_angle_is_none():
+    (found,) = judged(x="1.57*cos(q1) + 0.4*cos(q1 + q2)")
+    assert "1.57 should be 0.5" in found.causes[0].sentence
+    assert "pi" not in found.causes[0].sentence

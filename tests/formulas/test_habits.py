@@ -77,3 +77,15 @@ def test_a_slip_in_the_names_by_habit():
     assert found.causes[0].shown == {"x": "L1 cos(t1) + L2 cos(t1 + t2)"}
     (found,) = judged(y="a1*sin(q1) + a2*cos(q12)")[2]
     assert found.causes[0].shown == {"y": "a1*sin(q1) + a2*sin(q1 + q2)"}
+
+
+def test_a_symbol_with_a_line_below_is_also_what_latex_reads():
+    own = {"robot": ARM, "symbols": {"L_1": "l1", "L_2": 0.4}}
+    typed = r"L_1 \cos\theta_1 + L_2 \cos(\theta_1 + \theta_2)"
+    (found,), unread = of_document(own | {"latex": {"x": typed}}, "f.toml", 20)
+    assert found.agrees and not unread
+    (found,), unread = of_document(own | {"formulas": {"x": "L_1*c1 + L_2*c12"}}, "f.toml", 20)
+    assert found.agrees and not unread
+    bad = typed.replace(r"L_2 \cos", r"L_1 \cos")
+    (found,), unread = of_document(own | {"latex": {"x": bad}}, "f.toml", 20)
+    assert found.causes[0].shown == {"x": typed} and not unread

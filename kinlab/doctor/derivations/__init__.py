@@ -3,6 +3,7 @@
 ==============  ===================================================================================
 module          what it holds
 ==============  ===================================================================================
+``across``      What one can do otherwise in several lines of a derivation at once
 ``angles``      What one can do otherwise where an angle is found: atan2, acos, roots, quotients,
                 exchanges
 ``givens``      The numbers of an arm or a five-bar as the derivations ask for them

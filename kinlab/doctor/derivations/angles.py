@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterator
 
 from kinlab.doctor.derivations.operations import Make
-from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
+from kinlab.doctor.derivations.walk import Program, Step, again
 from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
 from kinlab.host.language import _
 
@@ -111,7 +111,7 @@ def exchanged(of: Program) -> Iterator[Step]:
         for line in of.lines:
             found = [
                 node
-                for node in ast.walk(_assigned(line).value)
+                for node in ast.walk(line.statement.value)
                 if isinstance(node, ast.Name) and node.id in (one, two) and line.about
             ]
             edits = [(x, again(ast.Name(two if x.id == one else one))) for x in found]
@@ -119,7 +119,7 @@ def exchanged(of: Program) -> Iterator[Step]:
             if len({x.id for x in found}) == 2:
                 does = _("has {one} and {two} exchanged in {line}")
                 said = does.format(one=names[0], two=names[1], line=_(line.about))
-                yield Step("exchanged", said, tuple(edits), 1.02)
+                yield Step("exchanged", said, tuple(edits), 1.02, about=line.about)
         if len({x.id for x, _new in every if isinstance(x, ast.Name)}) == 2:
             does = _("has {one} and {two} exchanged in every line")
             yield Step("exchanged", does.format(one=names[0], two=names[1]), tuple(every), 1.03)
@@ -127,16 +127,17 @@ def exchanged(of: Program) -> Iterator[Step]:
 
 def of_angles(of: Program) -> Iterator[Step]:
     """The lines of a closed form: an angle with the other sign, a length left out of every line."""
-    made = {name_of(target) for line in of.lines for target in _assigned(line).targets}
+    made = {name_of(target) for line in of.lines for target in line.statement.targets}
     places: dict[str, list[ast.expr]] = {}
     for line in of.lines:
-        target, whole = _assigned(line).targets[0], _assigned(line).value
+        target, whole = line.statement.targets[0], line.statement.value
         if not line.about:
             continue
         angle = isinstance(target, ast.Subscript) and isinstance(target.slice, ast.Constant)
         if angle and is_sum(whole):
             does = _("has {what} with the opposite sign").format(what=_(line.about))
-            yield Step("sign", does, ((whole, ast.UnaryOp(ast.USub(), again(whole))),), 1.02)
+            turned = ast.UnaryOp(ast.USub(), again(whole))
+            yield Step("sign", does, ((whole, turned),), 1.02, about=line.about)
         for node in ast.walk(whole):
             if angle and is_sum(node) and isinstance(node, ast.BinOp) and is_sum(node.right):
                 # both at once: phi + (q1 + q2)
@@ -145,7 +146,7 @@ def of_angles(of: Program) -> Iterator[Step]:
                     line=_(line.about),
                 )
                 turned = ast.UnaryOp(ast.USub(), again(node.right))
-                yield Step("sign", does, ((node.right, turned),), 1.02)
+                yield Step("sign", does, ((node.right, turned),), 1.02, about=line.about)
             if isinstance(node, ast.Name) and re.fullmatch(r"[lad]\d", node.id):
                 places.setdefault(node.id, []).append(node)
     for name, found in places.items():
@@ -178,14 +179,9 @@ def of_rods(of: Program) -> Iterator[Step]:
         found = [
             node
             for line in of.lines
-            for node in ast.walk(_assigned(line).value)
+            for node in ast.walk(line.statement.value)
             if isinstance(node, ast.Subscript) and name_of(node) == name
         ]
         for text, does, cost in ways if found else ():
             new = ast.parse(text, mode="eval").body
             yield Step("inertia point", does, tuple((x, again(new)) for x in found), cost)
-
-
-def _assigned(line: Assignment) -> ast.Assign:
-    assert isinstance(line.statement, ast.Assign)
-    return line.statement

@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import lru_cache
 
+from kinlab.doctor.derivations.across import across, everywhere, slides
 from kinlab.doctor.derivations.angles import at_angle, at_difference, exchanged, of_angles, of_rods
 from kinlab.doctor.derivations.operations import (
     Make,
@@ -21,8 +23,6 @@ from kinlab.doctor.derivations.operations import (
     at_entries,
     at_operator,
     turned_again,
-    turns,
-    without_own,
 )
 from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
 from kinlab.doctor.derivations.words import (
@@ -32,15 +32,15 @@ from kinlab.doctor.derivations.words import (
     meant,
     minus,
     name_of,
+    shifted,
     spelt,
     summands,
     times,
-    together,
     told,
     told_other,
     which,
 )
-from kinlab.host.language import N_, _, language
+from kinlab.host.language import _, language
 
 _ALIKE = (
     "w dw",
@@ -118,25 +118,19 @@ def _steps(
     for line in reversed(of.lines):  # of steps that come to the same, the one nearest the answer
         if line.about:
             found += _of_line(line, axes, shapes, not singly)
-    found += _slides(of)
+    found += slides(of)
     found += [*exchanged(of), *of_angles(of), *of_rods(of)]
     if not singly:
-        return (
-            *_everywhere(of),
-            *_halves_exchanged(of),
-            *found,
-            *_updated(of, axes),
-            *_not_turned(of, axes),
-            *_short_loops(of, axes, n),
-            *_other_axes(of),
-            *_other_links(of),
-            *_in_base(of),
-            *_after_product(of),
-        )
+        return (*everywhere(of), *found, *across(of, axes, n))
     at_joint = _("{does}, at joint {joint}")
     looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
     return tuple(
-        Step(s.kind, at_joint.format(does=s.sentence, joint=i + 1), s.edits, s.cost + 0.2, i + 1)
+        replace(
+            s,
+            sentence=at_joint.format(does=s.sentence, joint=i + 1),
+            cost=s.cost + 0.2,
+            joint=i + 1,
+        )
         for s in found
         if s.cost < 1.3 and id(s.edits[0][0]) in looped
         for i in range(n)
@@ -150,20 +144,19 @@ def _of_line(
     shapes: Mapping[str, tuple[int, ...]],
     wide: bool,
 ) -> Iterator[Step]:
-    assert isinstance(line.statement, ast.Assign)
     whole = line.statement.value
 
     around = _surroundings(whole)
 
     def step(kind: str, does: str, cost: float, *edits: tuple[ast.expr, ast.expr]) -> Step:
         if kind == "only one term":
-            return Step(kind, does, edits, cost)
+            return Step(kind, does, edits, cost, about=line.about)
         term = around.get(id(edits[0][0])) if len(edits) == 1 else None
         if term is None:
             said = _("{does} in {line}").format(does=does, line=_(line.about))
         else:
             said = _("{does} in {term}, in {line}").format(does=does, term=term, line=_(line.about))
-        return Step(kind, said, edits, cost)
+        return Step(kind, said, edits, cost, about=line.about)
 
     yield from _terms(whole, axes, line.about, step)
     given = {
@@ -286,56 +279,6 @@ def _branches(node: ast.expr) -> Iterator[ast.expr]:
         yield node
 
 
-def _slides(of: Program) -> Iterator[Step]:
-    """A slide treated as a hinge in every line, and the other way; every link without its joint."""
-    every = [
-        node
-        for line in of.lines
-        if line.about
-        for node in ast.walk(line.statement)
-        if isinstance(node, ast.IfExp)
-    ]
-    nodes = [node for node in every if isinstance(node.test, ast.Subscript)]
-    if len(nodes) > 1:
-        yield Step(
-            "slide as hinge",
-            _("treats a slide (prismatic joint) as a hinge (revolute)"),
-            tuple((node, node.body) for node in nodes),
-            1.0,
-        )
-        yield Step(
-            "hinge as slide",
-            _("treats a hinge (revolute) as a slide (prismatic joint)"),
-            tuple((node, node.orelse) for node in nodes),
-            1.15,
-        )
-    bounded = [node for node in every if isinstance(node.test, ast.Compare)]
-    if len(bounded) > 1:
-        does = _("leaves the link's own joint out (j < i for j <= i)")
-        yield Step("own joint", does, tuple((x, without_own(x)) for x in bounded), 1.02)
-    inner = [x for x in bounded if ast.unparse(x.test) == "j <= k"]
-    if len(inner) > 1:
-        does = _("gives every joint a column, also those behind the link")
-        yield Step("sum", does, tuple((x, x.body) for x in inner), 1.05)
-        for does, one, op, two in (
-            (
-                _("has a column for the link's own joint only, none for the joints before"),
-                "j",
-                ast.Eq(),
-                "k",
-            ),
-            (
-                _("has columns for the joints from the link on, none for those before"),
-                "k",
-                ast.LtE(),
-                "j",
-            ),
-        ):
-            test = ast.Compare(ast.Name(one), [op], [ast.Name(two)])
-            edits = tuple((x, ast.IfExp(test, x.body, x.orelse)) for x in inner)
-            yield Step("sum", does, edits, 1.06)
-
-
 def _own_for_next(
     node: ast.BinOp, shapes: Mapping[str, tuple[int, ...]], step: Make
 ) -> Iterator[Step]:
@@ -370,238 +313,6 @@ def _before_for_behind(whole: ast.expr, step: Make) -> Iterator[Step]:
                 "adds up the links before the joint for those behind it ({new} for {old})"
             ).format(new=spelt(new, True), old=spelt(node, True))
             yield step("sum", does, 1.12, (node, new))
-
-
-def _everywhere(of: Program) -> Iterator[Step]:
-    """The data of another link, or a rotation transposed, in every line where it stands."""
-    assigned = {name_of(target) for line in of.lines for target in _targets(line)}
-    places: dict[str, list[tuple[int, ast.expr]]] = {}
-    for number, line in enumerate(of.lines):
-        for node in ast.walk(_value(line)) if line.about else ():
-            turned = isinstance(node, ast.Attribute) and name_of(node.value) == "R"
-            if turned or (isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name)):
-                assert isinstance(node, ast.expr)
-                places.setdefault(ast.unparse(node), []).append((number, node))
-    in_every = _("{does} in every line")
-    for found in places.values():
-        if len({number for number, _node in found}) < 2:
-            continue
-        node = found[0][1]
-        if isinstance(node, ast.Attribute):
-            does = _("has {new} for {old} (not transposed)").format(
-                new=spelt(node.value), old=spelt(node)
-            )
-            plain = tuple((x, x.value) for _n, x in found if isinstance(x, ast.Attribute))
-            yield Step("transposed", in_every.format(does=does), plain, 1.0)
-            continue
-        assert isinstance(node, ast.Subscript)
-        if name_of(node) in assigned or name_of(node) in ("hinge", "R", "z"):
-            continue
-        for shift in (-1, 1):
-            index = _shifted(node.slice, shift)
-            assert index is not None
-            new = ast.Subscript(node.value, index)
-            does = _("takes {what} ({new} for {old})").format(
-                what=which(node, new), new=spelt(new, True), old=spelt(node, True)
-            )
-            edits = tuple((x, again(new)) for _n, x in found)
-            yield Step("index", in_every.format(does=does), edits, 1.05)
-
-
-def _other_axes(of: Program) -> Iterator[Step]:
-    """Axis and origin of the frame before or behind, in every line; another axis of the frame."""
-    places: dict[str, list[ast.Subscript]] = {"z": [], "o": []}
-    for line in of.lines:
-        for node in ast.walk(_value(line)) if line.about else ():
-            if isinstance(node, ast.Subscript) and name_of(node) in places:
-                places[name_of(node)].append(node)
-    if not places["z"] or not places["o"]:
-        return
-    for shift in (-1, 1):
-        edits = []
-        for node in (*places["z"], *places["o"]):
-            index = _shifted(node.slice, shift)
-            if index is not None:
-                edits.append((node, ast.Subscript(node.value, index)))
-        words = (
-            N_("takes the axis z and the origin o of the frame before"),
-            N_("takes the axis z and the origin o of the next frame"),
-        )
-        yield Step("index", _(words[shift > 0]), tuple(edits), 1.04)
-    for axis in "xy":
-        edits = [(node, ast.Subscript(ast.Name(axis + "_"), node.slice)) for node in places["z"]]
-        does = _("takes the frame's axis {axis} for the joint's axis z").format(axis=axis)
-        yield Step("another quantity", does, tuple(edits), 1.12)
-
-
-def _other_links(of: Program) -> Iterator[Step]:
-    """Rotation and place of the link before or behind, in every line where they stand together."""
-    places: dict[str, list[ast.Subscript]] = {}
-    for line in of.lines:
-        for node in ast.walk(_value(line)) if line.about else ():
-            if isinstance(node, ast.Subscript) and name_of(node) in ("R", "P"):
-                places.setdefault(ast.unparse(node.slice), []).append(node)
-    words = {
-        ("R", -1): N_("takes the rotation R of the link before in every line"),
-        ("R", 1): N_("takes the rotation R of the next link in every line"),
-        ("P R", -1): N_(
-            "takes the rotation R and the lever arm P of the link before in every line"
-        ),
-        ("P R", 1): N_("takes the rotation R and the lever arm P of the next link in every line"),
-    }
-    for found in places.values():
-        for (names, shift), does in words.items():
-            chosen = [node for node in found if name_of(node) in names.split()]
-            index = _shifted(found[0].slice, shift)
-            if index is not None and {name_of(node) for node in chosen} == set(names.split()):
-                edits = tuple((node, ast.Subscript(node.value, index)) for node in chosen)
-                yield Step("index", _(does), edits, 1.06)
-
-
-def _in_base(of: Program) -> Iterator[Step]:
-    """What is asked for of every link, in the base's axes for the link's."""
-    turn = ast.parse("R_[i]", mode="eval").body
-    for line in of.lines:
-        if ast.unparse(_targets(line)[0]) == "asked[i]":
-            value = _value(line)
-            parts = value.args if isinstance(value, ast.Call) else [value]
-            edits = tuple((x, ast.BinOp(turn, ast.MatMult(), again(x))) for x in parts)
-            yield Step("frame", _("answers in base axes, not in the link's axes"), edits, 1.0)
-
-
-def _after_product(of: Program) -> Iterator[Step]:
-    """What a loop inward multiplies up, taken after the link's own matrix and not before."""
-    for loop in of.body:
-        if not isinstance(loop, ast.For) or ast.unparse(loop.iter) != "inward":
-            continue
-        lines = [line for line in of.lines if line.statement in loop.body]
-        made = {ast.unparse(_targets(line)[0]): line for line in lines}
-        products = {
-            name: line
-            for name, line in made.items()
-            if name.replace("i]", "i + 1]") in ast.unparse(_value(line))
-            and "R[i" in ast.unparse(_value(line))
-        }
-        for name, line in made.items():
-            edits = []
-            for node in ast.walk(_value(line)) if name not in products else ():
-                if isinstance(node, ast.Subscript) and ast.unparse(node) in products:
-                    text = ast.unparse(_value(products[ast.unparse(node)]))
-                    text = text.replace("[i]", "[i-1]").replace("[i + 1]", "[i]")
-                    edits.append((node, ast.parse(text, mode="eval").body))
-            if edits:
-                does = _("takes {line} after the product with the link's own matrix, not before")
-                yield Step("order", does.format(line=_(line.about)), tuple(edits), 1.08)
-
-
-def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
-    """Loops that leave their first or last joint out: what they make stays zero there."""
-    for loop in (x for statement in of.body for x in ast.walk(statement)):
-        if not isinstance(loop, ast.For) or n < 2:
-            continue
-        lines = [line for line in of.lines if line.statement in loop.body]
-        told_of = list(dict.fromkeys(_(line.about) for line in lines if line.about))
-        edits = []
-        for line in lines:
-            value, target = _value(line), _targets(line)[0]
-            if id(value) not in axes:
-                continue
-            sums = isinstance(target, ast.Name) and ast.unparse(target) in ast.unparse(value)
-            edits.append((value, again(target) if sums else times(0, value)))
-        if not told_of or not edits:
-            continue
-        yield from _not_carried(loop, lines, n)
-        for joint in (1, n):
-            does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
-            said = does.format(number=joint, line=together(told_of[-2:]))
-            yield Step("loop", said, tuple(edits), 1.12, joint)
-
-
-def _not_carried(loop: ast.For, lines: list[Assignment], n: int) -> Iterator[Step]:
-    """Inward loops that begin or end one link short: what comes from the next link is left out."""
-    carried = tuple(
-        (part, times(0, part))
-        for line in lines
-        for node in ast.walk(_value(line))
-        if isinstance(node, ast.expr) and is_sum(node)
-        for part in halves(node)
-        if not is_sum(part) and "i + 1" in ast.unparse(part)
-    )
-    if carried and ast.unparse(loop.iter) == "inward":
-        late = _("does not carry the last link's part inward: the loop begins one link too late")
-        early = _("carries nothing inward to the first link: the loop ends one link too early")
-        alone = _("has each link's own part alone: carries nothing inward from the links behind")
-        yield Step("sum", alone, carried, 1.1)
-        yield Step("loop", late, carried, 1.1, n - 1)
-        yield Step("loop", early, carried, 1.1, 1)
-
-
-def _not_turned(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[Step]:
-    """A rotation left out wherever it stands."""
-    places: dict[str, list[ast.BinOp]] = {}
-    for line in of.lines:
-        for node in ast.walk(_value(line)) if line.about else ():
-            if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)):
-                continue
-            if turns(node.left) and len(axes.get(id(node.right), ())) == 1:
-                places.setdefault(spelt(node.left, True), []).append(node)
-    for factor, found in places.items():
-        if len(found) > 1:
-            does = _("leaves the rotation {factor} out in every line").format(factor=factor)
-            edits = tuple((node, node.right) for node in found)
-            yield Step("rotation left out", does, edits, 1.08)
-
-
-def _halves_exchanged(of: Program) -> Iterator[Step]:
-    """The angular part above the linear one, in every column."""
-    calls = [
-        node
-        for line in of.lines
-        if line.about
-        for node in ast.walk(_value(line))
-        if isinstance(node, ast.Call) and name_of(node.func) == "twist"
-    ]
-    if calls:
-        edits = tuple((x, ast.Call(x.func, [x.args[1], x.args[0]], [])) for x in calls)
-        yield Step("row order", _("has the angular rows first"), edits, 1.0)
-
-
-def _updated(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[Step]:
-    """The link's own new value where that of the link before is meant: two lines exchanged."""
-    for loop in of.body:
-        if not isinstance(loop, ast.For):
-            continue
-        lines = [line for line in of.lines if line.statement in loop.body]
-        made = [ast.unparse(target) for line in lines for target in _targets(line)]
-        for k, line in enumerate(lines):
-            for later in lines[k + 1 :]:
-                name = ast.unparse(_targets(later)[0])
-                if made.count(name) != 1:
-                    continue
-                before = name.replace("[i]", "[i-1]").replace("-", " - ")
-                edits = tuple(
-                    (node, again(_value(later)))
-                    for node in ast.walk(_value(line))
-                    if isinstance(node, ast.Subscript)
-                    and ast.unparse(node) == before
-                    and id(node) in axes
-                )
-                if edits:
-                    does = _(
-                        "takes {what} of the link itself for that of the link before in {line}: it "
-                        "is renewed too early"
-                    ).format(what=meant(edits[0][0]), line=_(line.about))
-                    yield Step("order of lines", does, edits, 1.08)
-
-
-def _value(line: Assignment) -> ast.expr:
-    assert isinstance(line.statement, ast.Assign)
-    return line.statement.value
-
-
-def _targets(line: Assignment) -> list[ast.expr]:
-    assert isinstance(line.statement, ast.Assign)
-    return line.statement.targets
 
 
 def _others(
@@ -645,7 +356,7 @@ def _instead(
     name = name_of(node)
     if isinstance(node, ast.Subscript) and not isinstance(node.slice, ast.Constant):
         for shift in (-1, 1):
-            index = _shifted(node.slice, shift)
+            index = shifted(node.slice, shift)
             if index is not None:
                 cost = 1.1 if name in ("z", "o") else 1.16
                 yield ast.Subscript(node.value, index), "index", cost
@@ -662,17 +373,3 @@ def _instead(
                 continue
             new = ast.Subscript(new, node.slice)
         yield new, "another quantity", 1.5 if far else 1.16
-
-
-def _shifted(index: ast.expr, shift: int) -> ast.expr | None:
-    """An index one more or less: i - 1 from i, i from i + 1."""
-    base, by = index, 0
-    if isinstance(index, ast.BinOp) and isinstance(index.right, ast.Constant):
-        base = index.left
-        by = (1 if isinstance(index.op, ast.Add) else -1) * int(str(index.right.value))
-    by += shift
-    if abs(by) > 1:
-        return None
-    if not by:
-        return base
-    return ast.BinOp(base, ast.Add() if by > 0 else ast.Sub(), ast.Constant(1))

@@ -30,7 +30,7 @@ Inputs = Callable[[Array], dict[str, Any]]
 class Assignment:
     """One line of a derivation: the assignment, and what it is, in words; ``""`` for plumbing."""
 
-    statement: ast.stmt
+    statement: ast.Assign
     about: str
 
 
@@ -80,6 +80,7 @@ class Step:
         edits: expressions of the program, each with what stands there instead.
         cost: how far-fetched it is.
         joint: where, from 1; None for all.
+        about: the line that it is in, as the derivation has it; ``""`` where it is in several.
     """
 
     kind: str
@@ -87,6 +88,7 @@ class Step:
     edits: tuple[tuple[ast.expr, ast.expr], ...]
     cost: float = 1.1
     joint: int | None = None
+    about: str = ""
 
 
 class Absent(Exception):

@@ -319,3 +319,17 @@ def together(pieces: Iterable[str]) -> str:
     for piece in rest:
         told = pair.format(first=told, last=piece)
     return told
+
+
+def shifted(index: ast.expr, shift: int) -> ast.expr | None:
+    """An index one more or less: i - 1 from i, i from i + 1."""
+    base, by = index, 0
+    if isinstance(index, ast.BinOp) and isinstance(index.right, ast.Constant):
+        base = index.left
+        by = (1 if isinstance(index.op, ast.Add) else -1) * int(str(index.right.value))
+    by += shift
+    if abs(by) > 1:
+        return None
+    if not by:
+        return base
+    return ast.BinOp(base, ast.Add() if by > 0 else ast.Sub(), ast.Constant(1))

@@ -14,6 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case
+from kinlab.doctor.derivations.walk import Step
 from kinlab.doctor.solutions.closed_forms import closed_forms, compared, slides
 from kinlab.doctor.text.joints import named_values
 from kinlab.doctor.text.meanings import Meanings, stands_for
@@ -25,6 +26,7 @@ from kinlab.host.language import _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
+_JOINT = re.compile(r"q\d")
 _FEWEST = 10
 """Targets at which a line must have a value."""
 
@@ -229,16 +231,22 @@ class _Line:
         return bool(np.max(_apart(self.one, values, self.q, self.k)) <= TOLERANCES.same_branch)
 
 
+def joint_of(step: Step) -> str:
+    """The joint whose line a step of a closed form is in: ``"q1"``; ``""`` where it is none's."""
+    words = step.about.split()  # "the angle q1", but "the cosine of q2" is another line
+    return words[2] if len(words) == 3 and _JOINT.fullmatch(words[2]) else ""
+
+
 def believed(causes: list[Cause], study: LineStudy, case: Case) -> list[Cause]:
     """Causes that speak of no line that is right, nor of a name where a line has only numbers."""
     words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
     named = re.compile(rf"\b(?:{'|'.join(map(re.escape, words))})\b") if words else None
-    accused = [_(line) for line in (f"the angle q{k}" for k in sorted(study.right))]
+    right = {f"q{k}" for k in study.right}
     wrong = set(range(1, case.robot.n + 1)) - study.right
     bare = named is not None and wrong == study.numbers
     return [
         cause
         for cause in causes
-        if not any(line in cause.sentence for line in accused)
+        if right.isdisjoint(cause.places)
         and not (bare and named is not None and named.search(cause.sentence))
     ]

@@ -27,7 +27,7 @@ from kinlab.doctor.derivations.joined import (
     with_these,
 )
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
-from kinlab.doctor.solutions.lines import LineStudy, believed, studied
+from kinlab.doctor.solutions.lines import LineStudy, believed, joint_of, studied
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _, ngettext
@@ -387,7 +387,7 @@ def _by_derivation(
             Cause(
                 sentence,
                 tuple(step.kind for step in steps),
-                tuple("" for _step in steps),
+                tuple(joint_of(step) for step in steps),
                 max(one.error for one in founds),
                 sum(one.cost for one in founds),
             )

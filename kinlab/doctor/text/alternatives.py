@@ -125,15 +125,27 @@ def _number(line: Line, place: Place) -> None:
         means = line.meanings.holds(right) or (not decimal and shown.isdigit())
         # an error of all numbers that are written so would be laid into this one
         sure = means or (decimal and len(_alike(line, line.segment(place))) < 2)
+        if _beside_names(line, place):  # what is wrong with them comes to a number too
+            sure = line.meanings.parameter(right) is not None
         if sure and not shown.startswith("-") and not (idle and shown == "1"):
             doubt = 0.5 * held + 0.3 * (not means)
             value = np.full(line.count, right)
             line.instead(place, shown, value, "coefficient", 1.15 + doubt)
     if line.numeric and line.only_numbers:
-        for size in line.fronts:  # nearly a coefficient: 17 for 17.1675, beside another slip
-            if 0 < abs(size - place.value[0]) <= CLOSE * size:
+        for size in line.fronts:  # a coefficient, beside another slip: 17 for 17.1675
+            gap = abs(size - place.value[0])
+            if gap > 0:
+                cost = 1.2 if gap <= CLOSE * size else 1.5
                 shown = np.format_float_positional(size, 12, fractional=False, trim="-")
-                line.instead(place, shown, np.full(line.count, size), "coefficient", 1.2)
+                line.instead(place, shown, np.full(line.count, size), "coefficient", cost)
+
+
+def _beside_names(line: Line, place: Place) -> bool:
+    """Whether the robot's numbers stand by their names in the term of a number."""
+    while place.above is not None and not is_sum(place.above.node):
+        place = place.above
+    words = words_in(line.segment(place))
+    return any(not tree.names(_meaning(line, w)).isdisjoint(line.names.parameters) for w in words)
 
 
 def _fitting(line: Line, place: Place) -> float:
@@ -250,7 +262,17 @@ def _as_factor(line: Line, place: Place) -> None:
     atom = isinstance(node, (ast.Name, ast.Call)) or is_sum(node)
     if atom and not _is_base(place):
         cost = 1.1 if not is_sum(node) else 1.4
-        line.instead(place, f"{wrapped}**2", place.value**2, "power", cost)
+        closed = re.match(r"\s*\)", line.source[place.span[1] :])
+        outside = _outer_start(line, place) < place.span[0] and closed is not None
+        behind = place.span[1] + (closed.end() if closed else 0)
+        line.instead(
+            place,
+            f"{wrapped}**2",
+            place.value**2,
+            "power",
+            cost,
+            (behind, behind, "**2") if outside else None,
+        )
     if not is_term(place):
         return
     start, end = place.span
@@ -274,25 +296,75 @@ def _as_factor(line: Line, place: Place) -> None:
         line.instead(
             place, turned, -place.value, "sign", 1.0 + extra, None if is_sum(node) else span
         )
+    front, before = _openings(line, place)
     for name, value in line.atoms.items():
+        at = front if name[0] in "mM" else before
+        at = place.span[1] if name in line.names.loads else at
         for power, more in ((1, 0.0), (2, 0.4)):
             word = name if power == 1 else f"{name}**{power}"
-            _times(line, place, word, value**power, 1.4 + more + extra)
+            _times(line, place, word, value**power, 1.4 + more + extra, at)
     moving = [tree.sym(f"{x}{i + 1}") for x in line.names.letters for i in range(line.names.n)]
     waves = [tree.call(f, angle) for angle in line.names.angles for f in ("cos", "sin")]
     for factor in (*moving, *waves):
-        _times(line, place, line.spelled(factor), tree.evaluate(factor, line.at), 1.45 + extra)
+        value = tree.evaluate(factor, line.at)
+        at = before if is_sum(node) else place.span[1]
+        _times(line, place, line.spelled(factor), value, 1.45 + extra, at)
 
 
-def _times(line: Line, place: Place, word: str, value: Array, cost: float) -> None:
-    """A factor that is missing behind a term, or behind a sum between parentheses."""
+def _times(line: Line, place: Place, word: str, value: Array, cost: float, at: int) -> None:
+    """A factor that is missing in a term, at a place in it; in front of a sum in parentheses."""
     piece, (start, end) = line.segment(place), place.span
     told = N_("the factor {factor} is missing in {term}")
     pieces = {"factor": word, "term": piece}
-    change = Change(end, end, f"*{word}", "missing factor", cost, told, pieces=pieces)
-    if is_sum(place.node):
-        change = replace(change, start=start, new=f"({piece})*{word}")
+    new = f"*{word}" if at == end else f"{word}*"
+    change = Change(at, at, new, "missing factor", cost, told, pieces=pieces)
+    if is_sum(place.node) and at in place.span:  # no parentheses around it
+        change = replace(change, start=start, end=end, new=f"{word}*({piece})")
     line.put(place, place.value * value, change)
+
+
+def _openings(line: Line, place: Place) -> tuple[int, int]:
+    """Where a mass, and where another number of the robot, stands in a product: a length before
+    the sines, the rates and the parentheses."""
+    factors = [f for f in _multiplied(line, place) if not isinstance(f.node, ast.Constant)]
+    moving = (_outer_start(line, f) for f in factors if _moves(line, f.node))
+    first = _outer_start(line, factors[0]) if factors else place.span[1]
+    return first, next(moving, place.span[1])
+
+
+def _multiplied(line: Line, place: Place) -> list[Place]:
+    """The factors of a product in the order of reading, without what it is divided by."""
+    node = place.node
+    if isinstance(node, ast.UnaryOp):
+        return _multiplied(line, line.siblings[id(place)][0])
+    if not is_product(node):
+        return [place]
+    left, right = line.siblings[id(place)]
+    more = _multiplied(line, right) if isinstance(node.op, ast.Mult) else []
+    return [*_multiplied(line, left), *more]
+
+
+def _moves(line: Line, node: ast.expr) -> bool:
+    """Whether a factor is a sine, a rate or a sum."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow):
+        return _moves(line, node.left)
+    if isinstance(node, ast.Name):
+        meant = _meaning(line, node.id)
+        word = str(meant.value)
+        return meant.op != "sym" or word in line.names.loads or bool(_MOTION.fullmatch(word))
+    return isinstance(node, ast.Call) or is_sum(node)
+
+
+def _outer_start(line: Line, place: Place) -> int:
+    """Where a factor begins, with the parentheses around it."""
+    start, end = place.span
+    if is_sum(place.node):
+        closed = re.match(r"[\s)]*", line.source[end:])
+        opened = re.search(r"[\s(]*$", line.source[:start])
+        many = min(one[0].count(sign) for one, sign in ((closed, ")"), (opened, "(")) if one)
+        for _one in range(many):
+            start = line.source.rindex("(", 0, start)
+    return start
 
 
 def _turned(line: Line, place: Place) -> str:

@@ -14,6 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
+from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.text.joints import joint_claimed
 from kinlab.errors import ExpressionError, near
 from kinlab.formulas import tree
@@ -85,8 +86,6 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
 
 # -------- A force or a moment of the tool in a torque
 
-WRENCH = ("fx", "fy", "fz", "nx", "ny", "nz")
-"""The names of a wrench's parts, in order."""
 _SPELT = re.compile(r"([fFnNM])_?([xyz])")
 _MOVING = re.compile(r"qdd?\d+|m\d+|g")
 

@@ -24,8 +24,10 @@ from kinlab.formulas import tree
 from kinlab.formulas.text import SHORTHAND, joint_spelling, respelled
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
+from kinlab.tolerances import TOLERANCES
 
 _NAMED = ("parameter", "missing factor", "extra factor", "power")
+"""Changes that may rest on the value of a name alone."""
 
 
 @dataclass(frozen=True)
@@ -36,11 +38,13 @@ class Names:
         parameters: l1, m1, g, ...
         n: number of joints.
         letters: which of q, qd, qdd the quantity depends on.
+        loads: parts of a wrench, fx, nz, ...
     """
 
     parameters: tuple[str, ...]
     n: int
     letters: tuple[str, ...]
+    loads: tuple[str, ...] = ()
 
     @property
     def angles(self) -> tuple[Node, ...]:
@@ -203,7 +207,7 @@ class Line:
             if not self.turns(name):
                 found[name] = self._named(name)
         mine = set(self.spelling)
-        for name in self.names.parameters:
+        for name in (*self.names.parameters, *self.names.loads):
             if name not in mine:
                 found[name] = np.asarray(self.at[name])
         return found
@@ -250,8 +254,8 @@ class Line:
 
     def put(self, place: Place, new: Array, change: Change) -> None:
         """Notes a change by what it does to the whole."""
-        if self.numeric and change.kind in _NAMED:
-            return
+        if self.numeric and change.kind in _NAMED and _in_proportion(place.value, new):
+            return  # at the robot's own numbers that is any other number of the place
         effect = self.climbed(place, new) - self.root.value
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
@@ -311,6 +315,14 @@ class Line:
 
 
 # -------- Small questions about places
+
+
+def _in_proportion(old: Array, new: Array) -> bool:
+    """Whether values are a multiple of others, the same at every state."""
+    gap = new * old[0] - new[0] * old
+    size = np.max(np.abs(new)) * np.max(np.abs(old))
+    return bool(np.max(np.abs(gap)) <= TOLERANCES.same_relation * size)
+
 
 _LONGEST = 90
 """Letters of a piece of a formula in a sentence above which its middle is left out."""

@@ -12,7 +12,8 @@ from itertools import combinations, combinations_with_replacement
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.written import Literal
+from kinlab.doctor.derived import WRENCH
+from kinlab.doctor.text.written import Literal, literal
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -45,7 +46,8 @@ class Meanings:
     @classmethod
     def at(cls, values: Mapping[str, Array]) -> Meanings:
         """From the values of all names at some states."""
-        return cls({name: float(x[0]) for name, x in values.items() if name[0] != "q"})
+        own = (name for name in values if name[0] != "q" and name not in WRENCH)
+        return cls({name: float(values[name][0]) for name in own})
 
     @cached_property
     def products(self) -> Array:
@@ -151,6 +153,16 @@ def coefficients(right: Node) -> tuple[list[Node], ...]:
         for part in combinations(terms[:_ADDED], count)
     ]
     return tuple(list(dict.fromkeys(circle)) for circle in ([*single, *whole], some, within))
+
+
+def exact_angle(value: float) -> float | None:
+    """The multiple of 15 degrees that an angle is, rounded; None where it is exact or none."""
+    one = literal(f"{abs(value):.15g}")
+    exact = round(value / (math.pi / 12)) * math.pi / 12
+    gap = abs(value - exact)
+    if not 0 < one.half <= 0.006 or gap <= 1e-14:
+        return None
+    return exact if gap <= one.half * (1 + TOLERANCES.same_relation) else None
 
 
 def stands_for(written: object, meant: str) -> str:

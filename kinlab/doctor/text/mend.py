@@ -27,6 +27,8 @@ from kinlab.formulas import tree
 from kinlab.tolerances import TOLERANCES
 
 _TRIED = 60
+_BESIDE = 12
+"""Changes beside which two of one product are looked for."""
 _LONG = 8
 """Names in a formula from which on three slips are looked for."""
 _EXCHANGED = 0.6
@@ -76,19 +78,26 @@ def mended(line: Line, most: int = 3) -> list[Mended]:
 
 def _pairs(line: Line, effects: Array, wanted: Array, allowed: float) -> list[tuple[int, ...]]:
     found = [tuple(pair) for pair in pairs_adding_up(effects, wanted, allowed)]
+    return _cheapest(line, [*found, *_in_products(line, effects, wanted)])
+
+
+def _in_products(line: Line, effects: Array, wanted: Array) -> list[tuple[int, ...]]:
+    """Pairs of changes of one product."""
+    found: list[tuple[int, ...]] = []
     for place in line.places:
-        if not is_term(place) or inside_call(place) or is_sum(place.node):
+        whole = place is line.root  # a factor of all of it, and a slip in it
+        if not is_term(place) or inside_call(place) or (is_sum(place.node) and not whole):
             continue
         inside = _inside(line, place)
         if len(inside) > 1:
             pairs = pairs_in_product(effects[inside], wanted, _share(line, place))
             found += [(inside[a], inside[b]) for a, b in pairs]
-    return _cheapest(line, found)
+    return found
 
 
 def _inside(line: Line, place: Place) -> list[int]:
     """The changes within a term, and of the sign in front of it."""
-    start, end = place.span
+    start, end = place.span if place is not line.root else (0, len(line.source))
     if place.role == 1 and place.above is not None and is_sum(place.above.node):
         start = line.siblings[id(place.above)][0].span[1]
     return [
@@ -186,6 +195,9 @@ def _covers(line: Line, effects: Array, wanted: Array, allowed: float) -> list[t
     for first in order[:_TRIED]:
         pairs = pairs_adding_up(effects, wanted - effects[first], allowed)
         found += [tuple(sorted((int(first), *pair))) for pair in pairs if first not in pair]
+    for first in order[:_BESIDE]:
+        both = _in_products(line, effects, wanted - effects[first])
+        found += [tuple(sorted((int(first), *pair))) for pair in both if first not in pair]
     return _cheapest(line, found)
 
 

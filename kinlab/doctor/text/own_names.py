@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+import ast
 import re
+from collections.abc import Iterator
+from dataclasses import replace
 
-from kinlab.doctor.derived import LETTERS
-from kinlab.doctor.text.claims import WRENCH
+from kinlab.doctor.derived import LETTERS, WRENCH
 from kinlab.doctor.text.joints import given_names
+from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
 from kinlab.errors import ExpressionError, near
 from kinlab.formulas import tree, typed
 from kinlab.formulas.retyped import Typing
-from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, tidied
+from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, parse, tidied
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
 from kinlab.model.robot import Robot
@@ -20,6 +23,8 @@ from kinlab.tolerances import TOLERANCES
 
 _OF_LINK = re.compile(r"(?:alpha|w)_?[2-9]")
 """A rate or an acceleration of a joint to some, of a link to others."""
+DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
+_JOINT = re.compile(r"(?:theta|th|q)_?\d+")
 
 
 def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
@@ -164,3 +169,90 @@ def typing_of(entry: str, file: FormulaFile) -> Typing | None:
     if tidied(core) == plain and "^" not in core:
         return None
     return Typing(core, plain, tuple(typed.leaves_of(core, entry, file.writing, dollars)), reads)
+
+
+# -------- Constants that are written as rounded decimals
+
+
+def constants_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
+    """The file with names for decimals that are g or an angle rounded, and what is to be said.
+
+    A slip is told beside a rounded number only where the number is read as what it stands for.
+    """
+    words = vocabulary(robot.table).values if robot.table is not None else {}
+    said: dict[str, str] = {}
+    numbers: dict[str, str] = {}
+    meant: dict[str, str] = {}
+
+    def named(entry: str, text: str) -> str:
+        angles = set(_angles_in(text, _JOINT.fullmatch(entry) is not None))
+
+        def name(found: re.Match[str]) -> str:
+            meaning = _constant(found[0], found.start() in angles, words.get("g", 0.0))
+            if meaning is None:
+                return found[0]
+            letter, told = meaning
+            if told:
+                said[found[0]] = told
+            name = f"{'g' if letter == 'g' else 'pi'}_{found[0].replace('.', '_')}"
+            numbers[name], meant[name] = found[0], letter
+            return name
+
+        return DECIMAL.sub(name, text)
+
+    texts = {entry: named(entry, text) for entry, text in file.texts.items()}
+    own = {
+        symbol: named(symbol, text)
+        for symbol, text in file.symbol_texts.items()
+        if file.symbols[symbol].op != "num"
+    }
+    if not said:
+        return file, said
+    made = own | meant
+    return (
+        replace(
+            file,
+            texts=texts,
+            formulas={
+                entry: node if texts[entry] == file.texts[entry] else parse(texts[entry], entry)
+                for entry, node in file.formulas.items()
+            },
+            numbers=numbers,
+            symbols=file.symbols | {symbol: parse(text) for symbol, text in made.items()},
+            symbol_texts=file.symbol_texts | made,
+        ),
+        said,
+    )
+
+
+def _constant(digits: str, angle: bool, weight: float) -> tuple[str, str] | None:
+    """What a decimal stands for, and the sentence where it is not that to its last digit."""
+    if angle:
+        exact = exact_angle(float(digits))
+        shown = Meanings({}).named(exact) if exact is not None else ""
+        return (shown, stands_for(digits, shown)) if "pi" in shown else None
+    if not weight or not may_be(digits, weight):
+        return None
+    near = abs(float(digits) - weight) <= TOLERANCES.same_number * abs(weight)
+    return "g", "" if near else stands_for(digits, f"g = {weight:.10g}")
+
+
+def _angles_in(text: str, joint: bool) -> Iterator[int]:
+    """Where decimals stand that can only be angles: in a sine's argument, in a joint's sum."""
+    root = ast.parse(text, mode="eval").body
+    waiting = [
+        node.args[0]
+        for node in ast.walk(root)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("sin", "cos", "tan")
+    ]
+    waiting += [root] if joint else []
+    while waiting:
+        match waiting.pop():
+            case ast.Constant() as one:
+                yield one.col_offset
+            case ast.UnaryOp(operand=inside):
+                waiting.append(inside)
+            case ast.BinOp(left=left, op=ast.Add() | ast.Sub(), right=right):
+                waiting += [left, right]
+            case ast.BinOp(left=left, op=ast.Div(), right=ast.Constant()):
+                waiting.append(left)

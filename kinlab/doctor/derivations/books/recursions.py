@@ -140,7 +140,12 @@ _SPATIAL_FORCES = """
     dtw[i] = X[i] @ dtw[i-1] + qdd[i]*S[i] + motion(tw[i], qd[i]*S[i])
     # the link's own force and moment
     F[i] = Is[i] @ dtw[i] + force(tw[i], Is[i] @ tw[i])
-f[n+1] = none
+"""
+_SPATIAL_MOMENTUM = """
+    # the link's own momentum
+    F[i] = Is[i] @ tw[i]
+"""
+_SPATIAL_INWARD = """f[n+1] = none
 X[n+1] = blocks(one, nil, nil, one)
 for i in inward:
     # the force f of the link
@@ -172,7 +177,7 @@ M = M + diagonal(rotors)
 
 def spatial(standard: bool) -> str:
     """The recursion with spatial vectors, the linear part first (Featherstone's)."""
-    return _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_FORCES
+    return _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_FORCES + _SPATIAL_INWARD
 
 
 def composite(standard: bool) -> str:
@@ -263,28 +268,18 @@ def momenta(standard: bool) -> Iterator[tuple[str, bool]]:
     """
     moved = _MOVED if standard else VELOCITIES.partition("    asked[i]")[0]
     rest = "".join((SICILIANO if standard else CRAIG).partition("f[n+1]")[1:])
+    vectors = _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_MOMENTUM + _SPATIAL_INWARD
     for in_base, text in (
         (False, moved + _OWN_MOMENTUM + rest),
         (True, _based(moved + _OWN_MOMENTUM + rest)),
         (True, _based(moved + _OWN_MOMENTUM) + _ABOUT_ORIGIN),
+        (False, vectors),
     ):
         for old, new in _MOMENTA.items():
             text = re.sub(old, new, text)
         yield text, in_base
-    yield _spatial(standard) + _SPATIAL_TWIST + _SPATIAL_MOMENTA, False
 
 
-_SPATIAL_MOMENTA = """
-    # the link's own momentum
-    hl[i] = Is[i] @ tw[i]
-bl[n+1] = none
-X[n+1] = blocks(one, nil, nil, one)
-for i in inward:
-    # the momentum of the link and those behind
-    bl[i] = hl[i] + X[i+1].T @ bl[i+1]
-    # the momentum
-    tau[i] = bl[i] @ S[i] + Ia[i]*qd[i]
-"""
 _SPATIAL_ENERGY = """
     # the kinetic energy
     each[i] = 0.5*tw[i] @ (Is[i] @ tw[i])
