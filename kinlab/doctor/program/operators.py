@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from typing import Any
 
 from kinlab.doctor.program.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed

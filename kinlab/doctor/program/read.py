@@ -17,11 +17,40 @@ from kinlab.doctor.bytecode.recover import recovered
 _MOST = 40
 """Functions of one program that are read."""
 _ARITHMETIC = frozenset(
-    ["builtins", "types", "math", "cmath", "numpy", "itertools", "functools", "operator", "collections", "fractions", "dataclasses", "typing", "__future__"]
+    [
+        "builtins",
+        "types",
+        "math",
+        "cmath",
+        "numpy",
+        "itertools",
+        "functools",
+        "operator",
+        "collections",
+        "fractions",
+        "dataclasses",
+        "typing",
+        "__future__",
+    ]
 )
 """Modules that a program may use if it is to be tried with edits in it."""
 _REACHING_OUT = frozenset(
-    ["open", "exec", "eval", "compile", "input", "exit", "quit", "breakpoint", "__import__", "globals", "locals", "vars", "setattr", "delattr"]
+    [
+        "open",
+        "exec",
+        "eval",
+        "compile",
+        "input",
+        "exit",
+        "quit",
+        "breakpoint",
+        "__import__",
+        "globals",
+        "locals",
+        "vars",
+        "setattr",
+        "delattr",
+    ]
 )
 """Functions that reach beyond arithmetic."""
 
