@@ -561,13 +561,20 @@ def _put(tree: ast.AST, node: ast.stmt, side: str, line: int) -> bool:
 
 def _data(space: dict, found: re.Match[str], new: float | None) -> None:
     keys = [ast.literal_eval(key) for key in re.findall(r"\[([^\]]*)\]", found["keys"])]
-    holder, key = space, found["name"]
-    for one in keys:
-        holder, key = holder[key], one
+    space[found["name"]] = _changed(space[found["name"]], keys, found, new)
+
+
+def _changed(value, keys, found, new):
+    """A copy with another number in it, or all of it with another sign or transposed."""
+    if keys:
+        if isinstance(value, tuple):
+            inner = _changed(value[keys[0]], keys[1:], found, new)
+            return (*value[: keys[0]], inner, *value[keys[0] + 1 :])
+        fresh = copy.deepcopy(value)
+        fresh[keys[0]] = _changed(value[keys[0]], keys[1:], found, new)
+        return fresh
     if new is None:
-        new = -holder[key] if found["what"] == "the sign" else np.transpose(holder[key])
-    else:  # of 1.5708 told, the digits that are not told stay
-        old = float(found["old"])
-        assert abs(holder[key] - old) <= 1e-5 * abs(old)
-        new = holder[key] * (new / old) if old else new
-    holder[key] = new
+        return -value if found["what"] == "the sign" else np.transpose(value)
+    old = float(found["old"])  # of 1.5708 told, the digits that are not told stay
+    assert abs(value - old) <= 1e-5 * abs(old)
+    return value * (new / old) if old else new

@@ -147,6 +147,23 @@ def test_several_slips(name, slips, student) -> None:
     assert any(np.allclose(one, wanted, rtol=1e-9, atol=1e-9) for one in repairs)
 
 
+def test_a_repair_holds_at_every_state(student) -> None:
+    """One sign makes the first states right; elsewhere a second slip stands."""
+    case, _engine = prepare("planar2r", "fk", (), 20, 0)
+    first = float(case.arguments["q"][:2, 0].max())
+    assert (case.arguments["q"][:, 0] > first).any()
+    end = "    if q[0] > 0:\n        x = x + 0.3*exp(q[0])" + TAIL
+    text = (
+        HEAD
+        + "from math import exp\n"
+        + WRONG.replace(TAIL, "\n" + end.replace("0:", f"{first!r}:", 1))
+    )
+    sentence = said(student(text)["f"])
+    right = answers(student(HEAD + WRONG.replace("- l2", "+ l2"), None)["f"], PROGRAMS["planar fk"])
+    for space in repaired(text, sentence) if names_a_line(sentence) else ():
+        assert np.allclose(answers(space["f"], PROGRAMS["planar fk"]), right)
+
+
 # -------- Lines are those of the file
 
 
@@ -299,6 +316,36 @@ def test_nothing_of_the_users_is_touched(student, capsys) -> None:
     printed = capsys.readouterr().out
     space["f"](np.zeros(2))
     assert printed.count("asked") == printed.count("\n")  # nothing but what the user's own prints
+
+
+def test_an_edit_does_not_write_into_the_users_array(student) -> None:
+    """Without the product the program would write into ``T0``."""
+    text = HEAD + textwrap.dedent("""
+        T0 = np.eye(4)
+        TURN = np.eye(4)
+
+        def f(q):
+            T = T0 @ TURN
+            T[0, 3] += l1*cos(q[0]) - l2*cos(q[0] + q[1])*0.9
+            T[1, 3] += l1*sin(q[0]) + l2*sin(q[0] + q[1])*0.9
+            c, s = cos(q[0] + q[1]), sin(q[0] + q[1])
+            T[:2, :2] = [[c, -s], [s, c]]
+            return T
+    """)
+    space = student(text)
+    said(space["f"])
+    assert (space["T0"] == np.eye(4)).all()
+    assert (space["TURN"] == np.eye(4)).all()
+
+
+def test_a_file_that_was_changed_since_is_not_believed(student, tmp_path) -> None:
+    function = student(HEAD + WRONG)["f"]
+    (tmp_path / "hand.py").write_text(
+        HEAD + WRONG.replace("- l2", "+ l2").replace("+ l2*s", "- l2*s")
+    )
+    sentence = said(function)
+    assert "l2*sin(q[0]" not in sentence
+    assert 7 not in lines_named(sentence)
 
 
 ENDLESS = {
