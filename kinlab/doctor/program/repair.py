@@ -96,6 +96,16 @@ class Search:
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
 
     @property
+    def faithful(self) -> bool:
+        """Whether the program as it was read answers what the user's own function did."""
+        own, hand = self.values(self.watched), self.case.hand[self.watched]
+        if own is None or own.shape != hand.shape:
+            return False
+        if self.case.quantity.name in _ANY_ZERO:
+            hand = hand + (self.wanted[:1] - hand[:1])
+        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * float(np.max(np.abs(hand)))))
+
+    @property
     def written_out(self) -> bool:
         """Whether it is a formula written out: no loops, no products of matrices."""
         return not any(
