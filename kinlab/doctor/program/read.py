@@ -7,7 +7,7 @@ import inspect
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from types import CodeType, FunctionType, MethodType, ModuleType
+from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -168,7 +168,7 @@ def _harmless(value: Any, module: str | None, depth: int = 3) -> bool:
     if isinstance(value, list | tuple | set | frozenset | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])
-    if isinstance(value, FunctionType | type):
+    if isinstance(value, FunctionType | BuiltinFunctionType | type):
         of = value.__module__ or ""
         return of == module or of.partition(".")[0] in _ARITHMETIC
     home = type(value).__module__ or ""

@@ -1,0 +1,48 @@
+"""The lines of a function that lives in another process: looked for there, told here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.quantities.registry import quantity
+from kinlab.doctor.changes import Arguments, Case
+from kinlab.doctor.program.words import Lines, lines
+from kinlab.errors import KinlabError
+from kinlab.host.language import language, speaking
+
+
+def lines_elsewhere(
+    ask: Callable[..., Iterator[Lines]], case: Case, wanted: Array, allowed: float
+) -> Iterator[Lines]:
+    """As :func:`kinlab.doctor.program.words.lines`; a process that is lost costs only the lines.
+
+    Args:
+        ask: has a generator run where the function is: (generator, its arguments after the
+            function) to what it yields; see :meth:`kinlab.check.guest.Guest.ask`.
+        case, wanted, allowed: as there.
+    """
+    sent = (case.robot, case.quantity.name, case.index, case.arguments, wanted, allowed)
+    try:
+        yield from ask(_there, language(), *sent)
+    except KinlabError:
+        return
+
+
+def _there(
+    function: Any,
+    spoken: str,
+    robot: Any,
+    name: str,
+    index: tuple[Any, ...],
+    arguments: Arguments,
+    wanted: Array,
+    allowed: float,
+) -> Iterator[Lines]:
+    """Of a function of stacks that is made of one of states."""
+    case = Case(robot, quantity(name), arguments, np.empty(0), index)
+    with speaking(spoken):
+        yield from lines(function.__wrapped__, case, wanted, allowed)
