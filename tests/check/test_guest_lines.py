@@ -53,7 +53,7 @@ def file(tmp_path, monkeypatch):
 
 
 def test_lines_are_told_and_a_lost_process_costs_its_own_only(file, capfd):
-    done = kinlab("check", file, "--samples", "20", "--json", cwd="/")
+    done = kinlab("check", file, "--samples", "10", "--json", cwd="/")
     rows = {row["id"]: row["diagnosis"] for row in json.loads(done.stdout)["rows"]}
     assert rows["sign"]["causes"][0]["sentence"].startswith(SIGN)
     assert rows["sign"]["causes"][0]["places"] == ["line 8"]

@@ -130,7 +130,7 @@ def _ask(
     more or less: a program is run there only where it is plain arithmetic.
     """
     request = pickle.dumps((program, names, SECONDS, MEGABYTES, work, arguments))
-    with _confined("child_lines.py") as (process, requests, reading):
+    with _confined("lines.py") as (process, requests, reading):
         try:
             while True:
                 requests.write(request)
@@ -152,8 +152,8 @@ def _cause(sentence: str, kinds: Any, places: Any, error_after: float, cost: flo
 
 @contextmanager
 def _confined(file: str) -> Iterator[tuple[subprocess.Popen[bytes], IO[bytes], int]]:
-    """A process that runs a file of this folder: where it is asked, and where it answers."""
-    here = Path(__file__).with_name(file)
+    """A process that runs a file of that room: where it is asked, and where it answers."""
+    here = Path(__file__).with_name("confined") / file
     reading, writing = os.pipe()
     environment = {"PATH": os.defpath, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with tempfile.TemporaryDirectory(prefix="kinlab-mark-") as folder:

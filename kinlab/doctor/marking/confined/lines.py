@@ -21,12 +21,12 @@ _KNOWN = ("kinlab", "pinocchio")
 
 def main() -> None:
     """Reads the request, sets the limits, looks for lines."""
-    root = Path(__file__).resolve().parents[3]
+    root = Path(__file__).resolve().parents[4]
     sys.path.insert(0, str(root))
     import numpy as np
 
-    from kinlab.doctor.marking.arithmetic import space_of
-    from kinlab.doctor.marking.child import MODULES, confined, limited, offline, refuse
+    from kinlab.doctor.marking.confined.arithmetic import space_of
+    from kinlab.doctor.marking.confined.child import MODULES, confined, limited, offline, refuse
     from kinlab.formulas.record import state_by_state
 
     program, names, seconds, megabytes, work, arguments = pickle.load(sys.stdin.buffer)

@@ -13,29 +13,35 @@ from typing import Any
 
 import numpy as np
 
-_BUILTINS = """
-abs all any bool complex dict enumerate float int len list map max min pow print range reversed
-round set sorted sum tuple zip
-"""
-_NUMPY = """
-abs absolute acos add allclose amax amin append arange arccos arcsin arctan arctan2 array asarray
-asin atan atan2 atleast_1d atleast_2d block ceil clip column_stack concatenate copy cos cosh cross
-cumsum deg2rad degrees det diag divide dot e einsum empty exp eye fabs flip float64 floor full
-hstack hypot identity inf inner insert inv isclose kron linalg linspace log lstsq matmul max maximum
-mean min minimum mod multiply negative newaxis norm ones ones_like outer pi pinv power prod rad2deg
-radians ravel repeat reshape round sign sin sinh solve sqrt square squeeze stack subtract sum tan
-tanh tile trace transpose tril triu vdot vstack where zeros zeros_like
-"""
-_METHODS = """
-T append copy dot extend flatten get index items keys ndim shape size tolist values
-"""
-_OF_NUMPY = _NUMPY.split()
-_OF_MATH = [name for name in vars(math) if name[:1] != "_"]
-_ATTRIBUTES = {*_OF_NUMPY, *_OF_MATH, *_METHODS.split()}
+_BUILTINS = [
+    "abs", "all", "any", "bool", "complex", "dict", "enumerate", "float", "int", "len",
+    "list", "map", "max", "min", "pow", "print", "range", "reversed", "round", "set",
+    "sorted", "sum", "tuple", "zip",
+]  # fmt: skip
+_NUMPY = [
+    "abs", "absolute", "acos", "add", "allclose", "amax", "amin", "append", "arange",
+    "arccos", "arcsin", "arctan", "arctan2", "array", "asarray", "asin", "atan", "atan2",
+    "atleast_1d", "atleast_2d", "block", "ceil", "clip", "column_stack", "concatenate",
+    "copy", "cos", "cosh", "cross", "cumsum", "deg2rad", "degrees", "det", "diag", "divide",
+    "dot", "e", "einsum", "empty", "exp", "eye", "fabs", "flip", "float64", "floor", "full",
+    "hstack", "hypot", "identity", "inf", "inner", "insert", "inv", "isclose", "kron",
+    "linalg", "linspace", "log", "lstsq", "matmul", "max", "maximum", "mean", "min",
+    "minimum", "mod", "multiply", "negative", "newaxis", "norm", "ones", "ones_like",
+    "outer", "pi", "pinv", "power", "prod", "rad2deg", "radians", "ravel", "repeat",
+    "reshape", "round", "sign", "sin", "sinh", "solve", "sqrt", "square", "squeeze",
+    "stack", "subtract", "sum", "tan", "tanh", "tile", "trace", "transpose", "tril", "triu",
+    "vdot", "vstack", "where", "zeros", "zeros_like",
+]  # fmt: skip
+_METHODS = [
+    "T", "append", "copy", "dot", "extend", "flatten", "get", "index", "items", "keys",
+    "ndim", "shape", "size", "tolist", "values",
+]  # fmt: skip
+_MATH = [name for name in vars(math) if name[:1] != "_"]
+_ATTRIBUTES = {*_NUMPY, *_MATH, *_METHODS}
 _MODULES: dict[str, tuple[Any, list[str]]] = {
-    "numpy": (np, _OF_NUMPY),
-    "numpy.linalg": (np.linalg, _OF_NUMPY),
-    "math": (math, _OF_MATH),
+    "numpy": (np, _NUMPY),
+    "numpy.linalg": (np.linalg, _NUMPY),
+    "math": (math, _MATH),
 }
 _NODES = (
     ast.mod | ast.expr_context | ast.boolop | ast.operator | ast.unaryop | ast.cmpop
@@ -63,7 +69,7 @@ def space_of(program: str, file: str) -> dict[str, Any]:
     tree = ast.parse(program)
     space: dict[str, Any] = {
         "__name__": "submission",
-        "__builtins__": {name: getattr(builtins, name) for name in _BUILTINS.split()},
+        "__builtins__": {name: getattr(builtins, name) for name in _BUILTINS},
     }
     for node in ast.walk(tree):
         if not _allowed(node):
@@ -102,7 +108,7 @@ def _imported(statement: ast.Import | ast.ImportFrom) -> dict[str, Any]:
             continue
         module, known = _module(statement.module or "")
         if alias.name == "*" and module is math:
-            found |= {name: getattr(math, name) for name in _OF_MATH}
+            found |= {name: getattr(math, name) for name in _MATH}
         elif alias.name in known and hasattr(module, alias.name):
             found[alias.asname or alias.name] = getattr(module, alias.name)
         else:
