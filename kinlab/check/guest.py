@@ -13,7 +13,9 @@ import signal
 import sys
 import warnings
 import weakref
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -48,6 +50,7 @@ class Guest:
     def __init__(self, path: str) -> None:
         self._path = path
         self._seconds = _limit()
+        self._asked = 0
         self._process: Any = None
         self._pipe: Any = None
         if not Path(path).is_file():
@@ -58,24 +61,39 @@ class Guest:
     def formulas(self) -> list[Formula]:
         """The marked functions; the process ends when neither they nor this are in use."""
         return [
-            replace(record, function=_Call(self, k, record.id))
+            replace(record, function=GuestFunction(self, k, record.id))
             for k, record in enumerate(self._records)
         ]
 
-    def call(self, index: int, name: str, stacks: tuple[Array, ...]) -> Any:
-        """The answers of one function over all states.
+    def ask(
+        self, index: int, name: str, work: Callable[..., Iterator[Any]], *arguments: Any
+    ) -> Iterator[Any]:
+        """What some work on one function yields there, each when it is asked for.
+
+        Args:
+            index, name: which function, and what to call it.
+            work: ``work(function, *arguments)``, a generator that a module has; it travels as a
+                name, its arguments as values.
 
         Raises:
             FormulaError: what it raised.
             FunctionLostError: it ended its process, or took too long.
         """
-        if self._process is None:
-            self._start()
-        try:
-            self._pipe.send((index, stacks))
-        except OSError:
-            self._lost(f"function {name!r}")
-        return self._answer(f"function {name!r}")
+        what = f"function {name!r}"
+        self._asked += 1
+        request: tuple[Any, ...] = (self._asked, index, work, arguments)
+        while True:
+            if self._process is None:
+                self._start()
+            try:
+                self._pipe.send(request)
+            except OSError:
+                self._lost(what)
+            answer = self._answer(what)
+            if not answer:
+                return
+            yield answer[0]
+            request = request[:1]
 
     def _start(self) -> list[Formula]:
         # a forked child has everything imported already; elsewhere fork is not to be trusted
@@ -129,7 +147,7 @@ class Guest:
         self._process = self._pipe = None
 
 
-class _Call:
+class GuestFunction:
     """Stands for a function of the file: called as ``Formula.function`` is."""
 
     def __init__(self, guest: Guest, index: int, name: str) -> None:
@@ -138,7 +156,16 @@ class _Call:
 
     def __call__(self, numbers: Any, *stacks: Array) -> Any:
         del numbers
-        return self._guest.call(self._index, self.__name__, stacks)
+        return next(self.ask(_answers, *stacks))
+
+    def ask(self, work: Callable[..., Iterator[Any]], *arguments: Any) -> Iterator[Any]:
+        """What ``work(function, *arguments)`` yields in its process; see :meth:`Guest.ask`."""
+        return self._guest.ask(self._index, self.__name__, work, *arguments)
+
+
+def _answers(function: Any, *stacks: Array) -> Iterator[Any]:
+    """Of all states."""
+    yield function(None, *stacks)
 
 
 _ERRORS: dict[str, type[KinlabError]] = {
@@ -166,7 +193,7 @@ def _limit() -> float:
 
 
 def _serve(pipe: Any, others: Any, path: str) -> None:
-    """The child: loads the file, then answers calls until the parent has gone."""
+    """The child: loads the file, then does what it is asked until the parent has gone."""
     if others is not None:
         others.close()
     end_with_parent()
@@ -181,12 +208,16 @@ def _serve(pipe: Any, others: Any, path: str) -> None:
         return [replace(record, function=_without_answer) for record in records]
 
     _reply(pipe, load, f"{path}: ")
+    going: dict[int, Iterator[Any]] = {}
     while True:
         try:
-            index, stacks = pipe.recv()
+            number, *fresh = pipe.recv()
         except EOFError:
             os._exit(0)
-        _reply(pipe, lambda i=index, s=stacks: functions[i](None, *s), "")
+        if fresh:
+            index, work, arguments = fresh
+            going = {number: work(functions[index], *arguments)}
+        _reply(pipe, lambda g=going, k=number: tuple(islice(g[k], 1)), "")
 
 
 def _reply(pipe: Any, work: Any, place: str) -> None:

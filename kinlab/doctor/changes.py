@@ -7,7 +7,7 @@ other convention), the arguments (degrees), the engine's question (another frame
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -54,7 +54,9 @@ class Case:
         arguments: the states, by name, (N, ...).
         hand: the hand formula's answers, (N, ...).
         index: which entries of the quantity the hand formula is.
-        function: the hand formula itself, where it is a function that can be read.
+        lines: looks for lines that are wrong, where the hand formula is a function that can be
+            read: (case, right answers, allowed error) to what
+            :func:`kinlab.doctor.program.words.lines` yields.
         slack: relative error up to which an explanation fits.
         again: the hand formula's answers at other states, (N, ...), where it can be asked.
     """
@@ -65,7 +67,7 @@ class Case:
     hand: Array
     index: tuple[Any, ...] = ()
     again: Callable[[Arguments], Any] | None = None
-    function: Callable[..., Any] | None = None
+    lines: Callable[..., Iterator[Any]] | None = None
     slack: float = TOLERANCES.formula_agrees
 
     def engine(self, robot: Robot, arguments: Arguments) -> Array:

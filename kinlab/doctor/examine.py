@@ -33,8 +33,7 @@ from kinlab.doctor.derivations.parts import Apart, apart, proved
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
-from kinlab.doctor.program.several import several
-from kinlab.doctor.program.words import in_lines, searched
+from kinlab.doctor.program.words import Lines
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -150,9 +149,10 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    read = same and not written and (silent is not None or not signs)
-    program = searched(case, engine, _left(worst)) if read else None
-    edited = _exactly(in_lines(program, program.singles()), worst) if program else []
+    read = case.lines and same and not written and (silent is not None or not signs)
+    looking = case.lines(case, engine, _left(worst)) if read and case.lines else iter(())
+    program: Lines | None = next(looking, None)
+    edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
     if edited and silent is not None:
@@ -163,14 +163,14 @@ def _explained(
         ways = [] if (written and causes) or signs else ready(case)
         every = [*_singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
-        if ways and not edited and all(cause.cost > _FETCHED for cause in exact):
+        if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)
         if program is not None and not edited:
             limit = _PLAIN if program.written_out else _FETCHED
             if all(cause.cost > limit for cause in exact or rough):
-                edited = _exactly(in_lines(program, several(program)), worst)
+                edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             return _meant(edited, [] if program.written_out else exact or rough), (), None, None
         causes = _outranked(causes, exact)

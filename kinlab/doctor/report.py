@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from kinlab.arrays import seed_of, whole
 from kinlab.check.catalogue import Row
 from kinlab.check.compare import need_function
 from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
+from kinlab.check.guest import GuestFunction
 from kinlab.check.quantities.registry import quantities
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
@@ -24,6 +26,8 @@ from kinlab.doctor.file import (
     require_sound,
     robot_of,
 )
+from kinlab.doctor.program.elsewhere import lines_elsewhere
+from kinlab.doctor.program.words import lines
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, KinlabError
@@ -88,7 +92,7 @@ def diagnose(
     case = replace(
         case,
         again=lambda states: np.asarray(stacked(None, *states.values())),
-        function=function,
+        lines=partial(lines, function),
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(function), {})
@@ -208,6 +212,8 @@ def _of_function(task: PlannedRow, samples: int, seed: int) -> Diagnosis:
     case, engine = prepare(task.robot, plain, index, max(samples, FEWEST), seed)
     numbers = SERIAL.numbers(case.robot)
     hand = record.function(numbers, *(np.array(s) for s in case.arguments.values()))
+    if isinstance(record.function, GuestFunction):
+        case = replace(case, lines=partial(lines_elsewhere, record.function.ask))
     found = examine(case, hand, engine, record.quantity, record.id, {})
     right = _corrected(found)
     corrected = tuple(equation(_name(label), parse(text)) for label, text in right.items())

@@ -191,7 +191,7 @@ def state_by_state(function: Function) -> Function:
 
     It gets copies, so that it cannot change the states of the comparison. One that asks for one
     argument more, of a name in :data:`SIDES` such as ``elbow``, gets +1 and then -1 for it, and
-    answers with a row for each.
+    answers with a row for each. The function itself stays its ``__wrapped__``.
 
     Raises:
         FormulaError: (when called) the function raised, or answered with changing shapes.
@@ -224,6 +224,7 @@ def state_by_state(function: Function) -> Function:
         return np.stack(answers)
 
     stacked.__name__ = function_name(function)  # what messages call it
+    stacked.__wrapped__ = function  # type: ignore[attr-defined]
     return stacked
 
 

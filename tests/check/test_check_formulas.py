@@ -79,7 +79,7 @@ def test_a_marked_function_that_differs_is_diagnosed(tmp_path):
     assert result.exit_code == 1, result.output
     assert "weight: weight DIFFERS with gravity_torques of planar2r" in result.output
     lines = [line for line in result.output.splitlines() if line.startswith("diagnosis: ")]
-    assert len(lines) == 1 and "diagnosis: g2: it has" in lines[0]
+    assert len(lines) == 1 and "diagnosis: line 9, the sign is wrong" in lines[0]
     assert "relative error before" in result.output and "after" in result.output
     row = json.loads(run(file, "--json").output)["rows"][0]
     assert not row["ok"] and row["diagnosis"]["verdict"] == "differs"

@@ -3,8 +3,7 @@
 ==============  ==================================================================================
 module          what it holds
 ==============  ==================================================================================
-``child``       Run by path in an interpreter of its own: a student's Python file, with limits set
-                first
+``confined/``   A student's program in an interpreter of its own, within limits of the system
 ``handout``     Each student's sheet: the questions, and the robot's numbers that are this
                 student's
 ``judge``       One answer judged: verdict, points, and as much of the reason as the sheet's

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -25,6 +26,7 @@ from kinlab.doctor.marking.own_answer import with_answer
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
+from kinlab.doctor.program.words import Lines
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.doctor.text.own_names import in_robot_names
@@ -56,7 +58,14 @@ def judge(sheet: Sheet, submission: Submission, feedback: str | None = None) -> 
     ]
 
 
-def of_values(sheet: Sheet, question: Question, student: str, values: Array, level: str) -> Outcome:
+def of_values(
+    sheet: Sheet,
+    question: Question,
+    student: str,
+    values: Array,
+    level: str,
+    lines: Callable[..., Iterator[Lines]] | None = None,
+) -> Outcome:
     """The outcome of a question that a function answered.
 
     Args:
@@ -64,10 +73,12 @@ def of_values(sheet: Sheet, question: Question, student: str, values: Array, lev
         student: whose numbers the robot has.
         values: the function's answers at :func:`states_of`.
         level: of feedback.
+        lines: looks for the function's wrong lines, as :class:`kinlab.doctor.changes.Case` has it.
     """
     plain, index = split_name(question.quantity)
     robot = robot_for(sheet, student)
     case, engine = prepare(robot, plain, index, sheet.samples, sheet.seed)
+    case = replace(case, lines=lines)
     found = examine(case, values, engine, question.quantity, question.id, {})
     outcome = _of_diagnoses(question, [found], None, robot)
     return _told(outcome, level, _secrets(sheet, question))
@@ -246,8 +257,9 @@ def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:
     return in_robot_names(tree.sym(name), file, robot, entry)
 
 
-_PLACE = re.compile(r"(link|joint|row|rows|entry|entries|column) (\d+)(?: and (\d+))?")
+_PLACE = re.compile(r"(line|link|joint|row|rows|entry|entries|column) (\d+)(?: and (\d+))?")
 _PLACES = {
+    "line": N_("line {number}"),
     "link": N_("link {number}"),
     "joint": N_("joint {number}"),
     "row": N_("row {number}"),

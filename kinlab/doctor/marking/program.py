@@ -11,21 +11,28 @@ from __future__ import annotations
 
 import json
 import os
+import pickle
 import select
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
+from kinlab.check.diagnosis import Cause
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor.marking.judge import of_values, states_of
 from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
+from kinlab.doctor.program.elsewhere import lines_elsewhere
+from kinlab.doctor.program.words import Lines
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _
@@ -89,14 +96,64 @@ def _of(
         if "error" in found:
             return lost(question, f"{question.id}: {str(found['error'])[:200]}")
         values = np.array(found["values"], dtype=float).reshape([int(k) for k in found["shape"]])
-        return of_values(sheet, question, submission.student, values, level)
+        asked = partial(_ask, submission.program, [question.id, question.entry])
+        lines = partial(lines_elsewhere, asked)
+        return of_values(sheet, question, submission.student, values, level, lines)
     except (KinlabError, TypeError, ValueError, KeyError) as problem:
         return lost(question, f"{question.id}: {str(problem)[:200]}")
 
 
 def _run(request: str) -> tuple[dict[str, Any], str]:
     """What the process answered, or how it ended, and what the system enforced."""
-    here = Path(__file__).with_name("child.py")
+    with _confined("child.py") as (process, requests, reading):
+        try:
+            requests.write(request.encode() + b"\n")
+            requests.close()
+        except BrokenPipeError:
+            return {"error": _("its process did not start")}, ""
+        content, ending = _received(reading, process, 2)
+    first, _newline, rest = content.decode("utf-8", "replace").partition("\n")
+    limits, reply = _line(first), _line(rest)
+    known = [part for part in limits if part in _LIMITS] if isinstance(limits, list) else []
+    enforced = _(", ").join(_(limit) for limit in known)
+    if ending or not isinstance(reply, dict):
+        reply = {"error": ending or _("no answer")}
+    return reply, enforced
+
+
+def _ask(
+    program: str, names: list[str], work: Callable[..., Iterator[Lines]], *arguments: Any
+) -> Iterator[Lines]:
+    """What some work on one function yields in a process of its own; only text comes back.
+
+    That process knows kinlab and the right answers, and says which slips it finds, which cost
+    more or less: a program is run there only where it is plain arithmetic.
+    """
+    request = pickle.dumps((program, names, SECONDS, MEGABYTES, work, arguments))
+    with _confined("lines.py") as (process, requests, reading):
+        try:
+            while True:
+                requests.write(request)
+                requests.flush()
+                content, ending = _received(reading, process, 1)
+                told = _line(content.decode("utf-8", "replace"))
+                if ending or not told:
+                    return
+                yield Lines([_cause(**one) for one in told["causes"]], bool(told["written_out"]))
+                request = b"\n"
+        except (OSError, TypeError, ValueError, KeyError):
+            return
+
+
+def _cause(sentence: str, kinds: Any, places: Any, error_after: float, cost: float) -> Cause:
+    names = tuple(map(str, kinds)), tuple(map(str, places))
+    return Cause(str(sentence), *names, float(error_after), float(cost))
+
+
+@contextmanager
+def _confined(file: str) -> Iterator[tuple[subprocess.Popen[bytes], IO[bytes], int]]:
+    """A process that runs a file of that room: where it is asked, and where it answers."""
+    here = Path(__file__).with_name("confined") / file
     reading, writing = os.pipe()
     environment = {"PATH": os.defpath, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     with tempfile.TemporaryDirectory(prefix="kinlab-mark-") as folder:
@@ -113,23 +170,11 @@ def _run(request: str) -> tuple[dict[str, Any], str]:
         os.close(writing)
         try:
             assert process.stdin is not None
-            try:
-                process.stdin.write(request.encode() + b"\n")
-                process.stdin.close()
-            except BrokenPipeError:
-                return {"error": _("its process did not start")}, ""
-            content, ending = _received(reading, process)
+            yield process, process.stdin, reading
         finally:
             process.kill()
             process.wait()
             os.close(reading)
-    first, _newline, rest = content.decode("utf-8", "replace").partition("\n")
-    limits, reply = _line(first), _line(rest)
-    known = [part for part in limits if part in _LIMITS] if isinstance(limits, list) else []
-    enforced = _(", ").join(_(limit) for limit in known)
-    if ending or not isinstance(reply, dict):
-        reply = {"error": ending or _("no answer")}
-    return reply, enforced
 
 
 def _line(text: str) -> Any:
@@ -139,11 +184,11 @@ def _line(text: str) -> Any:
         return None
 
 
-def _received(reading: int, process: subprocess.Popen[bytes]) -> tuple[bytes, str]:
+def _received(reading: int, process: subprocess.Popen[bytes], lines: int) -> tuple[bytes, str]:
     """What came, and how it ended where that was too soon or too late."""
     until = time.monotonic() + SECONDS + 5.0
     content = b""
-    while content.count(b"\n") < 2:
+    while content.count(b"\n") < lines:
         left = until - time.monotonic()
         if left <= 0 or not select.select([reading], [], [], left)[0]:
             late = _("did not come back within {seconds:g} s")

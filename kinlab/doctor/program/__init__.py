@@ -5,6 +5,7 @@ module            what it holds
 ================  =================================================================================
 ``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
 ``data``          The numbers of a program: those in its text, and those in the data that it uses
+``elsewhere``     The lines of a function that lives in another process
 ``edits``         What could stand in a place of a program instead
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
 ``observed``      What every expression of a program was when it ran: its values, their shapes

@@ -232,6 +232,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Edit
         named = isinstance(piece, ast.Name | ast.Subscript)
         if text == own or not (whole or named or isinstance(piece, ast.Attribute)):
             continue
+        if isinstance(piece, ast.List | ast.Tuple):
+            continue  # what an array is made of is no term of it
         if entry and not isinstance(piece, ast.BinOp) and scope.dear(text, piece):
             continue
         dear = scope.dear(text, piece)

@@ -27,9 +27,9 @@ from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 
-_WORK = 2_000_000
+_WORK = 2_600_000
 """Expressions that may be evaluated, and nodes compiled, for single edits."""
-_SHARE = 4
+_SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""

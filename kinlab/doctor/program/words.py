@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
@@ -14,6 +15,7 @@ from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, Edit
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import Repair, Search, changed
+from kinlab.doctor.program.several import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
 
@@ -55,27 +57,43 @@ _WHAT = {
 }
 
 
-def searched(case: Case, wanted: Array, allowed: float) -> Search | None:
-    """The search for what is wrong in a hand formula's program; None where it cannot be read.
+@dataclass(frozen=True)
+class Lines:
+    """What lines of a program should be.
+
+    Attributes:
+        causes: the likeliest first.
+        written_out: whether the program is a formula written out: no loops, no products of
+            matrices.
+    """
+
+    causes: list[Cause]
+    written_out: bool
+
+
+def lines(
+    function: Callable[..., Any], case: Case, wanted: Array, allowed: float
+) -> Iterator[Lines]:
+    """What single lines of a function should be, and then, if asked on, what several should.
 
     Args:
+        function: the hand formula; nothing comes of one that cannot be read.
         case: the states, and the formula's own answers.
         wanted: the right answers, (N, ...).
         allowed: the relative error that may be left.
     """
-    program = None if case.function is None else read(case.function)
+    program = read(function)
     if program is None:
-        return None
+        return
     try:
         search = Search(program, case, wanted, allowed)
-    except Exception:  # noqa: BLE001  whatever a program may raise that does not stand where it was written
-        return None
-    return search if search.faithful else None
-
-
-def in_lines(search: Search, repairs: Sequence[Repair]) -> list[Cause]:
-    """What single lines of the program should be, the likeliest first."""
-    return [cause_of(repair, search) for repair in repairs[:_MOST]]
+    except Exception:  # noqa: BLE001  what does not run where it was not written is not tried
+        return
+    if not search.faithful:
+        return
+    for found in (Search.singles, several):
+        causes = [cause_of(repair, search) for repair in found(search)[:_MOST]]
+        yield Lines(causes, search.written_out)
 
 
 def cause_of(repair: Repair, search: Search) -> Cause:

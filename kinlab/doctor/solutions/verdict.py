@@ -26,8 +26,6 @@ from kinlab.doctor.derivations.joined import (
     taken_otherwise,
     with_these,
 )
-from kinlab.doctor.program.several import several
-from kinlab.doctor.program.words import in_lines, searched
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
 from kinlab.doctor.solutions.lines import LineStudy, believed, joint_of, studied
 from kinlab.doctor.text.written import Written
@@ -102,9 +100,10 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        program = None if written else searched(case, engine, TOLERANCES.formula_agrees)
-        edited = in_lines(program, program.singles() or several(program)) if program else []
-        causes = edited[:1] or _causes(found, engine)
+        read = case.lines if not written else None
+        looking = read(case, engine, TOLERANCES.formula_agrees) if read else ()
+        edited: list[Cause] = next((some.causes[:1] for some in looking if some.causes), [])
+        causes = edited or _causes(found, engine)
         causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
         told = verdicts.of_digits(furthest).remarks
