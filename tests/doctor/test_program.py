@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import functools
 import os
+import re
 import subprocess
 import sys
 import textwrap
@@ -19,7 +20,8 @@ from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped
 import kinlab as kl
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
-from kinlab.host.language import speaking
+from kinlab.doctor.program.words import _WHAT
+from kinlab.host.language import _, speaking
 
 HEAD = "import numpy as np\nfrom math import cos, sin\nl1, l2 = 0.5, 0.4\n"
 TAIL = """
@@ -420,5 +422,13 @@ def test_in_chinese(student) -> None:
     with speaking("zh_CN"):
         sentence = said(student(HEAD + WRONG)["f"])
     assert "`x = l1*cos(q[0]) + l2*cos(q[0] + q[1])`" in sentence
-    assert "line" not in sentence
-    assert "should" not in sentence
+    assert "第 6 行" in sentence
+    assert "符号有误" in sentence
+    assert not re.search(r"[A-Za-z]{2,}", re.sub(r"`[^`]*`", "", sentence))
+
+
+@pytest.mark.parametrize("kind", sorted(_WHAT))
+def test_every_kind_is_said_in_chinese(kind) -> None:
+    with speaking("zh_CN"):
+        told = _(_WHAT[kind])
+    assert not re.search(r"[A-Za-z]", told)
