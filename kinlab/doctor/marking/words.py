@@ -87,6 +87,8 @@ KINDS: dict[str, str] = {
     N_("moment left out"): N_("the moment is left out"),
     N_("parentheses"): N_("parentheses are missing, or stand elsewhere"),
     N_("number"): N_("a number is off"),
+    N_("name"): N_("a name stands where another belongs"),
+    N_("function"): N_("a function stands where another belongs"),
     N_("sum"): N_("a sum forgets what was there before"),
     N_("order of lines"): N_("a line stands too early or too late"),
     N_("extra statement"): N_("a line is one too many"),

@@ -101,7 +101,8 @@ def judged(
         causes = [_all_off(study)]
     else:
         read = case.lines if not written else None
-        looking = read(case, engine, TOLERANCES.formula_agrees) if read else ()
+        own = replace(case, hand=np.asarray(_compared(case, hand, engine)))
+        looking = read(own, engine, TOLERANCES.formula_agrees) if read else ()
         edited: list[Cause] = next((some.causes[:1] for some in looking if some.causes), [])
         causes = edited or _causes(found, engine)
         causes = causes if study is None else believed(causes, study, case)
@@ -124,6 +125,12 @@ def judged(
         form="near" if not causes and _rounded_perhaps(found, furthest) else "",
         proved=() if causes else tuple(_counted(found)),
     )
+
+
+def _compared(case: Case, hand: Any, engine: Array) -> Any:
+    """Of each target the solution that is furthest off, where the tool is."""
+    assert case.quantity.read is not None
+    return case.quantity.read(case.robot, hand, engine)
 
 
 def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
