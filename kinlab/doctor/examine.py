@@ -149,12 +149,14 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    read = same and not written and silent is None and not signs
-    looking = case.lines(case, engine, _left(worst)) if read and case.lines else iter(())
+    read = same and not written and (silent is not None or not signs)
+    looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: Lines | None = next(looking, None)
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
+    if edited and silent is not None:
+        return edited[:1], (), None, None
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))

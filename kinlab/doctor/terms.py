@@ -338,7 +338,7 @@ def in_function(
         states: the comparison's states.
         others: derived entries whose joint functions may be met.
     """
-    if len(poly) > _WRITTEN_OUT or derived.loads:
+    if len(poly) > _WRITTEN_OUT:
         return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
     everywhere = environment(derived, states)

@@ -176,7 +176,8 @@ class Typing:
         """Where tokens i to before j are typed, or where between two others new ones belong."""
         before, after = self._nearest(i - 1, -1), self._nearest(j, 1)
         if i == j:
-            binds = new[0] in ("*", "**", "/", "+", "-", ")")
+            leads = new == ["-"] and (i == 0 or self._plain[i - 1][0] == "(")
+            binds = new[0] in ("*", "**", "/", "+", "-", ")") and not leads
             if binds:
                 at = before.end if before else 0
                 for _ in range(deep):

@@ -418,15 +418,17 @@ def _plain(
         for name, value in symbols.items()
         if isinstance(value, str)
     }
-    return formulas, _as_read(symbols | explained, {*formulas.values(), *explained.values()})
+    return formulas, _as_read(symbols | explained, formulas.values(), explained.values())
 
 
-def _as_read(symbols: dict[str, Any], texts: set[str]) -> dict[str, Any]:
+def _as_read(
+    symbols: dict[str, Any], formulas: Iterable[str], explained: Iterable[str]
+) -> dict[str, Any]:
     """The symbols by the names that LaTeX's are read as: L_1 is L1 where no text has it as L_1."""
-    met = {word for text in texts for word in _WORD.findall(text)}
-    joined = {name: name.replace("_", "") for name in symbols.keys() - met if "_" in name}
+    met, meant = ({w for text in x for w in _WORD.findall(text)} for x in (formulas, explained))
+    joined = {name: name.replace("_", "") for name in symbols.keys() - met - meant if "_" in name}
     return {
-        joined[name] if joined.get(name) in met - symbols.keys() else name: value
+        joined[name] if joined.get(name) in met - meant - symbols.keys() else name: value
         for name, value in symbols.items()
     }
 

@@ -86,6 +86,9 @@ def test_a_symbol_with_a_line_below_is_also_what_latex_reads():
     assert found.agrees and not unread
     (found,), unread = of_document(own | {"formulas": {"x": "L_1*c1 + L_2*c12"}}, "f.toml", 20)
     assert found.agrees and not unread
+    same = {"robot": ARM, "symbols": {"m_2": "m2"}, "latex": {"g2": r"m_2 g l_2 c_{12}"}}
+    (found,), unread = of_document(same, "f.toml", 20)
+    assert found.agrees and not unread
     bad = typed.replace(r"L_2 \cos", r"L_1 \cos")
     (found,), unread = of_document(own | {"latex": {"x": bad}}, "f.toml", 20)
     assert found.causes[0].shown == {"x": typed} and not unread

@@ -6,6 +6,7 @@ import ast
 import copy
 from collections.abc import Iterator
 from math import pi
+from types import ModuleType
 
 import numpy as np
 
@@ -24,9 +25,11 @@ class Scope:
     """What may be written in one part: its names with their shapes, and its expressions.
 
     Attributes:
+        has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
         counters: names that count.
+        ranges: what they count through.
         unused: names that are set, in the part or in the module, and used nowhere.
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
@@ -35,11 +38,14 @@ class Scope:
 
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
         tree = trial.trees[part]
+        self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
+        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
+        self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
         for node in ast.walk(tree):
             if isinstance(node, ast.For | ast.comprehension):
@@ -146,6 +152,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
         yield from _angle(here, scope)
         return
     if isinstance(node, ast.Constant):
+        for text, scalar in scope.simple(()):
+            if operated and not isinstance(op, ast.Pow):
+                yield here.instead(scalar, "name", 1.07 + scope.dear(text, scalar))
         return
     if shape == ():
         yield from _scalars(here, scope, summand or whole or below, operated)
@@ -199,7 +208,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[E
             continue
         dear = scope.dear(text, scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
-            yield here.instead(scalar, "parameter", 1.05 + dear)
+            yield here.instead(scalar, "name", 1.05 + dear)
         if term:
             yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
         elif named and operated and (text[0] == own[0] or not dear):

@@ -14,47 +14,52 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, Edit, places
 from kinlab.doctor.program.trial import Change, Trial
 
+_RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
 _TABLE = 60
 """Numbers of an array of which any may be wrong."""
 
 
 def of_data(trial: Trial) -> Iterator[Edit]:
+    """Every number of the data with another sign, doubled, halved, or taken for degrees."""
+    for leaf in _leaves(trial):
+        if leaf.value:
+            yield leaf.edit(-leaf.value, "sign", 1.05)
+            yield leaf.edit(2 * leaf.value, "factor", 1.2)
+            yield leaf.edit(leaf.value / 2, "factor", 1.2)
+            yield leaf.edit(leaf.value * pi / 180, "degrees", 1.15)
+        if leaf.value in _RIGHT_ANGLES:
+            for other in _RIGHT_ANGLES:
+                if other != leaf.value:
+                    yield leaf.edit(other, "number", 1.12)
     for name in trial.program.data:
-        yield from _numbers_in(trial.space, name, name, ())
+        value = trial.space[name]
+        for new, kind in _whole(value):
+            yield Edit(DATA, (Change(trial.space, name, new),), kind, 1.1, name)
 
 
-def _numbers_in(holder: Any, key: Any, name: str, place: tuple[Any, ...]) -> Iterator[Edit]:
-    value = holder[key]
-    if isinstance(value, bool):
-        return
-    if isinstance(value, int | float):
-        if value:
-            for new, kind, cost in (
-                (-value, "sign", 1.05),
-                (2 * value, "factor", 1.2),
-                (value / 2, "factor", 1.2),
-                (value * pi / 180, "degrees", 1.15),
-            ):
-                yield Edit(DATA, (Change(holder, key, new),), kind, cost, name, place)
-    elif isinstance(value, dict):
-        for k in value:
-            yield from _numbers_in(value, k, name, (*place, k))
-    elif isinstance(value, list):
-        for k in range(len(value)):
-            yield from _numbers_in(value, k, name, (*place, k))
-    elif isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size <= _TABLE:
-        yield Edit(DATA, (Change(holder, key, -value),), "sign", 1.1, name, place)
+def _whole(value: Any) -> Iterator[tuple[Any, str]]:
+    """All of a table otherwise."""
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size:
+        yield -value, "sign"
+        yield np.radians(value), "degrees"
         if value.ndim == 2:
-            yield Edit(DATA, (Change(holder, key, value.T),), "transposed", 1.1, name, place)
-        for index in np.ndindex(value.shape):
-            if value[index]:
-                change = Change(value, index, -value[index])
-                yield Edit(DATA, (change,), "sign", 1.1, name, (*place, *index))
+            yield value.T, "transposed"
+    elif isinstance(value, list | tuple) and all(type(one) in (int, float) for one in value):
+        yield type(value)(one * pi / 180 for one in value), "degrees"
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """A number in the text of a program, or in its data."""
+    """A number in the text of a program, or in its data.
+
+    Attributes:
+        value: what it is.
+        part: of the program; :data:`DATA` for the data.
+        holder, field: where it is kept.
+        node: of the text; of data the name.
+        place: the keys down to it.
+        inner: of these, those within a tuple, which is made anew as a whole.
+    """
 
     value: float
     part: int
@@ -62,11 +67,18 @@ class Place:
     field: Any
     node: Any
     place: tuple[Any, ...] = ()
+    inner: tuple[int, ...] = ()
 
-    def edit(self, value: float) -> Edit:
+    def edit(self, value: float, kind: str = "number", cost: float = 1.15) -> Edit:
         """Another number there."""
-        change = Change(self.holder, self.field, value)
-        return Edit(self.part, (change,), "number", 1.15, self.node, self.place)
+        new: Any = value
+        if self.inner:
+            items = _of_items(self.holder)
+            old = self.holder[self.field] if items else getattr(self.holder, self.field)
+            new = _rebuilt(old, self.inner, value)
+        change = Change(self.holder, self.field, new)
+        both = (float(self.value), float(value))
+        return Edit(self.part, (change,), kind, cost, self.node, self.place, both)
 
 
 def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
@@ -79,21 +91,53 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
             counts = type(node.value) is int and isinstance(here.parent, ast.BinOp)
             if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
                 yield Place(node.value, part, node, "value", node)
+    yield from _leaves(trial)
+
+
+def _leaves(trial: Trial) -> Iterator[Place]:
     for name in trial.program.data:
-        for holder, key, place in _leaves(trial.space, name, ()):
-            yield Place(float(holder[key]), DATA, holder, key, name, place)
+        yield from _within(trial.space, name, trial.space[name], name, (), ())
 
 
-def _leaves(holder: Any, key: Any, place: tuple[Any, ...]) -> Iterator[tuple[Any, Any, Any]]:
-    value = holder[key]
+def _within(
+    holder: Any, key: Any, value: Any, name: str, place: tuple[Any, ...], inner: tuple[int, ...]
+) -> Iterator[Place]:
     if isinstance(value, float | int) and not isinstance(value, bool):
-        yield holder, key, place
-    elif isinstance(value, dict):
-        for k in value:
-            yield from _leaves(value, k, (*place, k))
-    elif isinstance(value, list):
-        for k in range(len(value)):
-            yield from _leaves(value, k, (*place, k))
-    elif isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size <= _TABLE:
-        for index in np.ndindex(value.shape):
-            yield value, index, (*place, *index)
+        yield Place(value, DATA, holder, key, name, place, inner)
+    elif isinstance(value, tuple):
+        for k, one in enumerate(value):
+            if not isinstance(one, list | dict | np.ndarray):
+                yield from _within(holder, key, one, name, (*place, k), (*inner, k))
+            else:
+                yield from _below(one, name, (*place, k))
+    elif not inner:
+        yield from _below(value, name, place)
+
+
+def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[Place]:
+    """The numbers in a list, a dictionary, an array, an object."""
+    if isinstance(value, dict | list):
+        for k, one in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _within(value, k, one, name, (*place, k), ())
+    elif isinstance(value, np.ndarray):
+        if value.dtype.kind == "f" and value.size <= _TABLE:
+            for index in np.ndindex(value.shape):
+                entry = (*place, *index)
+                yield Place(float(value[index]), DATA, value, index, name, entry)
+    elif hasattr(value, "__dict__"):
+        for k, one in vars(value).items():
+            if not k.startswith("__") and not callable(one):
+                yield from _within(value, k, one, name, (*place, f".{k}"), ())
+
+
+def _rebuilt(old: Any, path: tuple[int, ...], new: float) -> Any:
+    """A tuple with another number in it."""
+    if not path:
+        return new
+    parts = [*old]
+    parts[path[0]] = _rebuilt(parts[path[0]], path[1:], new)
+    return tuple(parts)
+
+
+def _of_items(holder: Any) -> bool:
+    return isinstance(holder, list | dict | np.ndarray)

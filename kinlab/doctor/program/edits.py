@@ -7,6 +7,7 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
+import copy
 from collections.abc import Iterator
 from math import pi
 
@@ -22,6 +23,7 @@ from kinlab.doctor.program.operators import (
     of_operator,
     of_sequence,
     of_subscript,
+    permuted,
     plus,
     shifted,
     value_of,
@@ -45,7 +47,12 @@ def edits(trial: Trial, observed: Observed) -> list[Edit]:
                 found += _statement(here, scope, observed)
         found += _orders(part, tree)
     found += of_data(trial)
-    return sorted(found, key=lambda edit: edit.cost)
+    # of equal ones the later line: what is set there is used more rarely
+    return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
+
+
+def _line(edit: Edit) -> int:
+    return getattr(edit.node, "lineno", 0)
 
 
 # -------- Expressions
@@ -76,6 +83,11 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
     elif isinstance(node, ast.Attribute):
         if node.attr == "T":
             yield here.instead(node.value, "transposed", 1.02)
+            if scope.has_numpy:
+                linear = ast.Attribute(ast.Name("np", ast.Load()), "linalg", ast.Load())
+                for name in ("inv", "pinv"):
+                    call = ast.Call(ast.Attribute(linear, name, ast.Load()), [node.value], [])
+                    yield here.instead(call, "inverse", 1.12)
     elif isinstance(node, ast.Constant):
         yield from of_constant(here, index)
     elif isinstance(node, ast.List | ast.Tuple):
@@ -84,11 +96,11 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):
         yield from of_comparison(here)
-    if index or (whole and not isinstance(node, ast.Call)):
-        if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple):
+    counts = whole and isinstance(node, ast.Name | ast.BinOp)
+    if index or counts:
+        if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not shifted(node):
             for step in (1, -1):
-                if not shifted(node):
-                    yield here.instead(plus(node, step), "index", 1.1)
+                yield here.instead(plus(node, step), "index", 1.1)
         return
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
@@ -114,6 +126,8 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
             yield from _target(here, target)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
         yield from _target(here, node.target)
+    if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
+        yield from _counted(here, scope)
     if isinstance(node, ast.If):
         if node.orelse:
             swap = (Change(node, "body", node.orelse), Change(node, "orelse", node.body))
@@ -128,6 +142,33 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
                 yield here.instead(both, "degrees", 1.1)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
+
+
+def _counted(here: Here, scope: Scope) -> Iterator[Edit]:
+    """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
+    value = here.node.value
+    used = [n.id for n in ast.walk(value) if isinstance(n, ast.Name)] if value else []
+    for counter in scope.counters:
+        if used.count(counter) > 1:
+            for step in (1, -1):
+                moved = _Moved(counter, step).visit(copy.deepcopy(value))
+                yield here.within(here.node, "value", moved, "index", 1.13)
+
+
+class _Moved(ast.NodeTransformer):
+    """A counter one more or less."""
+
+    def __init__(self, counter: str, step: int) -> None:
+        self.counter, self.step = counter, step
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        if shifted(node) and isinstance(node.left, ast.Name) and node.left.id == self.counter:
+            return plus(node, self.step) if whole_constant(node.right) else node
+        self.generic_visit(node)
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return plus(node, self.step) if node.id == self.counter else node
 
 
 def _comparison_of(here: Here, test: ast.expr) -> Iterator[Edit]:
@@ -145,6 +186,7 @@ def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
     if not single and len(keys) == 2:
         swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
         yield here.within(target, "slice", swapped, "transposed", 1.12)
+    yield from permuted(here, target)
     for k, one in enumerate(keys):
         holder, field = (target, "slice") if single else (keys, k)
         if isinstance(one, ast.Slice):

@@ -6,6 +6,8 @@ import ast
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
@@ -32,6 +34,12 @@ def named(edit: Edit, search: Search) -> list[tuple[str, str]]:
         meanings(search.case.robot, {name: stack[k] for name, stack in arguments.items()})
         for k in search.watched
     ]
+    if edit.part == DATA:
+        if edit.numbers is None:
+            return []
+        right = np.array(edit.numbers[1])
+        sense = meaning_of(known, [right for _state in known])
+        return [] if sense is None else [(f"{edit.numbers[1]:.6g}", said(sense))]
     nodes = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
     texts = {ast.unparse(n): n for n in ast.walk(search.trial.trees[edit.part]) if _piece(n)}
     out: dict[str, str] = {}

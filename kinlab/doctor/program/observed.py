@@ -46,7 +46,7 @@ class Observed:
         self.places: dict[str, tuple[int, ...]] = {}
         nodes = [_watched(tree) for tree in trial.trees]
         parts = trial.program.parts
-        originals = [trial.space[part.name] for part in parts]
+        originals = [trial.placed(k) for k in range(len(parts))]
         self._by_number = [dict(enumerate(ast.walk(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         self.work: dict[int, int] = {}
@@ -54,13 +54,13 @@ class Observed:
         try:
             for k, (tree, part) in enumerate(zip(nodes, parts, strict=True)):
                 self._name_part(tree, k)
-                trial.space[part.name] = made(tree, part, trial.space)
+                trial.place(k, made(tree, part, trial.space))
             with quietly():
                 for state in states:
                     trial.function(*state)
         finally:
-            for part, function in zip(parts, originals, strict=True):
-                trial.space[part.name] = function
+            for k, function in enumerate(originals):
+                trial.place(k, function)
         own = [
             sum(self._seen[id(node)].count for node in ast.walk(tree) if id(node) in self._seen)
             for tree in trial.trees

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from itertools import permutations
 
 from kinlab.doctor.program.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed
@@ -114,6 +115,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
                     yield here.within(node.args, 0, angle, "argument", 1.15)
     if name == "range":
         yield from _range(here, scope)
+    yield from _other_function(here, name)
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
     if len(plain) == len(node.args):
         for k in range(len(plain) - 1):
@@ -130,6 +132,41 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
             yield here.instead(product, "inverse", 1.25)
 
 
+_FAMILIES = (
+    ("zeros", "ones"),
+    ("array", "asarray", "cumsum"),
+    ("sum", "cumsum", "prod"),
+    ("dot", "cross", "outer", "multiply"),
+    ("arcsin", "arccos", "arctan"),
+    ("asin", "acos", "atan"),
+    ("hstack", "vstack"),
+    ("radians", "degrees"),
+    ("deg2rad", "rad2deg"),
+    ("inv", "pinv"),
+    ("min", "max"),
+    ("sqrt", "square"),
+)
+"""Functions of which one is written for another."""
+
+
+def _other_function(here: Here, name: str) -> Iterator[Edit]:
+    node = here.node
+    for family in _FAMILIES:
+        for other in family:
+            if name in family and other != name and isinstance(node.func, ast.Attribute):
+                yield here.within(node.func, "attr", other, "function", 1.14)
+    if name in ("ones", "zeros", "full") and isinstance(node.func, ast.Attribute) and node.args:
+        first = node.args[0]
+        size = first.elts[0] if isinstance(first, ast.Tuple) and first.elts else first
+        eye = ast.Call(ast.Attribute(node.func.value, "eye", ast.Load()), [size], [])
+        yield here.instead(eye, "function", 1.14)
+    if name in ("eye", "identity") and isinstance(node.func, ast.Attribute) and node.args:
+        shape = ast.Tuple([node.args[0], node.args[0]], ast.Load())
+        for other in ("ones", "zeros"):
+            filled = ast.Call(ast.Attribute(node.func.value, other, ast.Load()), [shape], [])
+            yield here.instead(filled, "function", 1.2)
+
+
 def _range(here: Here, scope: Scope) -> Iterator[Edit]:
     node = here.node
     args = node.args
@@ -138,6 +175,9 @@ def _range(here: Here, scope: Scope) -> Iterator[Edit]:
             new = [*args]
             new[k] = plus(argument, step)
             yield here.within(node, "args", new, "loop", 1.1)
+    for others in scope.ranges:
+        if ast.dump(others) != ast.dump(node):
+            yield here.within(node, "args", [*others.args], "loop", 1.12)
     inner = scope.counters
     if len(args) == 1:
         for name in inner:
@@ -174,9 +214,20 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]
     if not single and len(keys) == 2:
         swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
         yield here.within(node, "slice", swapped, "transposed", 1.1)
+    yield from permuted(here, node)
     if single and shape is not None and len(shape) == 2 and not isinstance(keys[0], ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), keys[0]], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def permuted(here: Here, node: ast.Subscript) -> Iterator[Edit]:
+    """Three indices in another order."""
+    keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
+    if len(keys) == 3 and len({ast.dump(key) for key in keys}) > 1:
+        for order in [*permutations(range(3))][1:]:
+            other = ast.Tuple([keys[k] for k in order], ast.Load())
+            if ast.dump(other) != ast.dump(node.slice):
+                yield here.within(node, "slice", other, "index", 1.12)
 
 
 def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterator[Edit]:
@@ -192,7 +243,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
-            kind = "index" if near and _letters(other) == _letters(node.id) else "parameter"
+            kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             yield here.instead(ast.Name(other, ast.Load()), kind, 1.1 if near else 1.25)
 
 

@@ -24,6 +24,7 @@ class Edit:
         cost: how far-fetched it is.
         node: what is changed: an expression or a statement; of data its name.
         place: the keys down to a number of the data.
+        numbers: that number, and what it should be.
     """
 
     part: int
@@ -32,6 +33,7 @@ class Edit:
     cost: float
     node: Any
     place: tuple[Any, ...] = ()
+    numbers: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,6 +14,9 @@ import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
 
+_HEAP = 1 << 9
+_DEEP = 6
+"""Lists in lists, dictionaries and objects down to which data are looked at."""
 _MOST = 40
 """Functions of one program that are read."""
 _ARITHMETIC = frozenset(
@@ -61,6 +64,7 @@ class Part:
 
     Attributes:
         name: what the program calls it.
+        owner: the class whose method it is.
         tree: its definition; line numbers are those of its file, or of the text it was made from.
         function: the function itself.
     """
@@ -68,6 +72,7 @@ class Part:
     name: str
     tree: ast.FunctionDef
     function: FunctionType
+    owner: type | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,32 +101,67 @@ def read(function: Callable[..., Any]) -> Program | None:
         return None
     if not all(_harmless(one, function.__module__) for one in bound):
         return None
-    space = dict(function.__globals__)
-    parts: dict[str, Part] = {}
-    data: list[str] = []
-    waiting = [(function.__name__, function)]
-    while waiting:
-        name, one = waiting.pop(0)
-        tree = tree_of(one)
-        if tree is None or len(parts) == _MOST or not _plain(tree):
-            return None
-        parts[name] = Part(name, tree, one)
+    return _Reader(function).program(bound)
+
+
+class _Reader:
+    """The functions of a program while they are found."""
+
+    def __init__(self, function: FunctionType) -> None:
+        self.function = function
+        self.space = dict(function.__globals__)
+        self.parts: dict[tuple[type | None, str], Part] = {}
+        self.data: list[str] = []
+        self.waiting: list[tuple[type | None, str, FunctionType]] = []
+
+    def program(self, bound: tuple[Any, ...]) -> Program | None:
+        """All of it; None where something cannot be read, or may not be tried."""
+        name = self.function.__name__
+        owner = type(bound[0]) if bound else None
+        self.waiting.append((owner, name if name.isidentifier() else "function", self.function))
+        while self.waiting:
+            owner, name, one = self.waiting.pop(0)
+            tree = tree_of(one)
+            if tree is None or len(self.parts) == _MOST or not _plain(tree):
+                return None
+            self.parts[owner, name] = Part(name, tree, one, owner)
+            if not self._names_of(one):
+                return None
+        return Program(tuple(self.parts.values()), bound, self.space, tuple(self.data))
+
+    def _names_of(self, one: FunctionType) -> bool:
         free = _free(one)
         for label, value in free.items():
-            if label in space and space[label] is not value and label not in parts:
-                return None  # one name for two things
-            space[label] = value
-        for label in _used(one.__code__):
-            value = free.get(label, function.__globals__.get(label))
-            if not _harmless(value, function.__module__):
-                return None
-            if isinstance(value, FunctionType) and value.__module__ == function.__module__:
-                known = label in parts or any(label == other for other, _ in waiting)
-                if not known and value.__globals__ is function.__globals__:
-                    waiting.append((label, value))
-            elif _numeric(value) and label not in data:
-                data.append(label)
-    return Program(tuple(parts.values()), bound, space, tuple(data))
+            if self.space.get(label, value) is not value:
+                return False  # one name for two things
+            self.space[label] = value
+        used = [*_used(one.__code__)]
+        for label in used:
+            value = free.get(label, self.function.__globals__.get(label))
+            if not _harmless(value, self.function.__module__):
+                return False
+            if isinstance(value, FunctionType):
+                self._wait(None, label, value)
+            elif _numeric(value) and label not in self.data:
+                self.data.append(label)
+            owner = value if isinstance(value, type) else type(value)
+            if written(owner, self.function.__module__):
+                self.data += [label] if label not in self.data else []
+                for name, method in vars(owner).items():
+                    if isinstance(method, FunctionType) and (name in used or name == "__call__"):
+                        self._wait(owner, name, method)
+        for owner in {part.owner for part in self.parts.values() if part.owner}:
+            for name in used:
+                method = vars(owner).get(name)
+                if isinstance(method, FunctionType):
+                    self._wait(owner, name, method)
+        return True
+
+    def _wait(self, owner: type | None, name: str, function: FunctionType) -> None:
+        known = (owner, name) in self.parts or (owner, name) in [w[:2] for w in self.waiting]
+        own = function.__module__ == self.function.__module__
+        if own and not known and function.__globals__ is self.function.__globals__:
+            self.waiting.append((owner, name, function))
 
 
 def tree_of(function: FunctionType) -> ast.FunctionDef | None:
@@ -157,7 +197,13 @@ def _plain(tree: ast.FunctionDef) -> bool:
     return True
 
 
-def _harmless(value: Any, module: str | None, depth: int = 3) -> bool:
+def written(owner: type, module: str | None) -> bool:
+    """Whether a class is the program's own."""
+    made = bool(owner.__flags__ & _HEAP)  # by a class statement
+    return made and owner.__module__ == (module or "builtins")  # so exec has it without a name
+
+
+def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
     """Whether an edited program may be given a value: what is only arithmetic cannot be hurt.
 
     Code in C that is called with a wrong index may end the process; files, processes and whatever
@@ -168,11 +214,13 @@ def _harmless(value: Any, module: str | None, depth: int = 3) -> bool:
     if isinstance(value, list | tuple | set | frozenset | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])
-    if isinstance(value, FunctionType | BuiltinFunctionType | type):
-        of = value.__module__ or ""
-        return of == module or of.partition(".")[0] in _ARITHMETIC
+    if isinstance(value, BuiltinFunctionType):
+        return (value.__module__ or "").partition(".")[0] in _ARITHMETIC
+    if isinstance(value, FunctionType | type):
+        of = value.__module__
+        return of == module or (of or "").partition(".")[0] in _ARITHMETIC
     home = type(value).__module__ or ""
-    if home == module:
+    if written(type(value), module):
         held = [*getattr(value, "__dict__", {}).values()]
         for method in vars(type(value)).values():
             if isinstance(method, FunctionType):

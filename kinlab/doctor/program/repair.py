@@ -23,11 +23,11 @@ from kinlab.doctor.program.edits import edits
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Edit, called
 from kinlab.doctor.program.read import Program
-from kinlab.doctor.program.trial import Trial, quietly
+from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 
-_WORK = 1_600_000
+_WORK = 2_000_000
 """Expressions that may be evaluated, and nodes compiled, for single edits."""
 _SHARE = 4
 """Of that work, the part of each search beside edits that stand already."""
@@ -39,6 +39,8 @@ _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _WATCHED = 2
 """States at which a program is watched."""
+_DEAR = 0.06
+"""What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _TURNS = 5
@@ -113,24 +115,36 @@ class Search:
         """Single edits that make the program right, the likeliest first."""
         found: list[Repair] = []
         with quietly():
-            for edit in edits(self.trial, self.observed):
+            for edit in sorted(edits(self.trial, self.observed), key=self._dear):
                 if found and edit.cost > found[0].edits[-1].cost + _TIED:
                     break
-                self.work += self.observed.work[edit.part] * len(self.first) // len(self.watched)
-                self.work += self.nodes[edit.part] if edit.part >= 0 else 0
+                self.work += self.cost_of(edit)
                 if self.work > self.most:
                     break
-                with changed(self.trial, (edit,)):
-                    values = self.values(self.first)
-                    if values is None:
-                        continue
-                    self.tried.append((edit, values))
-                    repair = self.verdict((*self.stand, edit), values)
+                try:
+                    with changed(self.trial, (edit,)):
+                        values = self.values(self.first)
+                        if values is None:
+                            continue
+                        self.tried.append((edit, values))
+                        repair = self.verdict((*self.stand, edit), values)
+                except NoProgramError:
+                    continue
                 if repair is not None:
                     found.append(repair)
             if not found or found[0].edits[-1].cost > _NUMBER:
                 found = [*self._numbers(), *found]
         return found
+
+    def cost_of(self, edit: Edit) -> int:
+        """Expressions that are evaluated, and nodes compiled, to try an edit."""
+        run = self.observed.work[edit.part] * len(self.first) // len(self.watched)
+        return run + (self.nodes[edit.part] if edit.part >= 0 else 0)
+
+    def _dear(self, edit: Edit) -> float:
+        """Its cost, a little more where much has to be run anew."""
+        work = self.observed.work
+        return edit.cost + _DEAR * float(np.log10(max(1, work[edit.part]) / max(1, work[0])))
 
     def _numbers(self) -> Iterator[Repair]:
         """Single numbers, of the text or the data, with which the program is right."""

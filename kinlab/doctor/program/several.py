@@ -13,7 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.program.places import Edit
 from kinlab.doctor.program.repair import Repair, Search, changed
-from kinlab.doctor.program.trial import quietly
+from kinlab.doctor.program.trial import NoProgramError, quietly
 from kinlab.doctor.text.pairs import pairs_adding_up
 
 _VERIFIED = 60
@@ -51,7 +51,7 @@ def _found(search: Search, stand: tuple[Edit, ...], tried: Tried) -> list[Repair
     if not found and len(stand) < _DEEPEST:
         found = [*_one_after_another(search, stand, tried)]
     if not found and not stand:
-        found = [*_adding_up(search, stand, tried, 3)]
+        found = [*_adding_up(search, stand, tried, 3)] or [*_each_with_each(search, tried)]
     return sorted(found, key=lambda repair: repair.cost)
 
 
@@ -123,12 +123,35 @@ def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) ->
             return
 
 
+def _each_with_each(search: Search, tried: Tried) -> Iterator[Repair]:
+    """The likeliest in pairs, as many as so much work allows: factors of one product, say."""
+    own = search.values(search.first)
+    if own is None:
+        return
+    wanted = search.wanted[search.first]
+    sizes = search.sizes[search.first].reshape(-1, *[1] * (wanted.ndim - 1))
+    likely, _rows = _distinct(tried, own, sizes)
+    work = 0
+    for k, last in enumerate(likely):
+        for first in likely[:k]:
+            work += max(search.cost_of(first), search.cost_of(last))
+            if work > search.most // 2:
+                return
+            found = [*_verified(search, iter([(first, last)]))]
+            if found:
+                yield from found
+                return
+
+
 def _verified(search: Search, ways: Iterator[tuple[Edit, ...]]) -> Iterator[Repair]:
     found = 0
     for way in ways:
         fresh = [edit for edit in way if edit not in search.stand]
-        with changed(search.trial, tuple(fresh)):
-            repair = search.verdict(way)
+        try:
+            with changed(search.trial, tuple(fresh)):
+                repair = search.verdict(way)
+        except NoProgramError:
+            continue
         if repair is not None:
             yield repair
             found += 1

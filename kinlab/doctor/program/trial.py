@@ -13,7 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.program.read import Part, Program
+from kinlab.doctor.program.read import Part, Program, written
+
+
+class NoProgramError(Exception):
+    """What an edit makes of a program is none."""
+
 
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
@@ -26,8 +31,8 @@ class Change:
     """Another value in one field of a syntax tree, or in one place of the data.
 
     Attributes:
-        holder: the node, list, dictionary or array.
-        field: the name of the field, or the key or index; a name of the data in ``space``.
+        holder: the node, object, list, dictionary or array.
+        field: the name of the field or attribute, or the key or index.
         new: what it gets.
     """
 
@@ -46,8 +51,13 @@ class Trial:
     def __init__(self, program: Program) -> None:
         self.program = program
         self.space = dict(program.space)
+        owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
+        owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in program.data)))
+        module = program.parts[0].function.__module__
+        self.classes = {one: _copied(one) for one in owners if written(one, module)}
         for name in program.data:
-            self.space[name] = copy.deepcopy(program.space[name])
+            self.space[name] = self._own(program.space[name])
+        self.bound = tuple(self._own(one) for one in program.bound)
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -56,42 +66,65 @@ class Trial:
         self._turns = 0
         for k in range(len(self.trees)):
             self.build(k)
-        self._first = program.parts[0].name
         self.above = _callers(program)
         self._known: list[dict[Any, Any]] = [{} for _ in program.parts]
 
+    def _own(self, value: Any) -> Any:
+        """A copy of data; of a class, and of an object of it, one whose methods can be changed."""
+        if isinstance(value, type):
+            return self.classes.get(value, value)
+        if type(value) not in self.classes:
+            return copy.deepcopy(value)
+        new: Any = object.__new__(self.classes[type(value)])
+        new.__dict__.update(copy.deepcopy(getattr(value, "__dict__", {})))
+        return new
+
     def build(self, k: int) -> None:
         """Compiles one part as its tree stands now."""
+        self.place(k, made(self.trees[k], self.program.parts[k], self.space))
+
+    def placed(self, k: int) -> Any:
+        """The function that stands for a part now."""
         part = self.program.parts[k]
-        self.space[part.name] = made(self.trees[k], part, self.space)
+        if part.owner is None:
+            return self.space[part.name]
+        return vars(self.classes[part.owner])[part.name]
+
+    def place(self, k: int, function: Any) -> None:
+        """Puts a function where the program looks for a part."""
+        part = self.program.parts[k]
+        if part.owner is None:
+            self.space[part.name] = function
+        else:
+            setattr(self.classes[part.owner], part.name, function)
 
     @contextmanager
     def changed(self, parts: set[int], changes: Sequence[Change]) -> Iterator[None]:
         """The program with changes in it; -1 stands for its data."""
         before = [(change, _get(change)) for change in changes]
-        names = [part.name for part in self.program.parts]
+        every = range(len(self.trees))
         touched = {k for part in parts for k in self.above[part]}
-        kept = {k: self.space[name] for k, name in enumerate(names)}
+        kept = [self.placed(k) for k in every]
         try:
             for change in changes:
                 _located(change.new)
                 _put(change, change.new)
-            for k, name in enumerate(names):
+            for k in every:
                 if k in parts:
-                    self.build(k)  # -1, the data, needs none
-                elif k not in touched and -1 not in parts:
-                    self.space[name] = _remembering(kept[k], self._known[k])
+                    self.build(k)
+                elif k not in touched:
+                    self.place(k, _remembering(kept[k], self._known[k]))
             yield
         finally:
             for change, old in reversed(before):
                 _put(change, old)
-            for k, function in kept.items():
-                self.space[names[k]] = function
+            for k in every:
+                self.place(k, kept[k])
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
         self._turns = 0
-        return self.space[self._first](*self.program.bound, *state)
+        return self.placed(0)(*self.bound, *state)
 
     def _turn(self) -> bool:
         self._turns += 1
@@ -125,7 +158,10 @@ _QUICK.__dict__.update(np.__dict__, cross=_cross)
 def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionType:
     """A function of a definition, with the defaults that the user's own has."""
     module = ast.Module([tree], [])
-    code = compile(module, "<formula>", "exec")
+    try:
+        code = compile(module, "<formula>", "exec")
+    except (SyntaxError, ValueError, TypeError) as problem:
+        raise NoProgramError(str(problem)) from problem
     own = next(one for one in code.co_consts if isinstance(one, CodeType))
     function = FunctionType(own, space, part.name, part.function.__defaults__)
     function.__kwdefaults__ = part.function.__kwdefaults__
@@ -134,17 +170,41 @@ def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionTy
 
 def _callers(program: Program) -> dict[int, set[int]]:
     """For each part those whose answers depend on it, itself among them; -1 for the data."""
-    names = {part.name: k for k, part in enumerate(program.parts)}
+    every = range(len(program.parts))
     calls = [
-        {names[n.id] for n in ast.walk(part.tree) if isinstance(n, ast.Name) and n.id in names}
+        {k for k in every if program.parts[k].name in _names_in(part.tree)}
         for part in program.parts
     ]
-    every = range(len(calls))
     above = {k: {k} for k in every}
     for _round in every:
         for k in every:
             above[k] |= {j for j in every if calls[j] & above[k]}
-    return {**above, -1: set(every)}
+    data = {k for k in every if _names_in(program.parts[k].tree) & {*program.data}}
+    owned = {k for k in every if program.parts[k].owner is not None}
+    return {**above, -1: {j for k in data | owned for j in above[k] | {k}}}
+
+
+def _names_in(tree: ast.AST) -> set[str]:
+    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+
+
+def _is_data(value: Any) -> bool:
+    return isinstance(value, list | dict | np.ndarray)
+
+
+def _class_of(value: Any) -> type:
+    return value if isinstance(value, type) else type(value)
+
+
+def _copied(owner: type) -> type:
+    """A class like another, whose methods can be changed."""
+    own = {
+        name: copy.deepcopy(value) if _is_data(value) else value
+        for name, value in vars(owner).items()
+        if name not in ("__dict__", "__weakref__")
+    }
+    return type(owner.__name__, owner.__bases__, own)
 
 
 def _remembering(function: FunctionType, known: dict[Any, Any]) -> Any:
@@ -166,11 +226,14 @@ def _remembering(function: FunctionType, known: dict[Any, Any]) -> Any:
 
 
 def _key(value: Any) -> Any:
-    if isinstance(value, np.ndarray):
+    """What a part was asked, for keeping its answer; of functions and objects nothing is kept."""
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
         return (value.shape, value.dtype.str, value.tobytes())
     if isinstance(value, list | tuple):
         return (type(value).__name__, *map(_key, value))
-    return value if isinstance(value, str) else (type(value).__name__, value)
+    if value is None or isinstance(value, str | int | float | complex | np.number):
+        return (type(value).__name__, value)
+    raise TypeError(type(value).__name__)
 
 
 def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
@@ -208,13 +271,17 @@ def _located(new: Any) -> None:
 
 
 def _get(change: Change) -> Any:
-    if isinstance(change.holder, ast.AST):
-        return getattr(change.holder, change.field)
-    return change.holder[change.field]
+    if _of_items(change.holder):
+        return change.holder[change.field]
+    return getattr(change.holder, change.field)
 
 
 def _put(change: Change, value: Any) -> None:
-    if isinstance(change.holder, ast.AST):
-        setattr(change.holder, change.field, value)
-    else:
+    if _of_items(change.holder):
         change.holder[change.field] = value
+    else:
+        setattr(change.holder, change.field, value)
+
+
+def _of_items(holder: Any) -> bool:
+    return isinstance(holder, list | dict | np.ndarray)

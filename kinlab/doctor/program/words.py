@@ -29,8 +29,8 @@ _WIDE = 72
 _WHAT = {
     "sign": N_("the sign is wrong"),
     "sin/cos": N_("sine and cosine are exchanged"),
-    "index": N_("the index is another's"),
-    "parameter": N_("it is another name"),
+    "index": N_("the index is that of another"),
+    "name": N_("the name is another"),
     "transposed": N_("the transpose is wrong"),
     "factor": N_("a factor is wrong"),
     "number": N_("a number is wrong"),
@@ -38,13 +38,14 @@ _WHAT = {
     "argument": N_("the angle is another"),
     "parentheses": N_("the parentheses are wrong"),
     "degrees": N_("degrees are taken for radians"),
-    "order": N_("the order is wrong"),
+    "order": N_("the order is exchanged"),
     "order of lines": N_("what the line uses is updated too early, or too late"),
-    "loop": N_("the loop has other bounds"),
+    "loop": N_("the loop leaves one out, or takes one too many"),
     "condition": N_("the condition is wrong"),
     "entries swapped": N_("two entries are exchanged"),
-    "rows": N_("the rows are others"),
+    "rows": N_("the rows are others: the linear ones, or the angular"),
     "inverse": N_("the inverse is wrong"),
+    "function": N_("the function is another"),
     "product": N_("it is a matrix product"),
     "sum": N_("the sum forgets what was there before"),
     "extra statement": N_("the line is one too many"),
@@ -52,7 +53,7 @@ _WHAT = {
     "extra factor": N_("a factor is too many"),
     "missing term": N_("a term is missing"),
     "missing factor": N_("a factor is missing"),
-    "missing matrix": N_("a product with a matrix is missing"),
+    "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }
 
 
@@ -135,15 +136,13 @@ def _place(edit: Edit, trial: Trial) -> str:
 
 
 def _of_data(edit: Edit) -> str:
-    change = edit.changes[0]
-    name = edit.node + "".join(f"[{key!r}]" for key in edit.place)
-    old = change.holder[change.field]
-    said = {"name": name, "what": _(_WHAT[edit.kind])}
-    if isinstance(old, float | int):
-        return _("{name}, {what}: {old:.6g} should be {new:.6g}").format(
-            **said, old=float(old), new=float(change.new)
-        )
-    return _("{name}, {what}").format(**said)
+    keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
+    said = {"name": edit.node + "".join(keys), "what": _(_WHAT[edit.kind])}
+    if edit.numbers is None:
+        return _("{name}, {what}").format(**said)
+    old, new = edit.numbers
+    told = _("{name}, {what}: {old:.6g} should be {new:.6g}")
+    return told.format(**said, old=old, new=new)
 
 
 def _pieces(edit: Edit, trial: Trial) -> tuple[str, str]:

@@ -100,7 +100,9 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        causes = _causes(found, engine)
+        looking = case.looked_through(engine, TOLERANCES.formula_agrees)
+        edited: list[Cause] = next((found_.causes for found_ in looking if found_.causes), [])
+        causes = edited[:1] or _causes(found, engine)
         causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
         told = verdicts.of_digits(furthest).remarks
