@@ -163,7 +163,7 @@ def _explained(
         ways = [] if (written and causes) or signs else ready(case)
         every = [*_singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
-        if ways and not edited and all(cause.cost > _FETCHED for cause in exact):
+        if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         rough = [] if exact else _roughly(every, worst)

@@ -139,7 +139,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
     trig = isinstance(parent, ast.Call) and called(parent) in ANGLES
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
-    negative = isinstance(node, ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
+    negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
         cost = 1.0 if whole or first else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
@@ -160,6 +160,13 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
         yield from _scalars(here, scope, summand or whole or below, operated)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
+
+
+def _leftmost(node: ast.expr) -> ast.expr:
+    """What a product begins with, where its sign stands: ``-a`` of ``-a*b``."""
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div | ast.MatMult):
+        node = node.left
+    return node
 
 
 def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:

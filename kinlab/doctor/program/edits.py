@@ -74,6 +74,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
         yield from of_operator(here, observed, index or whole)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         yield here.instead(node.operand, "sign", 1.0)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
+        yield here.instead(ast.UnaryOp(ast.USub(), node.operand), "sign", 1.0)
     elif isinstance(node, ast.Call):
         yield from of_call(here, scope, observed)
     elif isinstance(node, ast.Subscript):
@@ -134,7 +136,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
             yield Edit(here.part, swap, "condition", 1.2, node)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign) and isinstance(here.holder, list):
-        for name in {n.id for t in node.targets for n in ast.walk(t) if isinstance(n, ast.Name)}:
+        for name in dict.fromkeys(n.id for t in node.targets for n in _names(t)):
             if scope.shapes.get(name) == () and name in scope.turned:
                 load = ast.BinOp(ast.Name(name, ast.Load()), ast.Mult(), number(pi / 180))
                 after = ast.Assign([ast.Name(name, ast.Store())], load)
@@ -142,6 +144,10 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
                 yield here.instead(both, "degrees", 1.1)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
+
+
+def _names(tree: ast.AST) -> list[ast.Name]:
+    return [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[Edit]:
@@ -212,6 +218,8 @@ def _orders(part: int, tree: ast.FunctionDef) -> Iterator[Edit]:
             for i in range(len(block)):
                 for j in range(i + 1, min(i + 6, len(block))):
                     moved = block[i]
+                    if isinstance(block[j], ast.Return):
+                        continue
                     if not (_sets(moved) & _uses(block[j]) or _uses(moved) & _sets(block[j])):
                         continue
                     later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]

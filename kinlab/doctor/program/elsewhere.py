@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numpy as np
-
 from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantity
 from kinlab.doctor.changes import Arguments, Case
@@ -25,9 +23,9 @@ def lines_elsewhere(
             function) to what it yields; see :meth:`kinlab.check.guest.Guest.ask`.
         case, wanted, allowed: as there.
     """
-    sent = (case.robot, case.quantity.name, case.index, case.arguments, wanted, allowed)
+    known = (case.robot, case.quantity.name, case.index, case.arguments, case.hand)
     try:
-        yield from ask(_there, language(), *sent)
+        yield from ask(_there, language(), *known, wanted, allowed)
     except KinlabError:
         return
 
@@ -39,10 +37,11 @@ def _there(
     name: str,
     index: tuple[Any, ...],
     arguments: Arguments,
+    hand: Array,
     wanted: Array,
     allowed: float,
 ) -> Iterator[Lines]:
     """Of a function of stacks that is made of one of states."""
-    case = Case(robot, quantity(name), arguments, np.empty(0), index)
+    case = Case(robot, quantity(name), arguments, hand, index)
     with speaking(spoken):
         yield from lines(function.__wrapped__, case, wanted, allowed)

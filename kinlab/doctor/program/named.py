@@ -23,11 +23,7 @@ def named(edit: Edit, search: Search) -> list[tuple[str, str]]:
         edit: of the program.
         search: whose program was observed.
     """
-    if (
-        table_of(search.case.robot) is None
-        or edit.part == DATA
-        or edit.kind in ("loop", "condition")
-    ):
+    if table_of(search.case.robot) is None or edit.kind in ("loop", "condition"):
         return []
     arguments = search.case.arguments
     known = [

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import functools
 import inspect
+import itertools
 import textwrap
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -53,9 +55,24 @@ _REACHING_OUT = frozenset(
         "vars",
         "setattr",
         "delattr",
+        "save",
+        "savez",
+        "savetxt",
+        "savez_compressed",
+        "tofile",
+        "dump",
+        "memmap",
+        "fromfile",
+        "ctypeslib",
     ]
 )
 """Functions that reach beyond arithmetic."""
+_ENDLESS = ("itertools.count", "itertools.cycle", "itertools.repeat")
+"""Iterators that only a condition of the program ends."""
+_KEEPING = frozenset(
+    ["append", "extend", "insert", "pop", "remove", "clear", "update", "add", "setdefault"]
+)
+"""Methods with which a program may remember what it was asked before."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,6 +141,8 @@ class _Reader:
             tree = tree_of(one)
             if tree is None or len(self.parts) == _MOST or not _plain(tree):
                 return None
+            if _remembers(tree, one):
+                return None
             self.parts[owner, name] = Part(name, tree, one, owner)
             if not self._names_of(one):
                 return None
@@ -170,6 +189,8 @@ def tree_of(function: FunctionType) -> ast.FunctionDef | None:
 
 
 def _from_source(function: FunctionType) -> ast.FunctionDef | None:
+    if hasattr(function, "__wrapped__"):
+        return None  # the source would be that of what it wraps
     try:
         lines, first = inspect.getsourcelines(function)
         module = ast.parse(textwrap.dedent("".join(lines)))
@@ -186,7 +207,7 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
 def _plain(tree: ast.FunctionDef) -> bool:
     """Whether a definition asks for nothing but arithmetic."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.Nonlocal | ast.Global | ast.Yield | ast.Await | ast.With | ast.Try):
+        if isinstance(node, _BEYOND):
             return False
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
         names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
@@ -194,7 +215,52 @@ def _plain(tree: ast.FunctionDef) -> bool:
             return False
         if isinstance(node, ast.Name) and node.id in _REACHING_OUT:
             return False
+        if isinstance(node, ast.Attribute) and node.attr in _REACHING_OUT:
+            return False
+        if isinstance(node, ast.Attribute) and ast.unparse(node) in _ENDLESS:
+            return False
     return True
+
+
+_BEYOND = (
+    ast.Nonlocal,
+    ast.Global,
+    ast.Yield,
+    ast.YieldFrom,
+    ast.Await,
+    ast.With,
+    ast.Try,
+    ast.TryStar,
+)
+"""What a program of plain arithmetic has not."""
+
+
+def _remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
+    """Whether a function keeps something from one call to the next: a list of what it was asked."""
+    known = {**function.__globals__, **_free(function)}
+    named = inspect.signature(function, follow_wrapped=False).parameters.values()
+    kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
+    own = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    own |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)} - kept
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            root = _root(node.func.value)
+            held = None if root is None or root in own else known.get(root, ())
+            if node.func.attr in _KEEPING and not isinstance(held, ModuleType | None):
+                return True
+        if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
+            root = _root(node.value)
+            held = None if root is None else known.get(root)
+            if root in kept or (root not in own and isinstance(held, dict)):
+                return True
+    return False
+
+
+def _root(node: ast.AST) -> str | None:
+    """The name that an expression begins with."""
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else None
 
 
 def written(owner: type, module: str | None) -> bool:
@@ -211,6 +277,19 @@ def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
     """
     if isinstance(value, ModuleType):
         return value.__name__.partition(".")[0] in _ARITHMETIC
+    if isinstance(value, MethodType | functools.partial):
+        inside = (
+            (value.__self__, value.__func__)
+            if isinstance(value, MethodType)
+            else (value.func, *value.args, *value.keywords.values())
+        )
+        return depth > 0 and all(_harmless(one, module, depth - 1) for one in inside)
+    if isinstance(value, BuiltinFunctionType) and isinstance(value.__self__, ModuleType):
+        return _harmless(value.__self__, module) and value.__name__ not in _REACHING_OUT
+    if any(value is one for one in (itertools.count, itertools.cycle, itertools.repeat)):
+        return False
+    if hasattr(value, "__wrapped__") and not isinstance(value, FunctionType | type):
+        return False  # a cache: what it answers does not change with the program
     if isinstance(value, list | tuple | set | frozenset | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])

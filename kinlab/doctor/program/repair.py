@@ -27,9 +27,9 @@ from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 
-_WORK = 2_000_000
+_WORK = 2_600_000
 """Expressions that may be evaluated, and nodes compiled, for single edits."""
-_SHARE = 4
+_SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
@@ -94,6 +94,16 @@ class Search:
         states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
         self.observed = Observed(self.trial, states)
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+
+    @property
+    def faithful(self) -> bool:
+        """Whether the program as it was read answers what the user's own function did."""
+        own, hand = self.values(self.watched), self.case.hand[self.watched]
+        if own is None or own.shape != hand.shape:
+            return False
+        if self.case.quantity.name in _ANY_ZERO:
+            hand = hand + (self.wanted[:1] - hand[:1])
+        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * float(np.max(np.abs(hand)))))
 
     @property
     def written_out(self) -> bool:

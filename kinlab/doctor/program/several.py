@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.program.places import Edit
+from kinlab.doctor.program.places import DATA, Edit
 from kinlab.doctor.program.repair import Repair, Search, changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
 from kinlab.doctor.text.pairs import pairs_adding_up
@@ -22,6 +22,8 @@ _STEPS = 4
 """Edits that make entries right from which is gone on."""
 _TRIPLES = 250
 """Edits of which any three are added up."""
+_PLAIN = 1.06
+"""Cost of edits that are tried first with each other."""
 _MATCH = 1e-8
 """Share of the answer's size within which effects add up."""
 _EXCHANGED = 0.5
@@ -131,16 +133,18 @@ def _each_with_each(search: Search, tried: Tried) -> Iterator[Repair]:
     wanted = search.wanted[search.first]
     sizes = search.sizes[search.first].reshape(-1, *[1] * (wanted.ndim - 1))
     likely, _rows = _distinct(tried, own, sizes)
+    plain = [edit for edit in likely if edit.cost <= _PLAIN]
     work = 0
-    for k, last in enumerate(likely):
-        for first in likely[:k]:
-            work += max(search.cost_of(first), search.cost_of(last))
-            if work > search.most // 2:
-                return
-            found = [*_verified(search, iter([(first, last)]))]
-            if found:
-                yield from found
-                return
+    for several_ in (plain, [edit for edit in likely if edit.part == DATA], likely):
+        for k, last in enumerate(several_):
+            for first in several_[:k]:
+                work += max(search.cost_of(first), search.cost_of(last))
+                if work > search.most // 3:
+                    return
+                found = [*_verified(search, iter([(first, last)]))]
+                if found:
+                    yield from found
+                    return
 
 
 def _verified(search: Search, ways: Iterator[tuple[Edit, ...]]) -> Iterator[Repair]:

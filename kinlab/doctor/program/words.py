@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from kinlab.arrays import Array
@@ -85,7 +85,12 @@ def lines(
     program = read(function)
     if program is None:
         return
-    search = Search(program, case, wanted, allowed)
+    try:
+        search = Search(program, case, wanted, allowed)
+    except Exception:  # noqa: BLE001  whatever a program may raise that does not stand where it was written
+        return
+    if not search.faithful:
+        return
     for found in (Search.singles, several):
         causes = [cause_of(repair, search) for repair in found(search)[:_MOST]]
         yield Lines(causes, search.written_out)
@@ -108,7 +113,13 @@ def cause_of(repair: Repair, search: Search) -> Cause:
 
 
 def _told(repair: Repair, trial: Trial) -> Iterator[str]:
+    lines = _by_statement(repair, trial)
     for edit in repair.edits:
+        statement, several = next(pair for pair in lines if any(one is edit for one in pair[1]))
+        if statement is not None and len(several) > 1:
+            if edit is several[0]:
+                yield _of_statement(statement, several, trial)
+            continue
         if edit.part == DATA:
             yield _of_data(edit)
             continue
@@ -120,6 +131,44 @@ def _told(repair: Repair, trial: Trial) -> Iterator[str]:
             yield _("{place}, `{old}`: {what}").format(**said)
         else:
             yield _("{place}, {what}: `{old}` should be `{new}`").format(**said)
+
+
+def _by_statement(repair: Repair, trial: Trial) -> list[tuple[ast.stmt | None, list[Edit]]]:
+    """The edits of a repair by the statement that they stand in; others each for itself."""
+    found: list[tuple[ast.stmt | None, list[Edit]]] = []
+    before = [_statements(tree) for tree in trial.trees]
+    with changed(trial, repair.edits):
+        after = [_statements(tree) for tree in trial.trees]
+    for edit in repair.edits:
+        own = None
+        if edit.part != DATA and edit.kind not in ("order of lines", "extra statement"):
+            own = before[edit.part].get(id(edit.node)) or after[edit.part].get(id(edit.node))
+        same = next((edits for one, edits in found if one is own and own is not None), None)
+        if same is None:
+            found.append((own, [edit]))
+        else:
+            same.append(edit)
+    return found
+
+
+def _statements(tree: ast.AST, inside: ast.stmt | None = None) -> dict[int, ast.stmt]:
+    """The statement around each node."""
+    own = tree if isinstance(tree, ast.stmt) else inside
+    out = {} if own is None else {id(tree): own}
+    for child in ast.iter_child_nodes(tree):
+        out |= _statements(child, own)
+    return out
+
+
+def _of_statement(statement: ast.stmt, several: list[Edit], trial: Trial) -> str:
+    """What is wrong in several places of one statement."""
+    old = _text(statement)
+    with changed(trial, tuple(several)):
+        new = _text(statement)
+    what = _("; ").join(dict.fromkeys(_(_WHAT[edit.kind]) for edit in several))
+    told = _("{place}, {what}: `{old}` should be `{new}`")
+    place = _line(replace(several[0], node=statement), trial)
+    return told.format(place=place, what=what, old=old, new=new)
 
 
 def _line(edit: Edit, trial: Trial) -> str:
@@ -180,7 +229,8 @@ def _after(edit: Edit) -> str:
 
 def _text(node: ast.AST) -> str:
     """A piece of a program as it is usually typed."""
-    return _typed(ast.unparse(node).partition("\n")[0].rstrip(":"))
+    text = ast.unparse(node).replace("_turn() and ", "")  # what ends loops is not the user's
+    return _typed(text.partition("\n")[0].rstrip(":"))
 
 
 def _typed(text: str) -> str:
