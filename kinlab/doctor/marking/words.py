@@ -93,6 +93,8 @@ KINDS: dict[str, str] = {
     N_("condition"): N_("a condition is off"),
     N_("entries swapped"): N_("two entries are exchanged"),
     N_("rows"): N_("other rows or columns are taken"),
+    N_("function"): N_("another function is called than should be"),
+    N_("name"): N_("a name stands where another belongs"),
     N_("product"): N_("a product of matrices and one of entries are mixed"),
     N_("missing matrix"): N_("a product with a matrix is missing"),
     N_("other"): N_("a known confusion"),

@@ -87,13 +87,28 @@ def lines(
         return
     try:
         search = Search(program, case, wanted, allowed)
-    except Exception:  # noqa: BLE001  whatever a program may raise that does not stand where it was written
+    except Exception:  # noqa: BLE001  what does not run where it was not written is not tried
         return
     if not search.faithful:
         return
     for found in (Search.singles, several):
         causes = [cause_of(repair, search) for repair in found(search)[:_MOST]]
         yield Lines(causes, search.written_out)
+
+
+def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
+    """What a line should be, with what that means where it is known.
+
+    Args:
+        edited: what lines should be, the likeliest first.
+        read: what the formula does otherwise, as a whole.
+    """
+    if not read or len(edited[0].kinds) > 1:
+        return edited[:1]
+    line, cause = edited[0], min(read, key=lambda one: one.cost)
+    said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
+    places = (*line.places, *cause.places)
+    return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
 
 
 def cause_of(repair: Repair, search: Search) -> Cause:

@@ -26,6 +26,7 @@ from kinlab.doctor.derivations.joined import (
     taken_otherwise,
     with_these,
 )
+from kinlab.doctor.program.words import meant
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
 from kinlab.doctor.solutions.lines import LineStudy, believed, joint_of, studied
 from kinlab.doctor.text.written import Written
@@ -100,9 +101,12 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        looking = case.looked_through(engine, TOLERANCES.formula_agrees)
+        assert case.quantity.read is not None
+        read = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
+        looking = read.looked_through(engine, TOLERANCES.formula_agrees)
         edited: list[Cause] = next((found_.causes for found_ in looking if found_.causes), [])
-        causes = edited[:1] or _causes(found, engine)
+        causes = _causes(found, engine)
+        causes = meant(edited, causes) if edited else causes
         causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
         told = verdicts.of_digits(furthest).remarks
