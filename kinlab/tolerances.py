@@ -197,6 +197,10 @@ class Tolerances:
     effect_matches: float = 1e-9
     """Share of the values within which the effect of an edit is the one that was looked for."""
 
+    effects_add_up: float = 1e-8
+    """Share of a program's answer within which the effects of edits add up to what is missing."""
+    tried_further: float = 1e-7
+    """Share of a program's answer that an edit may miss at the first states, to be tried at all."""
     no_effect: float = 1e-12
     """An effect below this share of the values is rounding: the edit changes nothing."""
 

@@ -18,7 +18,7 @@ import numpy as np
 
 
 @dataclass(frozen=True)
-class Program:
+class OwnProgram:
     """A right program: its robot, its quantity, its text; the function is called ``f``."""
 
     robot: str
@@ -27,7 +27,7 @@ class Program:
 
 
 PROGRAMS = {
-    "planar fk": Program(
+    "planar fk": OwnProgram(
         "planar2r",
         "fk",
         '''
@@ -47,7 +47,7 @@ def f(q):
                      [0, 0, 0, 1]])
 ''',
     ),
-    "planar jacobian": Program(
+    "planar jacobian": OwnProgram(
         "planar2r",
         "jacobian",
         """
@@ -69,7 +69,7 @@ def f(q):
     return J
 """,
     ),
-    "planar mass matrix": Program(
+    "planar mass matrix": OwnProgram(
         "planar2r",
         "mass_matrix",
         """
@@ -86,7 +86,7 @@ def f(q):
     return np.array([[M11, M12], [M12, M22]])
 """,
     ),
-    "planar torques": Program(
+    "planar torques": OwnProgram(
         "planar2r",
         "inverse_dynamics",
         """
@@ -110,7 +110,7 @@ def f(q, qd, qdd):
     return np.array([tau1, tau2])
 """,
     ),
-    "planar energy": Program(
+    "planar energy": OwnProgram(
         "planar2r",
         "kinetic_energy",
         """
@@ -128,7 +128,7 @@ def f(q, qd):
     return T1 + T2
 """,
     ),
-    "rods mass matrix": Program(
+    "rods mass matrix": OwnProgram(
         "planar2r_rods",
         "mass_matrix",
         """
@@ -151,7 +151,7 @@ def f(q):
     return M
 """,
     ),
-    "dh fk": Program(
+    "dh fk": OwnProgram(
         "puma560",
         "fk",
         """
@@ -177,7 +177,7 @@ def f(q):
     return T
 """,
     ),
-    "dh jacobian": Program(
+    "dh jacobian": OwnProgram(
         "puma560",
         "jacobian",
         """
@@ -208,7 +208,7 @@ def f(q):
     return J
 """,
     ),
-    "three links gravity": Program(
+    "three links gravity": OwnProgram(
         "planar3r",
         "gravity_torques",
         """
@@ -235,7 +235,7 @@ def f(q):
     return out
 """,
     ),
-    "three links statics": Program(
+    "three links statics": OwnProgram(
         "planar3r",
         "statics",
         """
@@ -255,7 +255,7 @@ def f(q, W):
                      x3 * fy - y3 * fx + nz])
 """,
     ),
-    "newton-euler": Program(
+    "newton-euler": OwnProgram(
         "planar3r",
         "inverse_dynamics",
         """
@@ -298,7 +298,7 @@ def f(q, qd, qdd):
     return tau
 """,
     ),
-    "three links potential": Program(
+    "three links potential": OwnProgram(
         "spatial3r",
         "gravity_torques",
         """

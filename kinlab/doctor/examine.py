@@ -33,7 +33,7 @@ from kinlab.doctor.derivations.parts import Apart, apart, proved
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
-from kinlab.doctor.program.words import Lines, meant
+from kinlab.doctor.program.words import WrongLines, meant
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -151,7 +151,7 @@ def _explained(
     visible = bool(causes) and len(causes[0].kinds) <= 1
     read = same and not written and (silent is not None or not signs)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
-    program: Lines | None = next(looking, None)
+    program: WrongLines | None = next(looking, None)
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []

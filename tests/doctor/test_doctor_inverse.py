@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -219,6 +220,8 @@ def test_a_slide_on_a_hinge(tmp_path: Any) -> None:
 
     assert kl.diagnose(robot, XY, solve, samples=40).agrees
     found = kl.diagnose(robot, XY, lambda x, y: solve(x, y, 0.0), samples=40)
+    assert "`return solve(x, y, 0.0)` should be `return solve(x, y, 0.1)`" in found.sentence
+    found = kl.diagnose(robot, XY, partial(solve, offset=0.0), samples=40)
     assert "leaves e**2 out in side*sqrt(x**2 + y**2 - e**2)" in found.sentence
 
 

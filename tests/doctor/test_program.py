@@ -147,7 +147,7 @@ def test_several_slips(name, slips, student) -> None:
     assert any(np.allclose(one, wanted, rtol=1e-9, atol=1e-9) for one in repairs)
 
 
-# -------- Lines are those of the file
+# -------- WrongLines are those of the file
 
 
 FILES = {

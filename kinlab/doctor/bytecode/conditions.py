@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 
 from kinlab.doctor.bytecode.expressions import at, span_of
-from kinlab.doctor.bytecode.instructions import Span, Step
+from kinlab.doctor.bytecode.instructions import CodeStep, Span
 
 
 @dataclass
@@ -24,15 +24,15 @@ class Decision:
     """
 
     test: ast.expr
-    yes: Step
-    no: Step
+    yes: CodeStep
+    no: CodeStep
     value: bool
-    falls: Step | None
-    paths: Counter[Step]
+    falls: CodeStep | None
+    paths: Counter[CodeStep]
     span: Span | None
 
 
-def joined(one: Decision, two: Decision, falls: Step, other: Step) -> Decision | None:
+def joined(one: Decision, two: Decision, falls: CodeStep, other: CodeStep) -> Decision | None:
     """Two decisions as one ``and`` or ``or``, the second asked where the first falls through."""
     holds = falls is one.yes
     if other not in (two.yes, two.no):

@@ -102,7 +102,7 @@ class Hole:
 
 
 @dataclass
-class Hand:
+class CodeHand:
     """Where the reader is: the stack, what is being stored, and the statements so far."""
 
     stack: list[object]

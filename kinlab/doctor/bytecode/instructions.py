@@ -25,7 +25,7 @@ class UnreadError(Exception):
 
 
 @dataclass(eq=False, slots=True)
-class Step:
+class CodeStep:
     """One thing the interpreter does.
 
     Attributes:
@@ -46,7 +46,7 @@ class Step:
     bit: int
     span: Span | None
     index: int
-    after: list[Step] = field(default_factory=list)
+    after: list[CodeStep] = field(default_factory=list)
     falls: int = 0
     ends: int = 0
 
@@ -75,7 +75,7 @@ FLAGS = inspect.CO_OPTIMIZED | inspect.CO_NEWLOCALS | inspect.CO_VARARGS | inspe
 FLAGS |= inspect.CO_GENERATOR | inspect.CO_COROUTINE | inspect.CO_ASYNC_GENERATOR
 
 
-def entry(code: CodeType) -> Step:
+def entry(code: CodeType) -> CodeStep:
     """The first step of a code object, its graph behind it.
 
     Raises:
@@ -89,7 +89,7 @@ def entry(code: CodeType) -> Step:
     place = {i.offset: n for n, i in enumerate(instructions)}
     steps = [_step(code, n, i) for n, i in enumerate(instructions)]
 
-    def at(n: int) -> Step:
+    def at(n: int) -> CodeStep:
         seen: set[int] = set()
         while n not in seen:
             seen.add(n)
@@ -138,20 +138,20 @@ def _target(instruction: dis.Instruction) -> int:
     return int(instruction.argval)
 
 
-def _in_parts(step: Step) -> None:
+def _in_parts(step: CodeStep) -> None:
     """A step that does two things, as two."""
     names, span, index = step.value, step.span, step.index + 1
     second = None
     if step.op == "RETURN_CONST":
-        second, step.op = Step("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
+        second, step.op = CodeStep("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
     elif step.op in DOUBLE and isinstance(names, tuple):
-        second = Step(DOUBLE[step.op][1], names[1], 0, span, index, step.after)
+        second = CodeStep(DOUBLE[step.op][1], names[1], 0, span, index, step.after)
         step.op, step.value = DOUBLE[step.op][0], names[0]
     if second is not None:
         step.after = [second]
 
 
-def _keeping(step: Step) -> None:
+def _keeping(step: CodeStep) -> None:
     """``COPY``, a test and ``POP_TOP`` as one step that keeps its value where it jumps."""
     test = step.after[0] if step.op == "COPY" and step.value == 1 and step.after else step
     if test.op == "TEST" and test.value is True:
@@ -161,7 +161,7 @@ def _keeping(step: Step) -> None:
             step.span, step.after = test.span, [falls.after[0], jumps]
 
 
-def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
+def _step(code: CodeType, n: int, instruction: dis.Instruction) -> CodeStep:
     op = instruction.opname
     value: object = instruction.argval
     bit = (instruction.arg or 0) & 1 if op in BITS else 0
@@ -185,13 +185,13 @@ def _step(code: CodeType, n: int, instruction: dis.Instruction) -> Step:
     if p is not None and p.lineno is not None:
         end = p.lineno if p.end_lineno is None else p.end_lineno
         span = (p.lineno, end, p.col_offset or 0, p.end_col_offset or 0)
-    return Step(op, value, bit, span, 2 * n)
+    return CodeStep(op, value, bit, span, 2 * n)
 
 
-def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:
+def reachable(starts: Iterable[CodeStep], stops: Iterable[CodeStep] = ()) -> set[CodeStep]:
     """The steps that can follow, with the stops that are met but not what is behind these."""
     end = set(stops)
-    seen: set[Step] = set()
+    seen: set[CodeStep] = set()
     left = list(starts)
     while left:
         step = left.pop()
@@ -202,14 +202,14 @@ def reachable(starts: Iterable[Step], stops: Iterable[Step] = ()) -> set[Step]:
     return seen
 
 
-def leading(to: Step, within: set[Step], stops: Iterable[Step] = ()) -> set[Step]:
+def leading(to: CodeStep, within: set[CodeStep], stops: Iterable[CodeStep] = ()) -> set[CodeStep]:
     """The steps among some that can lead to one, not past the stops."""
     end = set(stops)
-    before: dict[Step, list[Step]] = {}
+    before: dict[CodeStep, list[CodeStep]] = {}
     for step in within - end:
         for after in step.after:
             before.setdefault(after, []).append(step)
-    seen: set[Step] = set()
+    seen: set[CodeStep] = set()
     left = [to]
     while left:
         step = left.pop()
@@ -219,16 +219,16 @@ def leading(to: Step, within: set[Step], stops: Iterable[Step] = ()) -> set[Step
     return seen & (within | {to})
 
 
-def folded(first: Step) -> Step:
+def folded(first: CodeStep) -> CodeStep:
     """The graph with the compiler's copies of one piece of source made one again.
 
     Copies (of a short exit, of the test of a ``while``) stand at the same place of the source, do
     the same and lead to the same.
     """
     steps = sorted(reachable([first]), key=lambda step: step.index)
-    same: dict[Step, Step] = {}
+    same: dict[CodeStep, CodeStep] = {}
 
-    def root(step: Step) -> Step:
+    def root(step: CodeStep) -> CodeStep:
         while step in same:
             step = same[step]
         return step
@@ -236,7 +236,7 @@ def folded(first: Step) -> Step:
     changed = True
     while changed:
         changed = False
-        known: dict[object, Step] = {}
+        known: dict[object, CodeStep] = {}
         for step in steps:
             if step in same or step.span is None:
                 continue
@@ -250,7 +250,7 @@ def folded(first: Step) -> Step:
     return root(first)
 
 
-def unchain(first: Step) -> None:
+def unchain(first: CodeStep) -> None:
     """Make ``a < b < c`` one path: the way out in its middle only throws a value away."""
     for step in sorted(reachable([first]), key=lambda step: step.index):
         path = [step]
@@ -290,7 +290,7 @@ def alike(one: CodeType, two: CodeType, *, named: bool = True) -> bool:
     if _signature(one) != _signature(two) or (named and one.co_name != two.co_name):
         return False
     pairs = [(entry(one), entry(two))]
-    seen: set[tuple[Step, Step]] = set()
+    seen: set[tuple[CodeStep, CodeStep]] = set()
     while pairs:
         pair = pairs.pop()
         if pair in seen:

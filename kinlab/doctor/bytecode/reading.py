@@ -10,8 +10,8 @@ from types import CodeType
 from kinlab.doctor.bytecode.conditions import Decision, is_none, joined, negated, place, together
 from kinlab.doctor.bytecode.expressions import (
     Changed,
+    CodeHand,
     Element,
-    Hand,
     Imported,
     Iterated,
     Made,
@@ -22,8 +22,8 @@ from kinlab.doctor.bytecode.expressions import (
 )
 from kinlab.doctor.bytecode.instructions import (
     LAST,
+    CodeStep,
     Span,
-    Step,
     UnreadError,
     arguments,
     docstring,
@@ -39,7 +39,7 @@ BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
 """What puts an element into what lies below on the stack: at once, so not to be tried."""
 
-Stops = dict[Step, str]
+Stops = dict[CodeStep, str]
 """Where a part of a function ends, and how one gets there: ``on``, ``continue``, ``break``."""
 
 
@@ -108,7 +108,7 @@ class Reader:
         """The statements of a function."""
         return self.region(self.first, [], {})
 
-    def region(self, step: Step | None, stack: list[object], stops: Stops) -> list[ast.stmt]:
+    def region(self, step: CodeStep | None, stack: list[object], stops: Stops) -> list[ast.stmt]:
         """The statements from a step on, up to the stops."""
         out: list[ast.stmt] = []
         while step is not None:
@@ -127,14 +127,14 @@ class Reader:
         return out
 
     def statement(
-        self, step: Step, stack: list[object], stops: Stops, out: list[ast.stmt], base: int = -1
-    ) -> Step | None:
+        self, step: CodeStep, stack: list[object], stops: Stops, out: list[ast.stmt], base: int = -1
+    ) -> CodeStep | None:
         """One statement; the step after it."""
         base = len(stack) if base < 0 else base
         self.left -= 1
         if self.left < 0:
             raise UnreadError("read again and again")
-        hand = Hand(stack, [], out)
+        hand = CodeHand(stack, [], out)
         start, lines = step, len(out)
         while True:
             if step.op in BRANCHES:
@@ -164,7 +164,7 @@ class Reader:
                 raise UnreadError("an end within an expression")
             step = step.after[0]
 
-    def flush(self, hand: Hand) -> None:
+    def flush(self, hand: CodeHand) -> None:
         """Make what was stored into statements."""
         stored, hand.stored = hand.stored, []
         values: list[object] = []
@@ -218,7 +218,7 @@ class Reader:
 
     # Conditions
 
-    def branch(self, step: Step, hand: Hand) -> Decision:
+    def branch(self, step: CodeStep, hand: CodeHand) -> Decision:
         """A conditional jump as a decision, its value taken from the stack."""
         top = hand.pop()
         test = self.finish(top, None, step.span) if isinstance(top, Made) else hand.as_expr(top)
@@ -233,15 +233,15 @@ class Reader:
         falls = step.after[step.falls]
         return Decision(test, first, second, False, falls, Counter(step.after), step.span)
 
-    def decide(self, step: Step, stack: list[object]) -> Decision | None:
+    def decide(self, step: CodeStep, stack: list[object]) -> Decision | None:
         """The condition or the value that begins at a step; None if a statement begins there."""
         try:
             return self._decide(step, stack)
         except UnreadError:
             return None
 
-    def _decide(self, step: Step, stack: list[object]) -> Decision | None:
-        hand = Hand(list(stack))
+    def _decide(self, step: CodeStep, stack: list[object]) -> Decision | None:
+        hand = CodeHand(list(stack))
         height, fresh, start = len(stack), False, step
         while True:
             if step.op in BRANCHES:
@@ -304,7 +304,7 @@ class Reader:
 
     def condition(
         self, decision: Decision, stack: list[object], stops: Stops, out: list[ast.stmt]
-    ) -> Step | None:
+    ) -> CodeStep | None:
         """An ``if``; the step after it."""
         body_step = decision.falls or decision.yes
         holds = body_step is decision.yes
@@ -328,7 +328,7 @@ class Reader:
         node.orelse = self.region(other, list(stack), inner)
         return follow
 
-    def meeting(self, one: Step, two: Step, stops: Stops) -> Step | None:
+    def meeting(self, one: CodeStep, two: CodeStep, stops: Stops) -> CodeStep | None:
         """Where two paths meet again before the part of the function ends."""
         if one in stops and stops[one] != "on":
             return None
@@ -343,8 +343,8 @@ class Reader:
     # Loops
 
     def loop(
-        self, head: Step, stack: list[object], stops: Stops, out: list[ast.stmt]
-    ) -> Step | None:
+        self, head: CodeStep, stack: list[object], stops: Stops, out: list[ast.stmt]
+    ) -> CodeStep | None:
         """A ``while``; the step after it."""
         decision = self.decide(head, stack)
         around = [*stops, head]
@@ -375,8 +375,8 @@ class Reader:
         return last
 
     def turns(
-        self, head: Step, stack: list[object], stops: Stops, out: list[ast.stmt]
-    ) -> Step | None:
+        self, head: CodeStep, stack: list[object], stops: Stops, out: list[ast.stmt]
+    ) -> CodeStep | None:
         """A ``for``; the step after it."""
         through = stack.pop()
         over = through.over if isinstance(through, Iterated) else through
@@ -396,8 +396,13 @@ class Reader:
         return end
 
     def leaving(
-        self, head: Step, body: list[Step], leave: Step, stack: list[object], stops: Stops
-    ) -> tuple[Step, list[ast.stmt]]:
+        self,
+        head: CodeStep,
+        body: list[CodeStep],
+        leave: CodeStep,
+        stack: list[object],
+        stops: Stops,
+    ) -> tuple[CodeStep, list[ast.stmt]]:
         """Where a loop's ``break`` leads, and the lines of its ``else``."""
         around = [*stops, head]
         within = leading(head, reachable(body, around), stops)
@@ -447,7 +452,7 @@ class Reader:
         made = stack[0] if stack else None
         return _comprehension(self.region(first, stack, {}), made, over)
 
-    def gathered(self, head: Step, stack: list[object]) -> Step:
+    def gathered(self, head: CodeStep, stack: list[object]) -> CodeStep:
         """A comprehension within its function (3.12 on), left on the stack; the step after it."""
         through, made, lines = stack[-1], stack[-2], list[ast.stmt]()
         behind = self.turns(head, stack, {}, lines)
@@ -532,7 +537,7 @@ def _turn(node: ast.expr) -> int:
     return max(getattr(part, "turn", -1) for part in ast.walk(node))
 
 
-def _stamp(lines: list[ast.stmt], step: Step) -> None:
+def _stamp(lines: list[ast.stmt], step: CodeStep) -> None:
     """A place for statements that have no expression to take it from."""
     for line in lines:
         if isinstance(line, (ast.Import, ast.ImportFrom)):

@@ -14,7 +14,7 @@ from kinlab.doctor.bytecode.expressions import (
     SELF,
     UNARY,
     Changed,
-    Hand,
+    CodeHand,
     Hole,
     Imported,
     Iterated,
@@ -27,7 +27,7 @@ from kinlab.doctor.bytecode.expressions import (
     literal,
     span_of,
 )
-from kinlab.doctor.bytecode.instructions import Span, Step, UnreadError
+from kinlab.doctor.bytecode.instructions import CodeStep, Span, UnreadError
 
 NULL_ABOVE = sys.version_info >= (3, 13)
 """Whether the empty entry of a call lies above its function, not below."""
@@ -36,7 +36,7 @@ Finish = Callable[[Made, "ast.expr | None", "Span | None"], ast.expr]
 """A function just made as an expression: a lambda, or a comprehension over what is given."""
 
 
-def do(step: Step, hand: Hand, finish: Finish) -> None:
+def do(step: CodeStep, hand: CodeHand, finish: Finish) -> None:
     """One step that does not jump.
 
     Raises:
@@ -288,7 +288,7 @@ def _joined(parts: list[ast.expr], span: Span | None) -> ast.JoinedStr:
     return at(ast.JoinedStr(values), span)
 
 
-def _pop_top(hand: Hand, pop: Callable[[], ast.expr], span: Span | None) -> None:
+def _pop_top(hand: CodeHand, pop: Callable[[], ast.expr], span: Span | None) -> None:
     top = hand.stack[-1] if hand.stack else None
     if isinstance(top, Module):
         hand.pop()
@@ -303,7 +303,7 @@ def _pop_top(hand: Hand, pop: Callable[[], ast.expr], span: Span | None) -> None
         hand.out.append(at(ast.Expr(node), None))
 
 
-def _compare(step: Step, hand: Hand, pop: Callable[[], ast.expr]) -> None:
+def _compare(step: CodeStep, hand: CodeHand, pop: Callable[[], ast.expr]) -> None:
     right, left = pop(), pop()
     kind, value = step.op, step.value
     if kind == "CHAIN":
@@ -327,7 +327,7 @@ def _compare(step: Step, hand: Hand, pop: Callable[[], ast.expr]) -> None:
 
 
 def _call(
-    hand: Hand,
+    hand: CodeHand,
     count: int,
     pop: Callable[[], ast.expr],
     many: Callable[[int], list[ast.expr]],
@@ -367,7 +367,7 @@ def _call(
     hand.stack.append(node)
 
 
-def _call_stars(hand: Hand, named: int, pop: Callable[[], ast.expr], span: Span | None) -> None:
+def _call_stars(hand: CodeHand, named: int, pop: Callable[[], ast.expr], span: Span | None) -> None:
     keywords: list[ast.keyword] = []
     if named:
         given = pop()
@@ -396,7 +396,7 @@ def _starred(node: ast.Tuple) -> bool:
     return any(isinstance(element, ast.Starred) for element in node.elts)
 
 
-def _made(hand: Hand, flags: int, pop: Callable[[], ast.expr]) -> Made:
+def _made(hand: CodeHand, flags: int, pop: Callable[[], ast.expr]) -> Made:
     code = hand.pop()
     if not isinstance(code, Raw) or not isinstance(code.value, CodeType):
         raise UnreadError("a function without code")

@@ -26,7 +26,7 @@ from kinlab.doctor.marking.own_answer import with_answer
 from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
-from kinlab.doctor.program.words import Lines
+from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.doctor.text.own_names import in_robot_names
@@ -64,7 +64,7 @@ def of_values(
     student: str,
     values: Array,
     level: str,
-    lines: Callable[..., Iterator[Lines]] | None = None,
+    lines: Callable[..., Iterator[WrongLines]] | None = None,
 ) -> Outcome:
     """The outcome of a question that a function answered.
 

@@ -32,7 +32,7 @@ from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.program.elsewhere import lines_elsewhere
-from kinlab.doctor.program.words import Lines
+from kinlab.doctor.program.words import WrongLines
 from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _
@@ -122,8 +122,8 @@ def _run(request: str) -> tuple[dict[str, Any], str]:
 
 
 def _ask(
-    program: str, names: list[str], work: Callable[..., Iterator[Lines]], *arguments: Any
-) -> Iterator[Lines]:
+    program: str, names: list[str], work: Callable[..., Iterator[WrongLines]], *arguments: Any
+) -> Iterator[WrongLines]:
     """What some work on one function yields in a process of its own; only text comes back.
 
     That process knows kinlab and the right answers, and says which slips it finds, which cost
@@ -139,7 +139,9 @@ def _ask(
                 told = _line(content.decode("utf-8", "replace"))
                 if ending or not told:
                     return
-                yield Lines([_cause(**one) for one in told["causes"]], bool(told["written_out"]))
+                yield WrongLines(
+                    [_cause(**one) for one in told["causes"]], bool(told["written_out"])
+                )
                 request = b"\n"
         except (OSError, TypeError, ValueError, KeyError):
             return

@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Edit, Here, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
 
 ANGLES = ("sin", "cos", "tan")
@@ -25,6 +25,7 @@ class Scope:
     """What may be written in one part: its names with their shapes, and its expressions.
 
     Attributes:
+        observed: what its expressions were.
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
@@ -38,6 +39,7 @@ class Scope:
 
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
         tree = trial.trees[part]
+        self.observed = observed
         self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
@@ -112,7 +114,14 @@ class Scope:
         """What a piece costs less for being used nowhere."""
         del text
         names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-        return 0.0 if names & self.unused else _UNUSED
+        short = isinstance(node, ast.Name)
+        return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
+
+    def is_pose(self, node: ast.AST) -> bool:
+        """Whether a matrix is a transform, which nobody transposes."""
+        seen = self.observed.of(node)
+        rows = [x[3] for x in seen.values if x.shape == (4, 4)] if seen is not None else []
+        return bool(rows) and all(np.array_equal(row, (0, 0, 0, 1)) for row in rows)
 
     def simple(self, shape: Shape) -> Iterator[tuple[str, ast.expr]]:
         """Names, entries of lists and attributes of one shape."""
@@ -121,7 +130,7 @@ class Scope:
                 yield text, node
 
 
-def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
+def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     """A sign, a transpose, a factor, a term more: where an expression stands for itself."""
     node, parent = here.node, here.parent
     zero = isinstance(node, ast.Constant) and node.value == 0
@@ -141,7 +150,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
-        cost = 1.0 if whole or first else 1.1
+        cost = 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
@@ -169,9 +178,10 @@ def _leftmost(node: ast.expr) -> ast.expr:
     return node
 
 
-def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
+def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
-    if len(shape) == 2 and not (isinstance(node, ast.Attribute) and node.attr == "T"):
+    transposed = isinstance(node, ast.Attribute) and node.attr == "T"
+    if len(shape) == 2 and not transposed and not scope.is_pose(node):
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", 1.04)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
@@ -192,7 +202,7 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[Edit]:
                 cost += 0.02
 
 
-def _angle(here: Here, scope: Scope) -> Iterator[Edit]:
+def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
@@ -203,7 +213,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[Edit]:
             yield here.instead(ast.BinOp(node, ast.Add(), angle), "argument", cost)
 
 
-def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[Edit]:
+def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[ProgramEdit]:
     node, parent = here.node, here.parent
     own = ast.unparse(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
@@ -224,7 +234,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[E
                 yield here.instead(new, "missing term", cost + dear)
 
 
-def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Edit]:
+def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:
     node = here.node
     own = ast.unparse(node)
     entry = isinstance(here.parent, ast.List | ast.Tuple)

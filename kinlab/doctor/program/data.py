@@ -11,15 +11,15 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, Edit, places
-from kinlab.doctor.program.trial import Change, Trial
+from kinlab.doctor.program.places import DATA, ProgramEdit, places
+from kinlab.doctor.program.trial import FieldChange, Trial
 
 _RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
 _TABLE = 60
 """Numbers of an array of which any may be wrong."""
 
 
-def of_data(trial: Trial) -> Iterator[Edit]:
+def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     """Every number of the data with another sign, doubled, halved, or taken for degrees."""
     for leaf in _leaves(trial):
         if leaf.value:
@@ -34,7 +34,7 @@ def of_data(trial: Trial) -> Iterator[Edit]:
     for name in trial.program.data:
         value = trial.space[name]
         for new, kind in _whole(value):
-            yield Edit(DATA, (Change(trial.space, name, new),), kind, 1.1, name)
+            yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
 
 
 def _whole(value: Any) -> Iterator[tuple[Any, str]]:
@@ -49,7 +49,7 @@ def _whole(value: Any) -> Iterator[tuple[Any, str]]:
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class NumberPlace:
     """A number in the text of a program, or in its data.
 
     Attributes:
@@ -69,19 +69,19 @@ class Place:
     place: tuple[Any, ...] = ()
     inner: tuple[int, ...] = ()
 
-    def edit(self, value: float, kind: str = "number", cost: float = 1.15) -> Edit:
+    def edit(self, value: float, kind: str = "number", cost: float = 1.15) -> ProgramEdit:
         """Another number there."""
         new: Any = value
         if self.inner:
             items = _of_items(self.holder)
             old = self.holder[self.field] if items else getattr(self.holder, self.field)
             new = _rebuilt(old, self.inner, value)
-        change = Change(self.holder, self.field, new)
+        change = FieldChange(self.holder, self.field, new)
         both = (float(self.value), float(value))
-        return Edit(self.part, (change,), kind, cost, self.node, self.place, both)
+        return ProgramEdit(self.part, (change,), kind, cost, self.node, self.place, both)
 
 
-def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
+def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
     """Numbers that are no index."""
     for part, tree in enumerate(trial.trees):
         for here in places(part, tree):
@@ -90,20 +90,20 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[Place]:
                 continue
             counts = type(node.value) is int and isinstance(here.parent, ast.BinOp)
             if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
-                yield Place(node.value, part, node, "value", node)
+                yield NumberPlace(node.value, part, node, "value", node)
     yield from _leaves(trial)
 
 
-def _leaves(trial: Trial) -> Iterator[Place]:
+def _leaves(trial: Trial) -> Iterator[NumberPlace]:
     for name in trial.program.data:
         yield from _within(trial.space, name, trial.space[name], name, (), ())
 
 
 def _within(
     holder: Any, key: Any, value: Any, name: str, place: tuple[Any, ...], inner: tuple[int, ...]
-) -> Iterator[Place]:
+) -> Iterator[NumberPlace]:
     if isinstance(value, float | int) and not isinstance(value, bool):
-        yield Place(value, DATA, holder, key, name, place, inner)
+        yield NumberPlace(value, DATA, holder, key, name, place, inner)
     elif isinstance(value, tuple):
         for k, one in enumerate(value):
             if not isinstance(one, list | dict | np.ndarray):
@@ -114,7 +114,7 @@ def _within(
         yield from _below(value, name, place)
 
 
-def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[Place]:
+def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[NumberPlace]:
     """The numbers in a list, a dictionary, an array, an object."""
     if isinstance(value, dict | list):
         for k, one in value.items() if isinstance(value, dict) else enumerate(value):
@@ -123,7 +123,7 @@ def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[Place]:
         if value.dtype.kind == "f" and value.size <= _TABLE:
             for index in np.ndindex(value.shape):
                 entry = (*place, *index)
-                yield Place(float(value[index]), DATA, value, index, name, entry)
+                yield NumberPlace(float(value[index]), DATA, value, index, name, entry)
     elif hasattr(value, "__dict__"):
         for k, one in vars(value).items():
             if not k.startswith("__") and not callable(one):

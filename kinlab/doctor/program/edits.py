@@ -29,13 +29,13 @@ from kinlab.doctor.program.operators import (
     value_of,
     whole_constant,
 )
-from kinlab.doctor.program.places import Edit, Here, number, places
-from kinlab.doctor.program.trial import Change, Trial
+from kinlab.doctor.program.places import Here, ProgramEdit, number, places
+from kinlab.doctor.program.trial import FieldChange, Trial
 
 
-def edits(trial: Trial, observed: Observed) -> list[Edit]:
+def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
     """Every single edit of a program, the likeliest first."""
-    found: list[Edit] = []
+    found: list[ProgramEdit] = []
     for part, tree in enumerate(trial.trees):
         scope = Scope(trial, observed, part)
         for here in places(part, tree):
@@ -51,14 +51,14 @@ def edits(trial: Trial, observed: Observed) -> list[Edit]:
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
 
 
-def _line(edit: Edit) -> int:
+def _line(edit: ProgramEdit) -> int:
     return getattr(edit.node, "lineno", 0)
 
 
 # -------- Expressions
 
 
-def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
+def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node)
     seen = observed.of(node)
@@ -73,7 +73,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        yield here.instead(node.operand, "sign", 1.0)
+        yield here.instead(node.operand, "sign", 0.97)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
         yield here.instead(ast.UnaryOp(ast.USub(), node.operand), "sign", 1.0)
     elif isinstance(node, ast.Call):
@@ -111,7 +111,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
 # -------- Statements
 
 
-def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
+def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     if isinstance(node, ast.AugAssign):
         if isinstance(node.op, ast.Add | ast.Sub):
@@ -132,8 +132,8 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
         yield from _counted(here, scope)
     if isinstance(node, ast.If):
         if node.orelse:
-            swap = (Change(node, "body", node.orelse), Change(node, "orelse", node.body))
-            yield Edit(here.part, swap, "condition", 1.2, node)
+            swap = (FieldChange(node, "body", node.orelse), FieldChange(node, "orelse", node.body))
+            yield ProgramEdit(here.part, swap, "condition", 1.2, node)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign) and isinstance(here.holder, list):
         for name in dict.fromkeys(n.id for t in node.targets for n in _names(t)):
@@ -150,7 +150,7 @@ def _names(tree: ast.AST) -> list[ast.Name]:
     return [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
 
 
-def _counted(here: Here, scope: Scope) -> Iterator[Edit]:
+def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
     value = here.node.value
     used = [n.id for n in ast.walk(value) if isinstance(n, ast.Name)] if value else []
@@ -177,14 +177,14 @@ class _Moved(ast.NodeTransformer):
         return plus(node, self.step) if node.id == self.counter else node
 
 
-def _comparison_of(here: Here, test: ast.expr) -> Iterator[Edit]:
+def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
     if isinstance(test, ast.Compare) and len(test.comparators) == 1:
         right = test.comparators[0]
         for step in (1, -1):
             yield here.within(test, "comparators", [plus(right, step)], "condition", 1.25)
 
 
-def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
+def _target(here: Here, target: ast.Subscript) -> Iterator[ProgramEdit]:
     """Where the value is put."""
     key = target.slice
     keys = key.elts if isinstance(key, ast.Tuple) else [key]
@@ -208,7 +208,7 @@ def _target(here: Here, target: ast.Subscript) -> Iterator[Edit]:
                 yield here.within(holder, field, plus(one, step), "index", 1.15)
 
 
-def _orders(part: int, tree: ast.FunctionDef) -> Iterator[Edit]:
+def _orders(part: int, tree: ast.FunctionDef) -> Iterator[ProgramEdit]:
     """Two statements in the other order, where one uses what the other sets."""
     for node in ast.walk(tree):
         for name in ("body", "orelse"):
@@ -223,12 +223,12 @@ def _orders(part: int, tree: ast.FunctionDef) -> Iterator[Edit]:
                     if not (_sets(moved) & _uses(block[j]) or _uses(moved) & _sets(block[j])):
                         continue
                     later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
-                    change = Change(node, name, later)
-                    yield Edit(part, (change,), "order of lines", 1.15, moved)
+                    change = FieldChange(node, name, later)
+                    yield ProgramEdit(part, (change,), "order of lines", 1.15, moved)
                     if j > i + 1:
                         early = [*block[:i], block[j], *block[i:j], *block[j + 1 :]]
-                        change = Change(node, name, early)
-                        yield Edit(part, (change,), "order of lines", 1.16, block[j])
+                        change = FieldChange(node, name, early)
+                        yield ProgramEdit(part, (change,), "order of lines", 1.16, block[j])
 
 
 def _sets(node: ast.AST) -> set[str]:

@@ -8,14 +8,14 @@ from typing import Any
 from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantity
 from kinlab.doctor.changes import Arguments, Case
-from kinlab.doctor.program.words import Lines, lines
+from kinlab.doctor.program.words import WrongLines, lines
 from kinlab.errors import KinlabError
 from kinlab.host.language import language, speaking
 
 
 def lines_elsewhere(
-    ask: Callable[..., Iterator[Lines]], case: Case, wanted: Array, allowed: float
-) -> Iterator[Lines]:
+    ask: Callable[..., Iterator[WrongLines]], case: Case, wanted: Array, allowed: float
+) -> Iterator[WrongLines]:
     """As :func:`kinlab.doctor.program.words.lines`; a process that is lost costs only the lines.
 
     Args:
@@ -40,7 +40,7 @@ def _there(
     hand: Array,
     wanted: Array,
     allowed: float,
-) -> Iterator[Lines]:
+) -> Iterator[WrongLines]:
     """Of a function of stacks that is made of one of states."""
     case = Case(robot, quantity(name), arguments, hand, index)
     with speaking(spoken):

@@ -12,11 +12,11 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, Edit
-from kinlab.doctor.program.repair import Search
+from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.repair import LineSearch
 
 
-def named(edit: Edit, search: Search) -> list[tuple[str, str]]:
+def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
     """Pieces of what an edit changes, each with what it is; none where nothing is known.
 
     Args:

@@ -8,7 +8,7 @@ from itertools import permutations
 
 from kinlab.doctor.program.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Edit, Here, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 _PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
@@ -16,7 +16,7 @@ _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
 
 
-def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
+def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
     node = here.node
     left, right, op = node.left, node.right, node.op
     if isinstance(op, ast.Add | ast.Sub):
@@ -83,7 +83,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Edit]:
         yield here.instead(left, "power", 1.1)
 
 
-def _turned(here: Here) -> Iterator[Edit]:
+def _turned(here: Here) -> Iterator[ProgramEdit]:
     """R I R.T for R.T I R."""
     node = here.node
     first, last = node.left, node.right
@@ -96,7 +96,7 @@ def _turned(here: Here) -> Iterator[Edit]:
             yield here.instead(turned, "transposed", 1.03)
 
 
-def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
+def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     name = called(node)
     if name in ANGLES:
@@ -149,7 +149,7 @@ _FAMILIES = (
 """Functions of which one is written for another."""
 
 
-def _other_function(here: Here, name: str) -> Iterator[Edit]:
+def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
     node = here.node
     for family in _FAMILIES:
         for other in family:
@@ -167,7 +167,7 @@ def _other_function(here: Here, name: str) -> Iterator[Edit]:
             yield here.instead(filled, "function", 1.2)
 
 
-def _range(here: Here, scope: Scope) -> Iterator[Edit]:
+def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     args = node.args
     for k, argument in enumerate(args):
@@ -193,7 +193,7 @@ def _range(here: Here, scope: Scope) -> Iterator[Edit]:
             yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
 
 
-def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]:
+def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node.value)
     keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
@@ -220,7 +220,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Edit]
         yield here.within(node, "slice", column, "transposed", 1.15)
 
 
-def permuted(here: Here, node: ast.Subscript) -> Iterator[Edit]:
+def permuted(here: Here, node: ast.Subscript) -> Iterator[ProgramEdit]:
     """Three indices in another order."""
     keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
     if len(keys) == 3 and len({ast.dump(key) for key in keys}) > 1:
@@ -230,7 +230,7 @@ def permuted(here: Here, node: ast.Subscript) -> Iterator[Edit]:
                 yield here.within(node, "slice", other, "index", 1.12)
 
 
-def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterator[Edit]:
+def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node)
     if shape is None:
@@ -256,7 +256,7 @@ def _alike(one: str, other: str) -> bool:
     return one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
 
 
-def of_constant(here: Here, index: bool) -> Iterator[Edit]:
+def of_constant(here: Here, index: bool) -> Iterator[ProgramEdit]:
     value = here.node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         return
@@ -276,7 +276,7 @@ def of_constant(here: Here, index: bool) -> Iterator[Edit]:
             yield here.within(here.node, "value", new, kind, 1.08 if power else 1.18)
 
 
-def of_sequence(here: Here) -> Iterator[Edit]:
+def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     elements = here.node.elts
     if any(isinstance(e, ast.Starred) for e in elements) or len(elements) > _LONGEST:
         return
@@ -290,7 +290,7 @@ def of_sequence(here: Here) -> Iterator[Edit]:
                 yield here.within(here.node, "elts", swapped, "entries swapped", 1.12)
 
 
-def of_comparison(here: Here) -> Iterator[Edit]:
+def of_comparison(here: Here) -> Iterator[ProgramEdit]:
     node = here.node
     if len(node.ops) != 1:
         return

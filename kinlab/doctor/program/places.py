@@ -7,14 +7,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from kinlab.doctor.program.trial import Change
+from kinlab.doctor.program.trial import FieldChange
 
 DATA = -1
 """In place of a part's number: an edit of the program's data."""
 
 
 @dataclass(frozen=True, eq=False)
-class Edit:
+class ProgramEdit:
     """Something else in one place of a program.
 
     Attributes:
@@ -28,7 +28,7 @@ class Edit:
     """
 
     part: int
-    changes: tuple[Change, ...]
+    changes: tuple[FieldChange, ...]
     kind: str
     cost: float
     node: Any
@@ -47,11 +47,11 @@ class Here:
     field: Any
     above: tuple[ast.AST, ...]
 
-    def instead(self, new: Any, kind: str, cost: float) -> Edit:
+    def instead(self, new: Any, kind: str, cost: float) -> ProgramEdit:
         return self.within(self.holder, self.field, new, kind, cost)
 
-    def within(self, holder: Any, field: Any, new: Any, kind: str, cost: float) -> Edit:
-        return Edit(self.part, (Change(holder, field, new),), kind, cost, self.node)
+    def within(self, holder: Any, field: Any, new: Any, kind: str, cost: float) -> ProgramEdit:
+        return ProgramEdit(self.part, (FieldChange(holder, field, new),), kind, cost, self.node)
 
 
 def places(part: int, tree: ast.AST, above: tuple[ast.AST, ...] = ()) -> Iterator[Here]:

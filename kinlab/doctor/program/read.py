@@ -76,7 +76,7 @@ _KEEPING = frozenset(
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class OwnFunction:
     """One function of a program.
 
     Attributes:
@@ -93,7 +93,7 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Program:
+class OwnProgram:
     """A function and the functions of the same module that it calls.
 
     Attributes:
@@ -103,13 +103,13 @@ class Program:
         data: names of numbers, and of lists, tables and arrays of numbers, that the parts use.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[OwnFunction, ...]
     bound: tuple[Any, ...]
     space: dict[str, Any]
     data: tuple[str, ...]
 
 
-def read(function: Callable[..., Any]) -> Program | None:
+def read(function: Callable[..., Any]) -> OwnProgram | None:
     """The program behind a function; None where its source cannot be had for certain."""
     bound: tuple[Any, ...] = ()
     if isinstance(function, MethodType):
@@ -127,11 +127,11 @@ class _Reader:
     def __init__(self, function: FunctionType) -> None:
         self.function = function
         self.space = dict(function.__globals__)
-        self.parts: dict[tuple[type | None, str], Part] = {}
+        self.parts: dict[tuple[type | None, str], OwnFunction] = {}
         self.data: list[str] = []
         self.waiting: list[tuple[type | None, str, FunctionType]] = []
 
-    def program(self, bound: tuple[Any, ...]) -> Program | None:
+    def program(self, bound: tuple[Any, ...]) -> OwnProgram | None:
         """All of it; None where something cannot be read, or may not be tried."""
         name = self.function.__name__
         owner = type(bound[0]) if bound else None
@@ -143,10 +143,10 @@ class _Reader:
                 return None
             if _remembers(tree, one):
                 return None
-            self.parts[owner, name] = Part(name, tree, one, owner)
+            self.parts[owner, name] = OwnFunction(name, tree, one, owner)
             if not self._names_of(one):
                 return None
-        return Program(tuple(self.parts.values()), bound, self.space, tuple(self.data))
+        return OwnProgram(tuple(self.parts.values()), bound, self.space, tuple(self.data))
 
     def _names_of(self, one: FunctionType) -> bool:
         free = _free(one)

@@ -18,14 +18,15 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.program.data import Place, numbers
+from kinlab.doctor.program.data import NumberPlace, numbers
 from kinlab.doctor.program.edits import edits
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Edit, called
-from kinlab.doctor.program.read import Program
+from kinlab.doctor.program.places import ProgramEdit, called
+from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
+from kinlab.tolerances import TOLERANCES
 
 _WORK = 2_600_000
 """Expressions that may be evaluated, and nodes compiled, for single edits."""
@@ -47,12 +48,10 @@ _TURNS = 5
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
-_CLOSE = 1e-7
-"""Share of the answer's size within which an edit is tried at all states."""
 
 
 @dataclass(frozen=True, eq=False)
-class Repair:
+class ProgramRepair:
     """Edits that make a program right.
 
     Attributes:
@@ -61,12 +60,12 @@ class Repair:
         cost: how far-fetched they are.
     """
 
-    edits: tuple[Edit, ...]
+    edits: tuple[ProgramEdit, ...]
     error: float
     cost: float
 
 
-class Search:
+class LineSearch:
     """A wrong program beside what it should answer.
 
     Args:
@@ -76,12 +75,12 @@ class Search:
         allowed: the relative error that may be left.
     """
 
-    def __init__(self, program: Program, case: Case, wanted: Array, allowed: float) -> None:
+    def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.program = program
         self.case, self.wanted, self.allowed = case, wanted, allowed
         self.sizes = error_sizes(wanted)
-        self.stand: tuple[Edit, ...] = ()
-        self.tried: list[tuple[Edit, Array]] = []
+        self.stand: tuple[ProgramEdit, ...] = ()
+        self.tried: list[tuple[ProgramEdit, Array]] = []
         self.work, self.most = 0, _WORK
         self.trial = Trial(self.program)
         size = int(np.prod(wanted.shape[1:], initial=1))
@@ -115,15 +114,15 @@ class Search:
             for node in ast.walk(part.tree)
         )
 
-    def beside(self, stand: tuple[Edit, ...]) -> Search:
+    def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
         other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // _SHARE
         return other
 
-    def singles(self) -> list[Repair]:
+    def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""
-        found: list[Repair] = []
+        found: list[ProgramRepair] = []
         with quietly():
             for edit in sorted(edits(self.trial, self.observed), key=self._dear):
                 if found and edit.cost > found[0].edits[-1].cost + _TIED:
@@ -146,17 +145,17 @@ class Search:
                 found = [*self._numbers(), *found]
         return found
 
-    def cost_of(self, edit: Edit) -> int:
+    def cost_of(self, edit: ProgramEdit) -> int:
         """Expressions that are evaluated, and nodes compiled, to try an edit."""
         run = self.observed.work[edit.part] * len(self.first) // len(self.watched)
         return run + (self.nodes[edit.part] if edit.part >= 0 else 0)
 
-    def _dear(self, edit: Edit) -> float:
+    def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
         work = self.observed.work
         return edit.cost + _DEAR * float(np.log10(max(1, work[edit.part]) / max(1, work[0])))
 
-    def _numbers(self) -> Iterator[Repair]:
+    def _numbers(self) -> Iterator[ProgramRepair]:
         """Single numbers, of the text or the data, with which the program is right."""
         for place in numbers(self.trial, self.observed):
             value = self._solved(place)
@@ -168,7 +167,7 @@ class Search:
                     yield repair
                     return
 
-    def _solved(self, place: Place) -> float | None:
+    def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
         own = self.values(self.first)
         if own is None:
@@ -200,10 +199,12 @@ class Search:
         """Which entries of answers at the first states are right."""
         gap = np.abs(values - self.wanted[self.first])
         sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        near = gap <= max(_CLOSE, self.allowed) * sizes
+        near = gap <= max(TOLERANCES.tried_further, self.allowed) * sizes
         return near.all(axis=0).ravel()
 
-    def verdict(self, several: tuple[Edit, ...], values: Array | None = None) -> Repair | None:
+    def verdict(
+        self, several: tuple[ProgramEdit, ...], values: Array | None = None
+    ) -> ProgramRepair | None:
         """The repair, if the program as it stands now is right at every state."""
         values = self.values(self.first) if values is None else values
         if values is None or not self.right(values).all():
@@ -215,7 +216,7 @@ class Search:
         error = float(np.max(gap / self.sizes))
         if not error <= self.allowed:
             return None
-        return Repair(several, error, sum(edit.cost for edit in several))
+        return ProgramRepair(several, error, sum(edit.cost for edit in several))
 
     def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
@@ -234,7 +235,7 @@ class Search:
         return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
 
 
-def changed(trial: Trial, several: tuple[Edit, ...]) -> AbstractContextManager[None]:
+def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextManager[None]:
     """The program with edits in it."""
     parts = {edit.part for edit in several}
     return trial.changed(parts, [change for edit in several for change in edit.changes])

@@ -11,10 +11,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.program.places import DATA, Edit
-from kinlab.doctor.program.repair import Repair, Search, changed
+from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
 from kinlab.doctor.text.pairs import pairs_adding_up
+from kinlab.tolerances import TOLERANCES
 
 _VERIFIED = 60
 """Combinations that are tried in the program, the likeliest first."""
@@ -24,18 +25,16 @@ _TRIPLES = 250
 """Edits of which any three are added up."""
 _PLAIN = 1.06
 """Cost of edits that are tried first with each other."""
-_MATCH = 1e-8
-"""Share of the answer's size within which effects add up."""
 _EXCHANGED = 0.5
 """What it costs to take a term out and put another in."""
 _DEEPEST = 2
 """Edits that may stand already when more are looked for."""
 
-Tried = list[tuple[Edit, Array]]
+Tried = list[tuple[ProgramEdit, Array]]
 """Edits, each with the answers at the first states."""
 
 
-def several(search: Search) -> list[Repair]:
+def several(search: LineSearch) -> list[ProgramRepair]:
     """Two edits, or else three, that make the program right; the likeliest first.
 
     Args:
@@ -47,7 +46,7 @@ def several(search: Search) -> list[Repair]:
         return _found(search, (), search.tried)
 
 
-def _found(search: Search, stand: tuple[Edit, ...], tried: Tried) -> list[Repair]:
+def _found(search: LineSearch, stand: tuple[ProgramEdit, ...], tried: Tried) -> list[ProgramRepair]:
     """Repairs of which some edits stand already."""
     found = [*_adding_up(search, stand, tried, 2)]
     if not found and len(stand) < _DEEPEST:
@@ -58,8 +57,8 @@ def _found(search: Search, stand: tuple[Edit, ...], tried: Tried) -> list[Repair
 
 
 def _adding_up(
-    search: Search, stand: tuple[Edit, ...], tried: Tried, count: int
-) -> Iterator[Repair]:
+    search: LineSearch, stand: tuple[ProgramEdit, ...], tried: Tried, count: int
+) -> Iterator[ProgramRepair]:
     wanted = search.wanted[search.first]
     sizes = search.sizes[search.first].reshape(-1, *[1] * (wanted.ndim - 1))
     own = search.values(search.first)
@@ -69,27 +68,27 @@ def _adding_up(
     edits_, rows = _distinct(tried, own, sizes)
     if len(rows) < 2:
         return
-    both: list[tuple[Edit, ...]]
+    both: list[tuple[ProgramEdit, ...]]
     if count == 2:
-        pairs = pairs_adding_up(rows, goal, _MATCH)
+        pairs = pairs_adding_up(rows, goal, TOLERANCES.effects_add_up)
         both = [(edits_[one], edits_[two]) for one, two in pairs]
     else:
         most = min(_TRIPLES, len(rows))
         both = [
             (edits_[k], edits_[one], edits_[two])
             for k in range(2, most)
-            for one, two in pairs_adding_up(rows[:k], goal - rows[k], _MATCH)
+            for one, two in pairs_adding_up(rows[:k], goal - rows[k], TOLERANCES.effects_add_up)
         ]
     both.sort(key=_cost)
     yield from _verified(search, (stand + one for one in both[:_VERIFIED]))
 
 
-def _distinct(tried: Tried, own: Array, sizes: Array) -> tuple[list[Edit], Array]:
+def _distinct(tried: Tried, own: Array, sizes: Array) -> tuple[list[ProgramEdit], Array]:
     """Of edits with one effect the likeliest; those without are left out."""
-    kept: dict[bytes, tuple[Edit, Array]] = {}
+    kept: dict[bytes, tuple[ProgramEdit, Array]] = {}
     for edit, values in tried:
         effect = ((values - own) / sizes).ravel()
-        if not np.isfinite(effect).all() or np.max(np.abs(effect)) < _MATCH:
+        if not np.isfinite(effect).all() or np.max(np.abs(effect)) < TOLERANCES.effects_add_up:
             continue
         key = (np.round(effect, 7) + 0.0).tobytes()
         if key not in kept or edit.cost < kept[key][0].cost:
@@ -98,13 +97,15 @@ def _distinct(tried: Tried, own: Array, sizes: Array) -> tuple[list[Edit], Array
     return [edit for edit, _effect in one], np.array([effect for _edit, effect in one])
 
 
-def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) -> Iterator[Repair]:
+def _one_after_another(
+    search: LineSearch, stand: tuple[ProgramEdit, ...], tried: Tried
+) -> Iterator[ProgramRepair]:
     """Edits that make entries right and spoil none, and then what is left."""
     own = search.values(search.first)
     if own is None:
         return
     before = search.right(own)
-    gains: list[tuple[int, float, int, Edit]] = []
+    gains: list[tuple[int, float, int, ProgramEdit]] = []
     for edit, values in tried:
         after = search.right(values)
         if np.all(after >= before) and after.sum() > before.sum():
@@ -125,7 +126,7 @@ def _one_after_another(search: Search, stand: tuple[Edit, ...], tried: Tried) ->
             return
 
 
-def _each_with_each(search: Search, tried: Tried) -> Iterator[Repair]:
+def _each_with_each(search: LineSearch, tried: Tried) -> Iterator[ProgramRepair]:
     """The likeliest in pairs, as many as so much work allows: factors of one product, say."""
     own = search.values(search.first)
     if own is None:
@@ -147,7 +148,9 @@ def _each_with_each(search: Search, tried: Tried) -> Iterator[Repair]:
                     return
 
 
-def _verified(search: Search, ways: Iterator[tuple[Edit, ...]]) -> Iterator[Repair]:
+def _verified(
+    search: LineSearch, ways: Iterator[tuple[ProgramEdit, ...]]
+) -> Iterator[ProgramRepair]:
     found = 0
     for way in ways:
         fresh = [edit for edit in way if edit not in search.stand]
@@ -163,7 +166,7 @@ def _verified(search: Search, ways: Iterator[tuple[Edit, ...]]) -> Iterator[Repa
                 return
 
 
-def _cost(way: tuple[Edit, ...]) -> float:
+def _cost(way: tuple[ProgramEdit, ...]) -> float:
     kinds = {edit.kind for edit in way}
     swapped = _EXCHANGED if {"extra term", "missing term"} <= kinds else 0.0
     return sum(edit.cost for edit in way) + swapped

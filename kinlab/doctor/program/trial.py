@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.program.read import Part, Program, written
+from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
 
 class NoProgramError(Exception):
@@ -27,7 +27,7 @@ _TURNS = 2_000
 
 
 @dataclass(frozen=True, eq=False)
-class Change:
+class FieldChange:
     """Another value in one field of a syntax tree, or in one place of the data.
 
     Attributes:
@@ -48,7 +48,7 @@ class Trial:
         program: what was read.
     """
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: OwnProgram) -> None:
         self.program = program
         self.space = dict(program.space)
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
@@ -99,7 +99,7 @@ class Trial:
             setattr(self.classes[part.owner], part.name, function)
 
     @contextmanager
-    def changed(self, parts: set[int], changes: Sequence[Change]) -> Iterator[None]:
+    def changed(self, parts: set[int], changes: Sequence[FieldChange]) -> Iterator[None]:
         """The program with changes in it; -1 stands for its data."""
         before = [(change, _get(change)) for change in changes]
         every = range(len(self.trees))
@@ -155,7 +155,7 @@ _QUICK = ModuleType("numpy")
 _QUICK.__dict__.update(np.__dict__, cross=_cross)
 
 
-def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionType:
+def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
     """A function of a definition, with the defaults that the user's own has."""
     module = ast.Module([tree], [])
     try:
@@ -168,7 +168,7 @@ def made(tree: ast.FunctionDef, part: Part, space: dict[str, Any]) -> FunctionTy
     return function
 
 
-def _callers(program: Program) -> dict[int, set[int]]:
+def _callers(program: OwnProgram) -> dict[int, set[int]]:
     """For each part those whose answers depend on it, itself among them; -1 for the data."""
     every = range(len(program.parts))
     calls = [
@@ -270,13 +270,13 @@ def _located(new: Any) -> None:
                     node.col_offset = node.end_col_offset = 0  # type: ignore[attr-defined]
 
 
-def _get(change: Change) -> Any:
+def _get(change: FieldChange) -> Any:
     if _of_items(change.holder):
         return change.holder[change.field]
     return getattr(change.holder, change.field)
 
 
-def _put(change: Change, value: Any) -> None:
+def _put(change: FieldChange, value: Any) -> None:
     if _of_items(change.holder):
         change.holder[change.field] = value
     else:

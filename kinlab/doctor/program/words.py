@@ -12,9 +12,9 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.named import named
-from kinlab.doctor.program.places import DATA, Edit
+from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import Repair, Search, changed
+from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
@@ -58,7 +58,7 @@ _WHAT = {
 
 
 @dataclass(frozen=True)
-class Lines:
+class WrongLines:
     """What lines of a program should be.
 
     Attributes:
@@ -73,7 +73,7 @@ class Lines:
 
 def lines(
     function: Callable[..., Any], case: Case, wanted: Array, allowed: float
-) -> Iterator[Lines]:
+) -> Iterator[WrongLines]:
     """What single lines of a function should be, and then, if asked on, what several should.
 
     Args:
@@ -86,14 +86,14 @@ def lines(
     if program is None:
         return
     try:
-        search = Search(program, case, wanted, allowed)
+        search = LineSearch(program, case, wanted, allowed)
     except Exception:  # noqa: BLE001  what does not run where it was not written is not tried
         return
     if not search.faithful:
         return
-    for found in (Search.singles, several):
+    for found in (LineSearch.singles, several):
         causes = [cause_of(repair, search) for repair in found(search)[:_MOST]]
-        yield Lines(causes, search.written_out)
+        yield WrongLines(causes, search.written_out)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
@@ -111,7 +111,7 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
     return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
 
 
-def cause_of(repair: Repair, search: Search) -> Cause:
+def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     """A repair as a cause."""
     trial = search.trial
     told = [*_told(repair, trial)]
@@ -127,7 +127,7 @@ def cause_of(repair: Repair, search: Search) -> Cause:
     )
 
 
-def _told(repair: Repair, trial: Trial) -> Iterator[str]:
+def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
     lines = _by_statement(repair, trial)
     for edit in repair.edits:
         statement, several = next(pair for pair in lines if any(one is edit for one in pair[1]))
@@ -148,9 +148,11 @@ def _told(repair: Repair, trial: Trial) -> Iterator[str]:
             yield _("{place}, {what}: `{old}` should be `{new}`").format(**said)
 
 
-def _by_statement(repair: Repair, trial: Trial) -> list[tuple[ast.stmt | None, list[Edit]]]:
+def _by_statement(
+    repair: ProgramRepair, trial: Trial
+) -> list[tuple[ast.stmt | None, list[ProgramEdit]]]:
     """The edits of a repair by the statement that they stand in; others each for itself."""
-    found: list[tuple[ast.stmt | None, list[Edit]]] = []
+    found: list[tuple[ast.stmt | None, list[ProgramEdit]]] = []
     before = [_statements(tree) for tree in trial.trees]
     with changed(trial, repair.edits):
         after = [_statements(tree) for tree in trial.trees]
@@ -175,7 +177,7 @@ def _statements(tree: ast.AST, inside: ast.stmt | None = None) -> dict[int, ast.
     return out
 
 
-def _of_statement(statement: ast.stmt, several: list[Edit], trial: Trial) -> str:
+def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial) -> str:
     """What is wrong in several places of one statement."""
     old = _text(statement)
     with changed(trial, tuple(several)):
@@ -186,7 +188,7 @@ def _of_statement(statement: ast.stmt, several: list[Edit], trial: Trial) -> str
     return told.format(place=place, what=what, old=old, new=new)
 
 
-def _line(edit: Edit, trial: Trial) -> str:
+def _line(edit: ProgramEdit, trial: Trial) -> str:
     part = trial.program.parts[edit.part]
     if edit.part:
         return _("line {number} (in {function})").format(
@@ -195,11 +197,11 @@ def _line(edit: Edit, trial: Trial) -> str:
     return _("line {number}").format(number=edit.node.lineno)
 
 
-def _place(edit: Edit, trial: Trial) -> str:
+def _place(edit: ProgramEdit, trial: Trial) -> str:
     return str(edit.node) if edit.part == DATA else f"line {edit.node.lineno}"
 
 
-def _of_data(edit: Edit) -> str:
+def _of_data(edit: ProgramEdit) -> str:
     keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
     said = {"name": edit.node + "".join(keys), "what": _(_WHAT[edit.kind])}
     if edit.numbers is None:
@@ -209,7 +211,7 @@ def _of_data(edit: Edit) -> str:
     return told.format(**said, old=old, new=new)
 
 
-def _pieces(edit: Edit, trial: Trial) -> tuple[str, str]:
+def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
     """What stands there, and what should: the widest that is short."""
     tree = trial.trees[edit.part]
     above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
@@ -234,7 +236,7 @@ def _pieces(edit: Edit, trial: Trial) -> tuple[str, str]:
     return pairs[0] if pairs else (before[0], after[0])
 
 
-def _after(edit: Edit) -> str:
+def _after(edit: ProgramEdit) -> str:
     later = edit.changes[0].new
     k = next(i for i, one in enumerate(later) if one is edit.node)
     if k + 1 < len(later):

@@ -101,10 +101,9 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        assert case.quantity.read is not None
-        read = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
-        looking = read.looked_through(engine, TOLERANCES.formula_agrees)
-        edited: list[Cause] = next((found_.causes for found_ in looking if found_.causes), [])
+        own = replace(case, hand=np.asarray(_compared(case, hand, engine)))
+        looking = own.looked_through(engine, TOLERANCES.formula_agrees)
+        edited: list[Cause] = next((some.causes for some in looking if some.causes), [])
         causes = _causes(found, engine)
         causes = meant(edited, causes) if edited else causes
         causes = causes if study is None else believed(causes, study, case)
@@ -127,6 +126,12 @@ def judged(
         form="near" if not causes and _rounded_perhaps(found, furthest) else "",
         proved=() if causes else tuple(_counted(found)),
     )
+
+
+def _compared(case: Case, hand: Any, engine: Array) -> Any:
+    """Of each target the solution that is furthest off, where the tool is."""
+    assert case.quantity.read is not None
+    return case.quantity.read(case.robot, hand, engine)
 
 
 def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
