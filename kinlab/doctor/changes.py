@@ -75,6 +75,10 @@ class Case:
         answer: Array = self.quantity.engine(robot, *arguments.values())
         return answer
 
+    def looked_through(self, wanted: Array, allowed: float) -> Iterator[Any]:
+        """What ``lines`` yields; nothing where there is no function to look through."""
+        return self.lines(self, wanted, allowed) if self.lines else iter(())
+
     def few(self, count: int) -> Case:
         """The first states only."""
         short = {name: stack[:count] for name, stack in self.arguments.items()}

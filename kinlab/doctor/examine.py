@@ -33,7 +33,7 @@ from kinlab.doctor.derivations.parts import Apart, apart, proved
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.numbers import other_numbers
-from kinlab.doctor.program.words import WrongLines
+from kinlab.doctor.program.words import WrongLines, meant
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.terms import AnswerEntry, Slip, entries
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
@@ -149,8 +149,8 @@ def _explained(
     if written and off and silent is None:
         causes, partial = _slips(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    read = case.lines and same and not written and (silent is not None or not signs)
-    looking = case.lines(case, engine, _left(worst)) if read and case.lines else iter(())
+    read = same and not written and (silent is not None or not signs)
+    looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
@@ -172,7 +172,9 @@ def _explained(
             if all(cause.cost > limit for cause in exact or rough):
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
-            return _meant(edited, [] if program.written_out else exact or rough), (), None, None
+            read_so = [] if program.written_out else exact or rough
+            known = [cause for cause in read_so if cause.cost <= _FETCHED]
+            return meant(edited, known), (), None, None
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= _RIVALS):
             found, partial = _slips(case, off, written)
@@ -199,23 +201,6 @@ def _explained(
         likely = [r for r in tried if r.kind == "sign"] if causes else tried
         causes += _reading_and_slips(case, likely, engine)
     return causes, partial, None, split
-
-
-def _meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
-    """What a line of the program should be, with what that means where it is known."""
-    one = sorted((c for c in read if c.cost <= _FETCHED), key=lambda c: c.cost)[:1]
-    meant = one if len(edited[0].kinds) == 1 else []
-    said = _("{meaning}: {line}")
-    return [
-        replace(
-            line,
-            sentence=said.format(meaning=cause.sentence, line=line.sentence),
-            kinds=cause.kinds,
-            places=(*line.places, *cause.places),
-        )
-        for cause in meant
-        for line in edited[:1]
-    ] or edited[:1]
 
 
 def _texts_again(

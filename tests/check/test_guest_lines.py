@@ -21,10 +21,10 @@ import kinlab as kl
 
 m1, g0, lc1 = 2.5, 9.81, 0.3
 
-@kl.hand_formula("gravity_torques", robot="single_link")
+@kl.hand_formula("gravity_torques", robot="planar2r")
 def sign(q):
-    level = -g0
-    return np.array([m1 * level * lc1 * np.cos(q[0])])
+    outer = 1.5 * g0 * 0.4 * np.cos(q[0] - q[1])
+    return np.array([3.5 * g0 * 0.5 * np.cos(q[0]) + outer, outer])
 
 @kl.hand_formula("gravity_torques", robot="single_link")
 def trap(q):
@@ -41,7 +41,7 @@ def endless(q):
 def wave(q):
     return np.array([m1 * g0 * lc1 * np.sin(q[0])])
 """
-SIGN = "line 8, the sign is wrong: `level = -g0` should be `level = g0`"
+SIGN = "line 8, the sign is wrong: `outer = 1.5*g0*0.4*np.cos(q[0] - q[1])` should be "
 WAVE = "line 24, sine and cosine are exchanged"
 
 
@@ -76,7 +76,7 @@ def test_the_same_as_where_the_function_is_at_hand(file):
     task = next(one for one in tasks([str(file)]) if one.record.id == "sign")
     space = {"__name__": "mine"}
     exec(compile(FILE, str(file), "exec"), space)  # noqa: S102
-    here = kl.diagnose("single_link", "gravity_torques", space["sign"], samples=20)
+    here = kl.diagnose("planar2r", "gravity_torques", space["sign"], samples=20)
     there = of_task(task, 20).diagnosis
     assert there.causes == here.causes and there.known
 

@@ -467,3 +467,19 @@ def test_what_is_cut_off_near_the_limit_of_reach_is_wrong(most: float, jump: flo
         ("spatial3r", "inverse_kinematics_xyz", hand),
     ):
         assert kl.diagnose(robot, name, function).verdict.startswith("differs")
+
+
+def test_the_wrong_line_of_a_function_with_both_solutions() -> None:
+    def both(px, py, l1=0.5, l2=0.4):
+        c2 = (px**2 + py**2 - l1**2 - l2**2) / (2 * l1 * l2)
+        rows = []
+        for elbow in (1, -1):
+            s2 = elbow * np.sqrt(1 - c2**2)
+            rows.append(
+                [np.arctan2(py, px) + np.arctan2(l2 * s2, l1 + l2 * c2), np.arctan2(s2, c2)]
+            )
+        return np.array(rows)
+
+    found = kl.diagnose("planar2r", "inverse_kinematics_xy", both, samples=20)
+    assert "opposite sign in the angle q1" in found.sentence
+    assert "should be `[np.arctan2(py, px) - np.arctan2(" in found.sentence

@@ -293,7 +293,9 @@ def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
     if isinstance(value, list | tuple | set | frozenset | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])
-    if isinstance(value, FunctionType | BuiltinFunctionType | type):
+    if isinstance(value, BuiltinFunctionType):
+        return (value.__module__ or "").partition(".")[0] in _ARITHMETIC
+    if isinstance(value, FunctionType | type):
         of = value.__module__
         return of == module or (of or "").partition(".")[0] in _ARITHMETIC
     home = type(value).__module__ or ""

@@ -26,6 +26,7 @@ from kinlab.doctor.derivations.joined import (
     taken_otherwise,
     with_these,
 )
+from kinlab.doctor.program.words import meant
 from kinlab.doctor.solutions.closed_forms import Branches, closed_forms, compared, slides
 from kinlab.doctor.solutions.lines import LineStudy, believed, joint_of, studied
 from kinlab.doctor.text.written import Written
@@ -100,11 +101,11 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        read = case.lines if not written else None
         own = replace(case, hand=np.asarray(_compared(case, hand, engine)))
-        looking = read(own, engine, TOLERANCES.formula_agrees) if read else ()
-        edited: list[Cause] = next((some.causes[:1] for some in looking if some.causes), [])
-        causes = edited or _causes(found, engine)
+        looking = own.looked_through(engine, TOLERANCES.formula_agrees)
+        edited: list[Cause] = next((some.causes for some in looking if some.causes), [])
+        causes = _causes(found, engine)
+        causes = meant(edited, causes) if edited else causes
         causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
         told = verdicts.of_digits(furthest).remarks
