@@ -92,23 +92,10 @@ def lines(
     if not search.faithful:
         return
     for found in (LineSearch.singles, several):
-        causes = [cause_of(repair, search) for repair in found(search)[:_MOST]]
-        yield WrongLines(causes, search.written_out)
-
-
-def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
-    """What a line should be, with what that means where it is known.
-
-    Args:
-        edited: what lines should be, the likeliest first.
-        read: what the formula does otherwise, as a whole.
-    """
-    if not read or len(edited[0].kinds) > 1:
-        return edited[:1]
-    line, cause = edited[0], min(read, key=lambda one: one.cost)
-    said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
-    places = (*line.places, *cause.places)
-    return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
+        repairs = found(search)[:_MOST]
+        if not search.faithful:
+            return  # an edit has written into what the program keeps
+        yield WrongLines([cause_of(one, search) for one in repairs], search.written_out)
 
 
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
