@@ -98,6 +98,21 @@ def lines(
         yield WrongLines([cause_of(one, search) for one in repairs], search.written_out)
 
 
+def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
+    """What a line should be, with what that means where it is known.
+
+    Args:
+        edited: what lines should be, the likeliest first.
+        read: what the formula does otherwise, as a whole.
+    """
+    if not read or len(edited[0].kinds) > 1:
+        return edited[:1]
+    line, cause = edited[0], min(read, key=lambda one: one.cost)
+    said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
+    places = (*line.places, *cause.places)
+    return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
+
+
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     """A repair as a cause."""
     trial = search.trial
