@@ -16,6 +16,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
 
+_Cache = type(functools.lru_cache(len))
 _HEAP = 1 << 9
 _DEEP = 6
 """Lists in lists, dictionaries and objects down to which data are looked at."""
@@ -288,8 +289,8 @@ def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
         return _harmless(value.__self__, module) and value.__name__ not in _REACHING_OUT
     if any(value is one for one in (itertools.count, itertools.cycle, itertools.repeat)):
         return False
-    if hasattr(value, "__wrapped__") and not isinstance(value, FunctionType | type):
-        return False  # a cache: what it answers does not change with the program
+    if isinstance(value, _Cache):
+        return False  # what it answers does not change with the program
     if isinstance(value, list | tuple | set | frozenset | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(_harmless(one, module, depth - 1) for one in inner[:_MOST])

@@ -97,7 +97,8 @@ class LineSearch:
     @property
     def faithful(self) -> bool:
         """Whether the program as it was read answers what the user's own function did."""
-        own, hand = self.values(self.watched), self.case.hand[self.watched]
+        with quietly():
+            own, hand = self.values(self.watched), self.case.hand[self.watched]
         if own is None or own.shape != hand.shape:
             return False
         if self.case.quantity.name in _ANY_ZERO:
