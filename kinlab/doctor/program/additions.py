@@ -210,7 +210,8 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(text, angle)
-            yield here.instead(ast.BinOp(node, ast.Add(), angle), "argument", cost)
+            first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
+            yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 
 
 def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[ProgramEdit]:

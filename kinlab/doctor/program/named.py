@@ -15,6 +15,9 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch
 
+_PLAIN = ("positions", "velocities", "accelerations")
+"""What everybody knows of a function's own arguments."""
+
 
 def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
     """Pieces of what an edit changes, each with what it is; none where nothing is known.
@@ -43,7 +46,7 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
         for piece in _pieces(node):
             text = ast.unparse(piece)
             sense = _sense(texts.get(text, piece), search.observed, known)
-            if sense is not None:
+            if sense is not None and sense.what not in _PLAIN:
                 out.setdefault(text, said(sense))
     return [*out.items()]
 
