@@ -231,7 +231,9 @@ def _without_value(case: Case, engine: Array) -> Cause | None:
     missing = int(np.sum(~whole_))
     if not missing:
         said = _("the formula gives zero at every state")
-        return None if np.any(case.hand) else Cause(said, ("no value",), ("",), 0.0, 1.0)
+        most = TOLERANCES.formula_agrees * float(np.max(np.abs(engine)))
+        some = bool(np.any(np.abs(case.hand) > most))  # else what differences leave of nothing
+        return None if some else Cause(said, ("no value",), ("",), 0.0, 1.0)
     if missing == count:
         said = _("the formula gives no number at any state")
         return Cause(said, ("no value",), ("",), 0.0, 1.0)

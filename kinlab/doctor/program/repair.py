@@ -103,7 +103,8 @@ class LineSearch:
             return False
         if self.case.quantity.name in _ANY_ZERO:
             hand = hand + (self.wanted[:1] - hand[:1])
-        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * float(np.max(np.abs(hand)))))
+        size = max(float(np.max(np.abs(hand))), float(np.max(self.sizes)))
+        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size))
 
     @property
     def written_out(self) -> bool:
