@@ -3,6 +3,7 @@ plain arithmetic it does not try; what is the user's stays as it was."""
 
 from __future__ import annotations
 
+import ast
 import copy
 import functools
 import os
@@ -20,6 +21,7 @@ from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped
 import kinlab as kl
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
+from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.doctor.program.words import _WHAT
 from kinlab.host.language import _, speaking
 
@@ -463,3 +465,34 @@ def test_functions_of_numpy_that_are_imported_by_name_are_read() -> None:
     arm = kl.load("planar2r")
     found = kl.diagnose(arm, "planar_jacobian", space["f"], samples=40)
     assert found.causes[0].places[0] == "line 6", found
+
+
+def test_changes_that_stand_are_seen_through_what_else_is_changed() -> None:
+    source = "\n".join(
+        (
+            "def a(x): return 2.0 * x",
+            "def b(x): return a(x) + 1.0",
+            "def c(x): return 10.0 * x",
+            "def f(x): return b(x) + c(x)",
+        )
+    )
+    space: dict = {}
+    exec(source, space)  # noqa: S102
+    trial = Trial(read(space["f"]))
+
+    def other(name: str, old: float, new: float):
+        k = [part.name for part in trial.program.parts].index(name)
+        nodes = (n for n in ast.walk(trial.trees[k]) if isinstance(n, ast.Constant))
+        node = next(n for n in nodes if n.value == old)
+        return trial.changed({k}, [FieldChange(node, "value", new)])
+
+    with other("c", 10.0, 20.0):
+        assert trial.function(3.0) == 6.0 + 1.0 + 60.0
+        with other("a", 2.0, 5.0):
+            assert trial.function(3.0) == 15.0 + 1.0 + 60.0
+        assert trial.function(3.0) == 6.0 + 1.0 + 60.0
+    with other("a", 2.0, 5.0):
+        assert trial.function(3.0) == 15.0 + 1.0 + 30.0  # nothing is left of what stood before
+        with other("c", 10.0, 20.0), other("b", 1.0, 0.0):
+            assert trial.function(3.0) == 15.0 + 0.0 + 60.0
+    assert trial.function(3.0) == 6.0 + 1.0 + 30.0

@@ -64,10 +64,12 @@ class Trial:
         self.trees = [_bounded(part.tree) for part in program.parts]
         self.space["_turn"] = self._turn
         self._turns = 0
-        for k in range(len(self.trees)):
-            self.build(k)
         self.above = _callers(program)
-        self._known: list[dict[Any, Any]] = [{} for _ in program.parts]
+        self._touched: set[int] = set()
+        self._made = [self._compiled(k) for k in range(len(self.trees))]
+        self._remembering = [_remembering(one) for one in self._made]
+        for k, one in enumerate(self._made):
+            self.place(k, one)
 
     def _own(self, value: Any) -> Any:
         """A copy of data; of a class, and of an object of it, one whose methods can be changed."""
@@ -79,9 +81,9 @@ class Trial:
         new.__dict__.update(copy.deepcopy(getattr(value, "__dict__", {})))
         return new
 
-    def build(self, k: int) -> None:
-        """Compiles one part as its tree stands now."""
-        self.place(k, made(self.trees[k], self.program.parts[k], self.space))
+    def _compiled(self, k: int) -> FunctionType:
+        """One part as its tree stands now."""
+        return made(self.trees[k], self.program.parts[k], self.space)
 
     def placed(self, k: int) -> Any:
         """The function that stands for a part now."""
@@ -100,24 +102,30 @@ class Trial:
 
     @contextmanager
     def changed(self, parts: set[int], changes: Sequence[FieldChange]) -> Iterator[None]:
-        """The program with changes in it; -1 stands for its data."""
+        """The program with changes in it, beside those that stand already.
+
+        Args:
+            parts: where the changes are; -1 stands for the data.
+            changes: what is put where.
+        """
         before = [(change, _get(change)) for change in changes]
         every = range(len(self.trees))
-        touched = {k for part in parts for k in self.above[part]}
-        kept = [self.placed(k) for k in every]
+        outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
                 _located(change.new)
                 _put(change, change.new)
             for k in every:
                 if k in parts:
-                    self.build(k)
-                elif k not in touched:
-                    self.place(k, _remembering(kept[k], self._known[k]))
+                    self._made[k] = self._compiled(k)
+                # only of what no change reaches, this one's or one that stands, answers are kept
+                self.place(k, self._made[k] if k in self._touched else self._remembering[k])
             yield
         finally:
             for change, old in reversed(before):
                 _put(change, old)
+            self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
 
@@ -207,8 +215,9 @@ def _copied(owner: type) -> type:
     return type(owner.__name__, owner.__bases__, own)
 
 
-def _remembering(function: FunctionType, known: dict[Any, Any]) -> Any:
+def _remembering(function: FunctionType) -> Any:
     """A part that no edit reaches: its answers are kept, by what it was asked."""
+    known: dict[Any, Any] = {}
 
     def remembered(*asked: Any) -> Any:
         try:
