@@ -110,9 +110,8 @@ class Scope:
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
-    def dear(self, text: str, node: ast.expr) -> float:
-        """What a piece costs less for being used nowhere."""
-        del text
+    def dear(self, node: ast.expr) -> float:
+        """What a piece costs more than one that is used nowhere."""
         names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
         short = isinstance(node, ast.Name)
         return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
@@ -161,9 +160,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _angle(here, scope)
         return
     if isinstance(node, ast.Constant):
-        for text, scalar in scope.simple(()):
+        for _text, scalar in scope.simple(()):
             if operated and not isinstance(op, ast.Pow):
-                yield here.instead(scalar, "name", 1.07 + scope.dear(text, scalar))
+                yield here.instead(scalar, "name", 1.07 + scope.dear(scalar))
         return
     if shape == ():
         yield from _scalars(here, scope, summand or whole or below, operated)
@@ -188,8 +187,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if isinstance(node, ast.Name) and len(shape) > 2:
         return
     for size in {shape[0], shape[-1]}:
-        for text, matrix in scope.simple((size, size)):
-            cost = 1.02 + scope.dear(text, matrix)
+        for _text, matrix in scope.simple((size, size)):
+            cost = 1.02 + scope.dear(matrix)
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue
@@ -209,7 +208,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     own = {ast.unparse(n) for n in ast.walk(node)}
     for text, angle in scope.simple(()):
         if text not in own:
-            cost = 1.0 + scope.dear(text, angle)
+            cost = 1.0 + scope.dear(angle)
             first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 
@@ -224,7 +223,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     for text, scalar in scope.pieces.get((), {}).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
-        dear = scope.dear(text, scalar)
+        dear = scope.dear(scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
@@ -245,9 +244,9 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
-        if entry and not isinstance(piece, ast.BinOp) and scope.dear(text, piece):
+        if entry and not isinstance(piece, ast.BinOp) and scope.dear(piece):
             continue
-        dear = scope.dear(text, piece)
+        dear = scope.dear(piece)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
         if whole and shape == () and not dear:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import pi
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, places
-from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.doctor.program.trial import FieldChange, Trial, is_data
 
 _RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
 _TABLE = 60
@@ -71,12 +71,9 @@ class NumberPlace:
 
     def edit(self, value: float, kind: str = "number", cost: float = 1.15) -> ProgramEdit:
         """Another number there."""
-        new: Any = value
+        change = FieldChange(self.holder, self.field, value)
         if self.inner:
-            items = _of_items(self.holder)
-            old = self.holder[self.field] if items else getattr(self.holder, self.field)
-            new = _rebuilt(old, self.inner, value)
-        change = FieldChange(self.holder, self.field, new)
+            change = replace(change, new=_rebuilt(change.now, self.inner, value))
         both = (float(self.value), float(value))
         return ProgramEdit(self.part, (change,), kind, cost, self.node, self.place, both)
 
@@ -106,10 +103,10 @@ def _within(
         yield NumberPlace(value, DATA, holder, key, name, place, inner)
     elif isinstance(value, tuple):
         for k, one in enumerate(value):
-            if not isinstance(one, list | dict | np.ndarray):
-                yield from _within(holder, key, one, name, (*place, k), (*inner, k))
-            else:
+            if is_data(one):
                 yield from _below(one, name, (*place, k))
+            else:
+                yield from _within(holder, key, one, name, (*place, k), (*inner, k))
     elif not inner:
         yield from _below(value, name, place)
 
@@ -137,7 +134,3 @@ def _rebuilt(old: Any, path: tuple[int, ...], new: float) -> Any:
     parts = [*old]
     parts[path[0]] = _rebuilt(parts[path[0]], path[1:], new)
     return tuple(parts)
-
-
-def _of_items(holder: Any) -> bool:
-    return isinstance(holder, list | dict | np.ndarray)

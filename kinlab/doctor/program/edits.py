@@ -15,15 +15,16 @@ from kinlab.doctor.program.additions import Scope, as_a_term
 from kinlab.doctor.program.data import of_data
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.operators import (
+    keys_of,
     negated,
     of_call,
     of_comparison,
     of_constant,
+    of_keys,
     of_name,
     of_operator,
     of_sequence,
     of_subscript,
-    permuted,
     plus,
     shifted,
     value_of,
@@ -186,26 +187,12 @@ def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
 
 def _target(here: Here, target: ast.Subscript) -> Iterator[ProgramEdit]:
     """Where the value is put."""
-    key = target.slice
-    keys = key.elts if isinstance(key, ast.Tuple) else [key]
-    single = not isinstance(key, ast.Tuple)
-    if not single and len(keys) == 2:
-        swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
-        yield here.within(target, "slice", swapped, "transposed", 1.12)
-    yield from permuted(here, target)
-    for k, one in enumerate(keys):
-        holder, field = (target, "slice") if single else (keys, k)
-        if isinstance(one, ast.Slice):
-            if one.lower is None and one.upper is not None:
-                yield here.within(holder, field, ast.Slice(one.upper, None, None), "rows", 1.12)
-            elif one.upper is None and one.lower is not None:
-                yield here.within(holder, field, ast.Slice(None, one.lower, None), "rows", 1.12)
-        elif whole_constant(one):
+    yield from of_keys(here, target, 1.12)
+    for holder, field, key in keys_of(target):
+        if not isinstance(key, ast.Slice):
             for step in (1, -1):
-                yield here.within(holder, field, number(value_of(one) + step), "index", 1.15)
-        else:
-            for step in (1, -1):
-                yield here.within(holder, field, plus(one, step), "index", 1.15)
+                other = number(value_of(key) + step) if whole_constant(key) else plus(key, step)
+                yield here.within(holder, field, other, "index", 1.15)
 
 
 def _orders(part: int, tree: ast.FunctionDef) -> Iterator[ProgramEdit]:

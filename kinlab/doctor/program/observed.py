@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.program.trial import Trial, made, quietly
+from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
 
 _KEPT = 64
 """Values of one expression that are kept."""
@@ -43,8 +43,6 @@ class Observed:
 
     def __init__(self, trial: Trial, states: Sequence[tuple[Any, ...]]) -> None:
         self._seen: dict[int, Seen] = {}
-        self.places: dict[str, tuple[int, ...]] = {}
-        nodes = [_watched(tree) for tree in trial.trees]
         parts = trial.program.parts
         originals = [trial.placed(k) for k in range(len(parts))]
         self._by_number = [dict(enumerate(ast.walk(tree))) for tree in trial.trees]
@@ -52,9 +50,8 @@ class Observed:
         self.work: dict[int, int] = {}
         """Expressions evaluated at all the states by what depends on a part, by its number."""
         try:
-            for k, (tree, part) in enumerate(zip(nodes, parts, strict=True)):
-                self._name_part(tree, k)
-                trial.place(k, made(tree, part, trial.space))
+            for k, (tree, part) in enumerate(zip(trial.trees, parts, strict=True)):
+                trial.place(k, made(_watched(tree, k), part, trial.space))
             with quietly():
                 for state in states:
                     trial.function(*state)
@@ -66,12 +63,6 @@ class Observed:
             for tree in trial.trees
         ]
         self.work = {k: sum(own[j] for j in trial.above[k]) for k in trial.above}
-
-    @staticmethod
-    def _name_part(tree: ast.AST, k: int) -> None:
-        for node in ast.walk(tree):
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "_see":
-                node.args[0] = ast.copy_location(ast.Constant(k), node.args[0])
 
     def of(self, node: ast.AST) -> Seen | None:
         """What a node of a trial's trees was; None where it was never evaluated."""
@@ -114,36 +105,22 @@ def _numbers(value: Any) -> Array | None:
     return None
 
 
-def _watched(tree: ast.FunctionDef) -> ast.FunctionDef:
+def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
     """A copy in which every expression tells its value."""
     own = copy.deepcopy(tree)
     numbers = {id(node): number for number, node in enumerate(ast.walk(own))}
     for parent in list(ast.walk(own)):
-        for holder, place, node in _expressions(parent):
-            told = ast.Call(
-                ast.Name("_see", ast.Load()),
-                [ast.Constant(0), ast.Constant(numbers[id(node)]), node],
-                [],
-            )
-            holder[place] = told
         for name, value in ast.iter_fields(parent):
-            node = value
-            if isinstance(node, ast.expr) and _watchable(parent, name, node):
-                told = ast.Call(
-                    ast.Name("_see", ast.Load()),
-                    [ast.Constant(0), ast.Constant(numbers[id(node)]), node],
-                    [],
-                )
-                setattr(parent, name, told)
-    return ast.fix_missing_locations(own)
-
-
-def _expressions(parent: ast.AST) -> Iterator[tuple[list[Any], int, ast.expr]]:
-    for name, value in ast.iter_fields(parent):
-        if isinstance(value, list):
-            for place, node in enumerate(value):
+            holder, keys = (
+                (value, range(len(value))) if isinstance(value, list) else (parent, [name])
+            )
+            for key in keys:
+                change = FieldChange(holder, key, None)
+                node = change.now
                 if isinstance(node, ast.expr) and _watchable(parent, name, node):
-                    yield value, place, node
+                    where: list[ast.expr] = [ast.Constant(part), ast.Constant(numbers[id(node)])]
+                    change.put(ast.Call(ast.Name("_see", ast.Load()), [*where, node], []))
+    return ast.fix_missing_locations(own)
 
 
 def _watchable(parent: ast.AST, name: str, node: ast.expr) -> bool:

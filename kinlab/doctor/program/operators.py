@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from itertools import permutations
+from typing import Any
 
 from kinlab.doctor.program.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed
@@ -44,11 +45,10 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
                 yield here.instead(into, "parentheses", 1.15)
-        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub | ast.Add):
-            turned = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
-            if isinstance(left.op, ast.Sub):  # a - b + c for a - (b + c)
-                rest = ast.BinOp(left.right, turned if isinstance(op, ast.Sub) else op, right)
-                yield here.instead(ast.BinOp(left.left, ast.Sub(), rest), "parentheses", 1.2)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub) and isinstance(op, ast.Add):
+            # a - b + c for a - (b + c)
+            rest = ast.BinOp(left.right, op, right)
+            yield here.instead(ast.BinOp(left.left, left.op, rest), "parentheses", 1.2)
     elif isinstance(op, _PRODUCTS):
         for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
             if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
@@ -196,33 +196,41 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node.value)
-    keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-    single = not isinstance(node.slice, ast.Tuple)
-    for k, key in enumerate(keys):
-        holder, field = (node, "slice") if single else (keys, k)
+    keys = keys_of(node)
+    yield from of_keys(here, node, 1.1)
+    for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
-        if isinstance(key, ast.Slice):
-            if key.lower is None and key.upper is not None and key.step is None:
-                yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", 1.1)
-            elif key.upper is None and key.lower is not None and key.step is None:
-                yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", 1.1)
-        elif whole_constant(key):
+        if whole_constant(key):
             for other in range(-1, max(size, 4 if not size else 0)):
                 if other != value_of(key) and not (other == -1 and size):
                     near = abs(other - value_of(key)) == 1
                     yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
-    if not single and len(keys) == 2:
-        swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
-        yield here.within(node, "slice", swapped, "transposed", 1.1)
-    yield from permuted(here, node)
-    if single and shape is not None and len(shape) == 2 and not isinstance(keys[0], ast.Slice):
-        column = ast.Tuple([ast.Slice(None, None, None), keys[0]], ast.Load())
+    _holder, _field, key = keys[0]
+    single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
+    if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
+        column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
 
 
-def permuted(here: Here, node: ast.Subscript) -> Iterator[ProgramEdit]:
-    """Three indices in another order."""
+def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:
+    """The indices of an entry, each with where it hangs."""
+    if isinstance(node.slice, ast.Tuple):
+        return [(node.slice.elts, k, key) for k, key in enumerate(node.slice.elts)]
+    return [(node, "slice", node.slice)]
+
+
+def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdit]:
+    """Other rows, and indices in another order: of what is read, or where a value is put."""
+    for holder, field, key in keys_of(node):
+        if isinstance(key, ast.Slice) and key.step is None:
+            if key.lower is None and key.upper is not None:
+                yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", cost)
+            elif key.upper is None and key.lower is not None:
+                yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
     keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
+    if len(keys) == 2:
+        swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
+        yield here.within(node, "slice", swapped, "transposed", cost)
     if len(keys) == 3 and len({ast.dump(key) for key in keys}) > 1:
         for order in [*permutations(range(3))][1:]:
             other = ast.Tuple([keys[k] for k in order], ast.Load())

@@ -40,6 +40,20 @@ class FieldChange:
     field: Any
     new: Any
 
+    @property
+    def now(self) -> Any:
+        """What is there."""
+        if is_data(self.holder):
+            return self.holder[self.field]
+        return getattr(self.holder, self.field)
+
+    def put(self, value: Any) -> None:
+        """Puts something there."""
+        if is_data(self.holder):
+            self.holder[self.field] = value
+        else:
+            setattr(self.holder, self.field, value)
+
 
 class Trial:
     """A program that can be run with changes in it; nothing of the user's own is touched.
@@ -108,14 +122,14 @@ class Trial:
             parts: where the changes are; -1 stands for the data.
             changes: what is put where.
         """
-        before = [(change, _get(change)) for change in changes]
+        before = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
                 _located(change.new)
-                _put(change, change.new)
+                change.put(change.new)
             for k in every:
                 if k in parts:
                     self._made[k] = self._compiled(k)
@@ -124,7 +138,7 @@ class Trial:
             yield
         finally:
             for change, old in reversed(before):
-                _put(change, old)
+                change.put(old)
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
@@ -139,6 +153,11 @@ class Trial:
         if self._turns > _TURNS:
             raise RuntimeError("a loop without end")
         return True
+
+
+def is_data(value: Any) -> bool:
+    """Whether numbers are kept in it by keys or indices."""
+    return isinstance(value, list | dict | np.ndarray)
 
 
 @contextmanager
@@ -197,10 +216,6 @@ def _names_in(tree: ast.AST) -> set[str]:
     return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
 
 
-def _is_data(value: Any) -> bool:
-    return isinstance(value, list | dict | np.ndarray)
-
-
 def _class_of(value: Any) -> type:
     return value if isinstance(value, type) else type(value)
 
@@ -208,7 +223,7 @@ def _class_of(value: Any) -> type:
 def _copied(owner: type) -> type:
     """A class like another, whose methods can be changed."""
     own = {
-        name: copy.deepcopy(value) if _is_data(value) else value
+        name: copy.deepcopy(value) if is_data(value) else value
         for name, value in vars(owner).items()
         if name not in ("__dict__", "__weakref__")
     }
@@ -277,20 +292,3 @@ def _located(new: Any) -> None:
                 if "lineno" in node._attributes and not hasattr(node, "lineno"):
                     node.lineno = node.end_lineno = 1  # type: ignore[attr-defined]
                     node.col_offset = node.end_col_offset = 0  # type: ignore[attr-defined]
-
-
-def _get(change: FieldChange) -> Any:
-    if _of_items(change.holder):
-        return change.holder[change.field]
-    return getattr(change.holder, change.field)
-
-
-def _put(change: FieldChange, value: Any) -> None:
-    if _of_items(change.holder):
-        change.holder[change.field] = value
-    else:
-        setattr(change.holder, change.field, value)
-
-
-def _of_items(holder: Any) -> bool:
-    return isinstance(holder, list | dict | np.ndarray)
