@@ -9,6 +9,8 @@ module            what it holds
                   table
 ``examine``       The examination: compare, try the readings, look for slips in the entries, rank
                   what explains
+``excuses``       Right all the same, or right here only: what a difference, or none, is before it
+                  is a slip
 ``file``          A file of formulas as text, each examined entry by entry
 ``numbers``       The robot's numbers taken otherwise: one of them another, or all of a kind
                   rounded
@@ -20,6 +22,8 @@ module            what it holds
                   difference
 ``search``        Every slip at one place of a formula, and those that turn it into another by
                   their effect
+``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
+                  whole answer
 ``terms``         Slips within single entries: the derived formula beside a user's text or function
 ``verdicts``      Right in another way: with numbers for names, or another valid formula
 ``bytecode/``      The syntax tree of a function whose source text cannot be had

@@ -7,5 +7,7 @@ module         what it holds
 ``otherwise``  What the engine says if asked otherwise: another frame, another split of C, terms
                left out
 ``robots``     Readings of the robot itself: convention, offsets, base and tool, gravity, inertias
+``tried``      A known confusion, or two at once, held against the answers: which explain every
+               state
 =============  ====================================================================================
 """

@@ -1,0 +1,152 @@
+"""Slips of the pen in the entries that are off, alone or after a reading of the whole answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.compare import relative_errors
+from kinlab.check.diagnosis import Cause
+from kinlab.doctor import terms
+from kinlab.doctor.changes import Case, Confusion, table_of
+from kinlab.doctor.derived import derivation
+from kinlab.doctor.terms import AnswerEntry, Slip, entries
+from kinlab.doctor.text.written import Written
+from kinlab.host.language import _
+from kinlab.tolerances import TOLERANCES
+
+RIVALS = 2
+"""Entries that differ up to which slips are looked for beside a reading that explains them."""
+LIST = 3
+"""Slips in one cause above which a reading with fewer slips is looked for too."""
+_PATIENCE = 2
+"""Entries without an explanation after which the rest are not tried."""
+_FLOOD = 8
+"""Slips in all entries together above which a list of them is no diagnosis."""
+_TIED = 5
+"""Slips of one entry that are kept as alternatives."""
+_UNDONE = {
+    "sign",
+    "transposed",
+    "row order",
+    "inverse",
+    "rotation transposed",
+    "joint order",
+    "row sign",
+    "column sign",
+    "rows swapped",
+}
+"""Readings of the answer that are their own inverse."""
+
+
+def slips_in(
+    case: Case, off: list[AnswerEntry], written: dict[str, Written]
+) -> tuple[list[Cause], tuple[str, ...]]:
+    """Causes that are slips of the pen in the entries that are off, or what is known of some."""
+    per_entry: list[list[Slip]] = []
+    seen: list[Written] = []
+    for entry in off:
+        text = written.get(entry.label)
+        if text is not None:
+            if any(text is other for other in seen):
+                continue  # the mirror image of an entry that is given once
+            seen.append(text)
+        found = of_entry(case, entry, text)
+        # all repairs of a text give one formula: the likeliest is told
+        per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
+        told = sum(len(found[0].kinds) for found in per_entry if found)
+        if sum(not found for found in per_entry) >= _PATIENCE or (not written and told > _FLOOD):
+            break
+    if not all(per_entry):
+        return [], tuple(found[0].sentence for found in per_entry if found)
+    # alternatives are told for one entry at a time; all of all would be a flood
+    if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
+        return [], tuple(found[0].sentence for found in per_entry)
+    sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
+    return [slip_cause(chosen) for chosen in sets], ()
+
+
+def _varied(found: list[Slip]) -> list[Slip]:
+    """The cheapest of each combination of kinds: places that are equal by value say no more."""
+    kinds: dict[tuple[str, ...], Slip] = {}
+    for slip in sorted(found, key=lambda s: s.cost):
+        kinds.setdefault(tuple(sorted(slip.kinds)), slip)
+    return list(kinds.values())[:_TIED]
+
+
+def slip_cause(slips: tuple[Slip, ...]) -> Cause:
+    return Cause(
+        _("; ").join(s.sentence for s in slips),
+        tuple(k for s in slips for k in s.kinds),
+        tuple(s.entry for s in slips),
+        max(s.error for s in slips),
+        sum(s.cost for s in slips),
+        {s.entry: s.corrected for s in slips if s.corrected},
+        {s.entry: s.typed for s in slips if s.typed},
+    )
+
+
+def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]:
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None:
+        return []
+    poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+    arguments = case.quantity.arguments
+    if text is not None:
+        found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
+    else:
+        others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
+        found = terms.in_function(
+            entry.label,
+            entry.hand,
+            entry.engine,
+            derived,
+            poly,
+            arguments,
+            case.arguments,
+            others[:12],
+        )
+    good = []
+    for slip in found:
+        left = entry.engine if slip.repaired else entry.hand
+        error = entry.error(slip.values, left)
+        if error <= TOLERANCES.formula_agrees:
+            good.append(slip.with_error(error))
+    return good
+
+
+def reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Iterator[Cause]:
+    """A whole-answer reading undone, and slips in what is left."""
+    before = sum(not e.agrees for e in entries(case, engine))
+    for reading in tried:
+        if reading.stage != "answer" or reading.kind not in _UNDONE or case.index:
+            continue
+        undone = reading.apply(case.hand)
+        if undone.shape != engine.shape:
+            continue
+        if reading.kind == "factor":
+            undone = case.hand * (case.hand / np.where(undone, undone, 1.0))
+        changed = replace(case, hand=undone, again=None)
+        off = [e for e in entries(changed, engine) if not e.agrees]
+        if len(off) >= max(before, 2) or len(off) > RIVALS:
+            continue
+        if np.max(relative_errors(undone, engine)) >= np.max(relative_errors(case.hand, engine)):
+            continue  # what undoes a slip brings the answer nearer
+        for cause in slips_in(changed, off, {})[0]:
+            if len(cause.kinds) > LIST:
+                continue  # what leaves so much is not undone
+            yield Cause(
+                _("the formula {does}, and then {slips}").format(
+                    does=reading.sentence, slips=cause.sentence
+                ),
+                (reading.kind, *cause.kinds),
+                (reading.place, *cause.places),
+                cause.error_after,
+                reading.cost + cause.cost,
+                cause.corrected,
+            )
