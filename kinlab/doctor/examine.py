@@ -144,8 +144,8 @@ def _explained(
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
-    if edited and silent is not None:
-        return edited[:1], (), None, None
+    if program and edited and (silent or program.written_out or len(edited[0].kinds) > 1):
+        return edited[:1], (), None, None  # with nothing more to be said of what that means
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))

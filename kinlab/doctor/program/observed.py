@@ -12,6 +12,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
+from kinlab.doctor.syntax import nodes
 
 _KEPT = 64
 """Values of one expression that are kept."""
@@ -45,7 +46,7 @@ class Observed:
         self._seen: dict[int, Seen] = {}
         parts = trial.program.parts
         originals = [trial.placed(k) for k in range(len(parts))]
-        self._by_number = [dict(enumerate(ast.walk(tree))) for tree in trial.trees]
+        self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         self.work: dict[int, int] = {}
         """Expressions evaluated at all the states by what depends on a part, by its number."""
@@ -59,7 +60,7 @@ class Observed:
             for k, function in enumerate(originals):
                 trial.place(k, function)
         own = [
-            sum(self._seen[id(node)].count for node in ast.walk(tree) if id(node) in self._seen)
+            sum(self._seen[id(node)].count for node in nodes(tree) if id(node) in self._seen)
             for tree in trial.trees
         ]
         self.work = {k: sum(own[j] for j in trial.above[k]) for k in trial.above}
@@ -108,8 +109,8 @@ def _numbers(value: Any) -> Array | None:
 def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
     """A copy in which every expression tells its value."""
     own = copy.deepcopy(tree)
-    numbers = {id(node): number for number, node in enumerate(ast.walk(own))}
-    for parent in list(ast.walk(own)):
+    numbers = {id(node): number for number, node in enumerate(nodes(own))}
+    for parent in nodes(own):
         for name, value in ast.iter_fields(parent):
             holder, keys = (
                 (value, range(len(value))) if isinstance(value, list) else (parent, [name])

@@ -24,6 +24,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit, called
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
+from kinlab.doctor.syntax import nodes
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
@@ -92,7 +93,7 @@ class LineSearch:
         stacks = self.case.arguments.values()
         states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
         self.observed = Observed(self.trial, states)
-        self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+        self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
 
     @property
     def faithful(self) -> bool:
@@ -113,7 +114,7 @@ class LineSearch:
             isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
             or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))
             for part in self.program.parts
-            for node in ast.walk(part.tree)
+            for node in nodes(part.tree)
         )
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
+from kinlab.doctor.syntax import nodes
 
 
 class NoProgramError(Exception):
@@ -198,22 +199,21 @@ def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> Fun
 def _callers(program: OwnProgram) -> dict[int, set[int]]:
     """For each part those whose answers depend on it, itself among them; -1 for the data."""
     every = range(len(program.parts))
-    calls = [
-        {k for k in every if program.parts[k].name in _names_in(part.tree)}
-        for part in program.parts
-    ]
+    names = [_names_in(part.tree) for part in program.parts]
+    calls = [{k for k in every if program.parts[k].name in inside} for inside in names]
     above = {k: {k} for k in every}
     for _round in every:
         for k in every:
             above[k] |= {j for j in every if calls[j] & above[k]}
-    data = {k for k in every if _names_in(program.parts[k].tree) & {*program.data}}
+    data = {k for k in every if names[k] & {*program.data}}
     owned = {k for k in every if program.parts[k].owner is not None}
     return {**above, -1: {j for k in data | owned for j in above[k] | {k}}}
 
 
 def _names_in(tree: ast.AST) -> set[str]:
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    found = nodes(tree)
+    names = {node.id for node in found if isinstance(node, ast.Name)}
+    return names | {node.attr for node in found if isinstance(node, ast.Attribute)}
 
 
 def _class_of(value: Any) -> type:
@@ -244,9 +244,20 @@ def _remembering(function: FunctionType) -> Any:
             if len(known) >= _REMEMBERED:
                 known.clear()
             known[key] = function(*asked)
-        return copy.deepcopy(known[key])
+        return _again(known[key])
 
     return remembered
+
+
+def _again(value: Any) -> Any:
+    """A copy of an answer."""
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
+        return value.copy()
+    if type(value) in (float, np.float64, int):
+        return value
+    if type(value) in (tuple, list):
+        return type(value)(map(_again, value))
+    return copy.deepcopy(value)
 
 
 def _key(value: Any) -> Any:
@@ -288,7 +299,7 @@ def _located(new: Any) -> None:
     """Gives new nodes a line, which compiling asks for."""
     for one in new if isinstance(new, list) else [new]:
         if isinstance(one, ast.AST):
-            for node in ast.walk(one):
+            for node in nodes(one):
                 if "lineno" in node._attributes and not hasattr(node, "lineno"):
                     node.lineno = node.end_lineno = 1  # type: ignore[attr-defined]
                     node.col_offset = node.end_col_offset = 0  # type: ignore[attr-defined]
