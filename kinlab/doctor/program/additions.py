@@ -13,7 +13,6 @@ import numpy as np
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
-from kinlab.doctor.syntax import nodes
 
 ANGLES = ("sin", "cos", "tan")
 _LONG = 60
@@ -47,22 +46,22 @@ class Scope:
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
-        calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
+        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
         self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
-        for node in nodes(tree):
+        for node in ast.walk(tree):
             if isinstance(node, ast.For | ast.comprehension):
-                names = [n.id for n in nodes(node.target) if isinstance(n, ast.Name)]
+                names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
                 self.counters += [n for n in names if n not in self.counters]
                 if isinstance(node, ast.comprehension):
                     inner |= {*names}
         loaded = {
             n.id
             for one in trial.trees
-            for n in nodes(one)
+            for n in ast.walk(one)
             if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
         }
-        for node in nodes(tree):
+        for node in ast.walk(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
@@ -75,7 +74,7 @@ class Scope:
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {
-            n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
+            n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
         }
         self.unused = {name for name in self.shapes if name not in loaded}
         for name, shape in self.shapes.items():
@@ -102,7 +101,7 @@ class Scope:
             self.shapes.setdefault(node.id, seen.shape)
             if seen.whole and seen.shape == ():
                 return
-        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
+        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
         text = ast.unparse(node)
         if names & inner or len(text) > _LONG:
             return
@@ -113,7 +112,7 @@ class Scope:
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
-        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
+        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
         short = isinstance(node, ast.Name)
         return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
 
@@ -206,7 +205,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
-    own = {ast.unparse(n) for n in nodes(node)}
+    own = {ast.unparse(n) for n in ast.walk(node)}
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)

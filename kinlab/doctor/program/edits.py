@@ -32,7 +32,6 @@ from kinlab.doctor.program.operators import (
 )
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
-from kinlab.doctor.syntax import nodes
 
 
 def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
@@ -149,13 +148,13 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
 
 
 def _names(tree: ast.AST) -> list[ast.Name]:
-    return [node for node in nodes(tree) if isinstance(node, ast.Name)]
+    return [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
     value = here.node.value
-    used = [n.id for n in nodes(value) if isinstance(n, ast.Name)] if value else []
+    used = [n.id for n in ast.walk(value) if isinstance(n, ast.Name)] if value else []
     for counter in scope.counters:
         if used.count(counter) > 1:
             for step in (1, -1):
@@ -198,7 +197,7 @@ def _target(here: Here, target: ast.Subscript) -> Iterator[ProgramEdit]:
 
 def _orders(part: int, tree: ast.FunctionDef) -> Iterator[ProgramEdit]:
     """Two statements in the other order, where one uses what the other sets."""
-    for node in nodes(tree):
+    for node in ast.walk(tree):
         for name in ("body", "orelse"):
             block = getattr(node, name, None)
             if not isinstance(block, list):
@@ -221,7 +220,7 @@ def _orders(part: int, tree: ast.FunctionDef) -> Iterator[ProgramEdit]:
 
 def _sets(node: ast.AST) -> set[str]:
     return {
-        n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
+        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
     } | (
         {node.target.id}
         if isinstance(node, ast.AugAssign) and hasattr(node.target, "id")
@@ -230,4 +229,4 @@ def _sets(node: ast.AST) -> set[str]:
 
 
 def _uses(node: ast.AST) -> set[str]:
-    return {n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

@@ -14,7 +14,6 @@ from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch
-from kinlab.doctor.syntax import nodes
 
 _PLAIN = ("positions", "velocities", "accelerations")
 """What everybody knows of a function's own arguments."""
@@ -40,10 +39,10 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
         right = np.array(edit.numbers[1])
         sense = meaning_of(known, [right for _state in known])
         return [] if sense is None else [(f"{edit.numbers[1]:.6g}", said(sense))]
-    changed = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
-    texts = {ast.unparse(n): n for n in nodes(search.trial.trees[edit.part]) if _piece(n)}
+    nodes = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
+    texts = {ast.unparse(n): n for n in ast.walk(search.trial.trees[edit.part]) if _piece(n)}
     out: dict[str, str] = {}
-    for node in changed:
+    for node in nodes:
         for piece in _pieces(node):
             text = ast.unparse(piece)
             sense = _sense(texts.get(text, piece), search.observed, known)

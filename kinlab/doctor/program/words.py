@@ -17,7 +17,6 @@ from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several import several
 from kinlab.doctor.program.trial import Trial
-from kinlab.doctor.syntax import nodes
 from kinlab.host.language import N_, _
 
 _MOST = 3
@@ -217,7 +216,7 @@ def _of_data(edit: ProgramEdit) -> str:
 def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
     """What stands there, and what should: the widest that is short."""
     tree = trial.trees[edit.part]
-    above = {id(child): node for node in nodes(tree) for child in ast.iter_child_nodes(node)}
+    above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
     chain = [edit.node]
     while id(chain[-1]) in above and isinstance(chain[-1], ast.expr):
         chain.append(above[id(chain[-1])])
