@@ -150,7 +150,10 @@ def _explained(
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
+        # beside a line that is wrong only what it may well mean
+        likely = _FETCHED if edited else np.inf
+        every = [*singly(loose, [reading for reading in tried if reading.cost <= likely])]
+        every += map(_as_steps, taken_otherwise(loose, ways, likely))
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -187,8 +190,8 @@ def _explained(
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):
         # beside a list of slips only the likeliest reading: each costs a search of its own
-        likely = [r for r in tried if r.kind == "sign"] if causes else tried
-        causes += reading_and_slips(case, likely, engine)
+        plain = [r for r in tried if r.kind == "sign"] if causes else tried
+        causes += reading_and_slips(case, plain, engine)
     return causes, partial, None, split
 
 

@@ -313,7 +313,7 @@ def _table(
     return Confusion(kind, sentence, "robot", apply, cost, place)
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=1024)
 def _built(table: DHTable) -> Robot:
     """The robot of a changed table: entries of one file and pairs of readings ask for it again."""
     return Robot.from_dh(table)

@@ -66,9 +66,9 @@ def _ready(case: Case, tried: Iterable[Road]) -> Ready:
     return [(road, shapes) for road in tried if (shapes := _sound(case, road)) is not None]
 
 
-def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
-    """What explains the hand formula by one step, at all joints."""
-    return [found for road, shapes in ways for found in _by_one(case, road, shapes, False)]
+def taken_otherwise(case: Case, ways: Ready, most: float = np.inf) -> list[Found]:
+    """What explains the hand formula by one step, at all joints; of those up to a cost."""
+    return [found for road, shapes in ways for found in _by_one(case, road, shapes, False, most)]
 
 
 def taken_at_one_joint(case: Case, ways: Ready) -> list[Found]:
@@ -87,9 +87,11 @@ def taken_at_one_joint(case: Case, ways: Ready) -> list[Found]:
     return found
 
 
-def _by_one(case: Case, road: Road, shapes: Shapes, singly: bool) -> Iterator[Found]:
+def _by_one(
+    case: Case, road: Road, shapes: Shapes, singly: bool, most: float = np.inf
+) -> Iterator[Found]:
     tried = steps(road.of, shapes, road.n, singly)
-    yield from _tried(case, road, [(step,) for step in tried])
+    yield from _tried(case, road, [(step,) for step in tried if step.cost <= most])
 
 
 def with_these(known: list[Found], case: Case) -> list[Found]:

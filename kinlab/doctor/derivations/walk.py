@@ -59,7 +59,7 @@ def _assignments(body: Iterable[ast.stmt], n: int) -> int:
     return count
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def program(text: str) -> Program:
     """Reads a derivation; the comment above a line says what it is."""
     tree = ast.parse(text)

@@ -16,6 +16,7 @@ module            what it holds
 ``repair``        The edits that make a program right
 ``several``       Two or three edits that together make a program right
 ``trial``         A program run with edits in it
+``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
 ================  =================================================================================
 """

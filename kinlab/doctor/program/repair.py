@@ -24,6 +24,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit, called
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
+from kinlab.doctor.program.variants import Variants
 from kinlab.doctor.syntax import nodes
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
@@ -87,7 +88,14 @@ class LineSearch:
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
+        self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
+        self._few = self._at(self.first)
         self._prepare()
+
+    def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
+        """The arguments and the right answers at some states."""
+        chosen = list(which)
+        return [stack[chosen] for stack in self.case.arguments.values()], self.wanted[chosen]
 
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
@@ -127,14 +135,16 @@ class LineSearch:
         """Single edits that make the program right, the likeliest first."""
         found: list[ProgramRepair] = []
         with quietly():
-            for edit in sorted(edits(self.trial, self.observed), key=self._dear):
+            tried = sorted(edits(self.trial, self.observed), key=self._dear)
+            variants = Variants(self.trial, tried)
+            for edit in tried:
                 if found and edit.cost > found[0].edits[-1].cost + _TIED:
                     break
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
                     break
                 try:
-                    with changed(self.trial, (edit,)):
+                    with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
                         values = self.values(self.first)
                         if values is None:
                             continue
@@ -224,11 +234,9 @@ class LineSearch:
     def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
         quantity, robot = self.case.quantity, self.case.robot
-        asked = state_by_state(quantity.asked(robot, self.trial.function))
-        stacks = [stack[list(which)] for stack in self.case.arguments.values()]
-        wanted = self.wanted[list(which)]
+        stacks, wanted = self._few if which is self.first else self._at(which)
         try:
-            values = np.asarray(asked(None, *stacks), dtype=float)
+            values = np.asarray(self._asked(None, *stacks), dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):

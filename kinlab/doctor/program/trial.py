@@ -77,7 +77,7 @@ class Trial:
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
         self.trees = [_bounded(part.tree) for part in program.parts]
-        self.space["_turn"] = self._turn
+        self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
         self.above = _callers(program)
         self._touched: set[int] = set()
@@ -116,31 +116,40 @@ class Trial:
             setattr(self.classes[part.owner], part.name, function)
 
     @contextmanager
-    def changed(self, parts: set[int], changes: Sequence[FieldChange]) -> Iterator[None]:
+    def changed(
+        self,
+        parts: set[int],
+        changes: Sequence[FieldChange],
+        compiled: tuple[int, FunctionType] | None = None,
+    ) -> Iterator[None]:
         """The program with changes in it, beside those that stand already.
 
         Args:
             parts: where the changes are; -1 stands for the data.
             changes: what is put where.
+            compiled: the number of the changes in a function that has them, where it is made.
         """
-        before = [(change, change.now) for change in changes]
+        old = [(change, change.now) for change in changes]
         every = range(len(self.trees))
-        outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
-                _located(change.new)
+                located(change.new)
                 change.put(change.new)
             for k in every:
-                if k in parts:
+                if k in parts and compiled is not None:
+                    self.space["_edit"], self._made[k] = compiled
+                elif k in parts:
                     self._made[k] = self._compiled(k)
                 # only of what no change reaches, this one's or one that stands, answers are kept
                 self.place(k, self._made[k] if k in self._touched else self._remembering[k])
             yield
         finally:
-            for change, old in reversed(before):
-                change.put(old)
-            self._touched, self._made = outer, compiled
+            for change, value in reversed(old):
+                change.put(value)
+            self._touched, self._made = outer, before
+            self.space["_edit"] = 0
             for k in every:
                 self.place(k, kept[k])
 
@@ -295,7 +304,7 @@ class _Quiet(ast.NodeTransformer):
         return node
 
 
-def _located(new: Any) -> None:
+def located(new: Any) -> None:
     """Gives new nodes a line, which compiling asks for."""
     for one in new if isinstance(new, list) else [new]:
         if isinstance(one, ast.AST):
