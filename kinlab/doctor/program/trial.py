@@ -135,7 +135,8 @@ class Trial:
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
-                located(change.new)
+                if compiled is None:
+                    _located(change.new)
                 change.put(change.new)
             for k in every:
                 if k in parts and compiled is not None:
@@ -304,7 +305,7 @@ class _Quiet(ast.NodeTransformer):
         return node
 
 
-def located(new: Any) -> None:
+def _located(new: Any) -> None:
     """Gives new nodes a line, which compiling asks for."""
     for one in new if isinstance(new, list) else [new]:
         if isinstance(one, ast.AST):

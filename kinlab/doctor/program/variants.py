@@ -13,14 +13,15 @@ from types import FunctionType
 from typing import Any
 
 from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.trial import NoProgramError, Trial, located, made
+from kinlab.doctor.program.trial import NoProgramError, Trial, made
 from kinlab.doctor.syntax import nodes
 
 _TOGETHER = 64
 """Edits that are compiled together."""
 _SIMPLE = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
 """Statements of which there are branches."""
-_AT: dict[str, Any] = {"lineno": 1, "col_offset": 0}
+_AT: dict[str, Any] = {"lineno": 1, "col_offset": 0, "end_lineno": 1, "end_col_offset": 0}
+_NONE: frozenset[str] = frozenset()
 
 Branch = tuple[ProgramEdit, int, ast.stmt, ast.stmt]
 """An edit, its number, the statement that it changes, and what that becomes."""
@@ -97,7 +98,11 @@ class _Part:
     def __init__(self, tree: ast.FunctionDef) -> None:
         self._above: dict[int, tuple[ast.AST, str, int | None]] = {}
         self._lists: dict[int, tuple[ast.AST, str]] = {}
-        for node in nodes(tree):
+        self._sets: dict[int, frozenset[str]] = {}
+        every = nodes(tree)
+        for node in reversed(every):
+            self._sets[id(node)] = self._set_in(node)
+        for node in every:
             for name, value in ast.iter_fields(node):
                 if isinstance(value, list):
                     self._lists[id(value)] = (node, name)
@@ -112,10 +117,9 @@ class _Part:
         if len(edit.changes) > 1:
             return None
         (change,) = edit.changes
-        located(change.new)
         holder, field, new = change.holder, change.field, change.new
-        if _set_in(change.now) != _set_in(new):
-            return None
+        if self._set_in(change.now) != self._set_in(new):
+            return None  # what a function sets nowhere is not its own
         if isinstance(holder, list):
             if id(holder) not in self._lists or not isinstance(new, ast.AST):
                 return None
@@ -133,6 +137,22 @@ class _Part:
             new, old = _copy(holder, name, k, new), holder
         return (old, new) if isinstance(old, _SIMPLE) and isinstance(new, ast.stmt) else None
 
+    def _set_in(self, piece: Any) -> frozenset[str]:
+        """Names that are set in a piece; new nodes get a line, which compiling asks for."""
+        known = self._sets.get(id(piece))
+        if known is not None:
+            return known
+        if isinstance(piece, list):
+            return _NONE.union(*map(self._set_in, piece))
+        if not isinstance(piece, ast.AST):
+            return _NONE
+        if "lineno" in piece._attributes and not hasattr(piece, "lineno"):
+            piece.__dict__.update(_AT)
+        if isinstance(piece, ast.Name):
+            return _NONE if isinstance(piece.ctx, ast.Load) else frozenset([piece.id])
+        inside = [self._set_in(getattr(piece, name, None)) for name in piece._fields]
+        return _NONE.union(*inside)
+
 
 def _copy(node: Any, field: str, k: int | None, new: Any) -> Any:
     """A node with something else in one field."""
@@ -144,16 +164,6 @@ def _copy(node: Any, field: str, k: int | None, new: Any) -> Any:
     other.__dict__.update(node.__dict__)
     setattr(other, field, new)
     return other
-
-
-def _set_in(piece: Any) -> set[str]:
-    """Names that are set in a piece: what a function sets nowhere is not its own."""
-    found = [x for one in (piece if isinstance(piece, list) else [piece]) for x in _inside(one)]
-    return {x.id for x in found if isinstance(x, ast.Name) and not isinstance(x.ctx, ast.Load)}
-
-
-def _inside(piece: Any) -> list[ast.AST]:
-    return nodes(piece) if isinstance(piece, ast.AST) else []
 
 
 def _with_instead(tree: Any, instead: dict[int, ast.stmt]) -> Any:
