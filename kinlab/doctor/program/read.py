@@ -130,6 +130,7 @@ class _Reader:
         self.space = dict(function.__globals__)
         self.parts: dict[tuple[type | None, str], OwnFunction] = {}
         self.data: list[str] = []
+        self.owners: dict[type, None] = {}
         self.waiting: list[tuple[type | None, str, FunctionType]] = []
 
     def program(self, bound: tuple[Any, ...]) -> OwnProgram | None:
@@ -164,16 +165,14 @@ class _Reader:
                 self._wait(None, label, value)
             elif _numeric(value) and label not in self.data:
                 self.data.append(label)
-            owner = value if isinstance(value, type) else type(value)
-            if written(owner, self.function.__module__):
-                self.data += [label] if label not in self.data else []
-                for name, method in vars(owner).items():
-                    if isinstance(method, FunctionType) and (name in used or name == "__call__"):
-                        self._wait(owner, name, method)
-        for owner in {part.owner for part in self.parts.values() if part.owner}:
-            for name in used:
-                method = vars(owner).get(name)
-                if isinstance(method, FunctionType):
+            found = dict.fromkeys(_owners(value, self.function.__module__))
+            if found and label not in self.data:
+                self.data.append(label)
+            self.owners |= found
+        self.owners |= {part.owner: None for part in self.parts.values() if part.owner}
+        for owner in self.owners:
+            for name, method in vars(owner).items():
+                if isinstance(method, FunctionType) and (name in used or name == "__call__"):
                     self._wait(owner, name, method)
         return True
 
@@ -268,6 +267,19 @@ def written(owner: type, module: str | None) -> bool:
     """Whether a class is the program's own."""
     made = bool(owner.__flags__ & _HEAP)  # by a class statement
     return made and owner.__module__ == (module or "builtins")  # so exec has it without a name
+
+
+def _owners(value: Any, module: str | None, depth: int = _DEEP) -> Iterator[type]:
+    """The program's own classes of which objects are kept in a value: in lists, in one another."""
+    owner = value if isinstance(value, type) else type(value)
+    inner: list[Any] = []
+    if written(owner, module):
+        yield owner
+        inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
+    elif isinstance(value, list | tuple | dict):
+        inner = [*value.values()] if isinstance(value, dict) else [*value]
+    for one in inner[:_MOST] if depth else ():
+        yield from _owners(one, module, depth - 1)
 
 
 def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
