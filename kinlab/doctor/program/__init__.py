@@ -7,6 +7,8 @@ module            what it holds
 ``data``          The numbers of a program: those in its text, and those in the data that it uses
 ``elsewhere``     The lines of a function that lives in another process
 ``edits``         What could stand in a place of a program instead
+``kept``          What a program's data hold, so that what an edited run writes into them is put
+                  back
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
