@@ -105,6 +105,12 @@ class LineSearch:
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
 
     @property
+    def scale(self) -> Array:
+        """What differences at the first states are relative to, beside the answers there."""
+        sizes = self.sizes[self.first]
+        return sizes.reshape(-1, *[1] * (self.wanted.ndim - 1))
+
+    @property
     def faithful(self) -> bool:
         """Whether the program as it was read answers what the user's own function did."""
         with quietly():
@@ -251,8 +257,7 @@ class LineSearch:
     def right(self, values: Array) -> Any:
         """Which entries of answers at the first states are right."""
         gap = np.abs(values - self.wanted[self.first])
-        sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * sizes
+        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
         return near.all(axis=0).ravel()
 
     def verdict(

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
 
@@ -73,6 +74,9 @@ class Trial:
         for name in program.data:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
+        owned = [value for one in self.classes.values() for value in vars(one).values()]
+        held = [self.space[name] for name in program.data]
+        self._contents = Contents([*held, *self.bound, *owned])
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -144,6 +148,7 @@ class Trial:
         before = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        held = self._contents.now()
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
@@ -158,6 +163,7 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
+            self._contents.put_back(held)
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
