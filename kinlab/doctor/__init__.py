@@ -24,7 +24,6 @@ module            what it holds
                   their effect
 ``slips``         Slips of the pen in the entries that are off, alone or after a reading of the
                   whole answer
-``syntax``        The nodes of a syntax tree, and the text of small ones
 ``terms``         Slips within single entries: the derived formula beside a user's text or function
 ``verdicts``      Right in another way: with numbers for names, or another valid formula
 ``bytecode/``      The syntax tree of a function whose source text cannot be had

@@ -35,7 +35,7 @@ from kinlab.doctor.bytecode.instructions import (
     unchain,
 )
 from kinlab.doctor.bytecode.steps import do
-from kinlab.doctor.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}

@@ -20,7 +20,7 @@ from types import CodeType, FunctionType
 from kinlab.doctor.bytecode.expressions import Made
 from kinlab.doctor.bytecode.instructions import UnreadError, alike
 from kinlab.doctor.bytecode.reading import definition
-from kinlab.doctor.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes
 
 
 def recovered(function: FunctionType) -> ast.FunctionDef | None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.derivations.operations import turns, without_own
 from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
 from kinlab.doctor.derivations.words import (
@@ -22,7 +23,6 @@ from kinlab.doctor.derivations.words import (
     together,
     which,
 )
-from kinlab.doctor.syntax import nodes, text_of
 from kinlab.host.language import N_, _
 
 

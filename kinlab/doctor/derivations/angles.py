@@ -10,10 +10,10 @@ import ast
 import re
 from collections.abc import Iterator
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.derivations.operations import Make
 from kinlab.doctor.derivations.walk import Program, Step, again
 from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
-from kinlab.doctor.syntax import nodes
 from kinlab.host.language import _
 
 _EXCHANGED = (

@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.fivebar import numbers as numbers_of_loop
 from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.bytecode.syntax import text_of
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derivations.books import columns, energies, five_bar, matrices, recursions
 from kinlab.doctor.derivations.givens import (
@@ -29,7 +30,6 @@ from kinlab.doctor.derivations.givens import (
     standard,
 )
 from kinlab.doctor.derivations.walk import Program, Step, Walk, program, regular
-from kinlab.doctor.syntax import text_of
 from kinlab.model.robot import Robot
 
 _MOST_JOINTS = 7

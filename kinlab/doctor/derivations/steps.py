@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.derivations.across import across, everywhere, slides
 from kinlab.doctor.derivations.angles import at_angle, at_difference, exchanged, of_angles, of_rods
 from kinlab.doctor.derivations.operations import (
@@ -40,7 +41,6 @@ from kinlab.doctor.derivations.words import (
     told_other,
     which,
 )
-from kinlab.doctor.syntax import nodes, text_of
 from kinlab.host.language import _, language, speaking
 
 _ALIKE = [

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.syntax import nodes, text_of
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 
 Rows = Any
 """Which alternatives are worked out: their numbers in order, or None for all."""

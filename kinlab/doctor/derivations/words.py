@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator
 
+from kinlab.doctor.bytecode.syntax import text_of
 from kinlab.doctor.derivations.walk import again
-from kinlab.doctor.syntax import text_of
 from kinlab.host.language import N_, _
 
 MEANT = {

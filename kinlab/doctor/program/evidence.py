@@ -13,13 +13,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial
-from kinlab.doctor.syntax import nodes
 from kinlab.tolerances import TOLERANCES
 
 _SOUND = 0.2

@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
 from kinlab.doctor.glossary.textbook import Glossary, Sense
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch
-from kinlab.doctor.syntax import nodes
 
 _PLAIN = ("positions", "velocities", "accelerations")
 """What everybody knows of a function's own arguments."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
-from kinlab.doctor.syntax import nodes
 
 _KEPT = 64
 """Values of one expression that are kept."""

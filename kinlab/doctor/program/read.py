@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
-from kinlab.doctor.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes
 
 _Cache = type(functools.lru_cache(len))
 _HEAP = 1 << 9

@@ -17,6 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
@@ -26,7 +27,6 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.doctor.program.variants import Variants
-from kinlab.doctor.syntax import nodes
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
-from kinlab.doctor.syntax import nodes
 
 
 class NoProgramError(Exception):

@@ -12,9 +12,9 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import NoProgramError, Trial, made
-from kinlab.doctor.syntax import nodes
 
 _TOGETHER = 64
 """Edits that are compiled together."""

@@ -10,6 +10,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
@@ -17,7 +18,6 @@ from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import Trial
-from kinlab.doctor.syntax import nodes
 from kinlab.host.language import N_, _
 
 _MOST = 3

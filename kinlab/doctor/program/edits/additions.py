@@ -10,10 +10,10 @@ from types import ModuleType
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
-from kinlab.doctor.syntax import nodes
 
 ANGLES = ("sin", "cos", "tan")
 _LONG = 60

@@ -5,11 +5,11 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange
-from kinlab.doctor.syntax import nodes
 
 _FAR = 6
 """Lines over which a statement may have been moved."""

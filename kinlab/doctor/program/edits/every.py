@@ -11,6 +11,7 @@ import copy
 from collections.abc import Iterator
 from math import pi
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -36,7 +37,6 @@ from kinlab.doctor.program.edits.operators import (
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
-from kinlab.doctor.syntax import nodes
 
 
 def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:

@@ -7,10 +7,10 @@ import copy
 from collections.abc import Iterator
 from itertools import combinations
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
-from kinlab.doctor.syntax import nodes
 
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
