@@ -22,6 +22,7 @@ from kinlab.doctor.confusions.tried import in_pairs, singly, the_formula
 from kinlab.doctor.derivations.joined import (
     Found,
     Ready,
+    likeliest,
     one_for_each_kind,
     ready,
     several_taken_otherwise,
@@ -150,10 +151,13 @@ def _explained(
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        # beside a line that is wrong only what it may well mean
-        likely = _FETCHED if edited else np.inf
-        every = [*singly(loose, [reading for reading in tried if reading.cost <= likely])]
-        every += map(_as_steps, taken_otherwise(loose, ways, likely))
+        if edited:  # what that may well mean
+            likely = [reading for reading in tried if reading.cost <= _FETCHED]
+            every = [*singly(loose, likely)]
+            known = [c.cost for c in every if c.error_after <= TOLERANCES.formula_agrees]
+            every += map(_as_steps, likeliest(loose, ways, min([_FETCHED, *known])))
+        else:
+            every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -165,8 +169,8 @@ def _explained(
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
-            known = [cause for cause in read_so if cause.cost <= _FETCHED]
-            return meant(edited, known), (), None, None
+            plain = [cause for cause in read_so if cause.cost <= _FETCHED]
+            return meant(edited, plain), (), None, None
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
@@ -190,8 +194,8 @@ def _explained(
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):
         # beside a list of slips only the likeliest reading: each costs a search of its own
-        plain = [r for r in tried if r.kind == "sign"] if causes else tried
-        causes += reading_and_slips(case, plain, engine)
+        likely = [r for r in tried if r.kind == "sign"] if causes else tried
+        causes += reading_and_slips(case, likely, engine)
     return causes, partial, None, split
 
 

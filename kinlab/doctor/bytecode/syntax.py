@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import ast
+from typing import TypeVar
+
+Tree = TypeVar("Tree", bound=ast.AST)
 
 
 def nodes(tree: ast.AST) -> list[ast.AST]:
@@ -16,6 +19,19 @@ def nodes(tree: ast.AST) -> list[ast.AST]:
             elif isinstance(value, list):
                 found += [one for one in value if isinstance(one, ast.AST)]
     return found
+
+
+def copied(tree: Tree) -> Tree:
+    """What :func:`copy.deepcopy` gives of a tree; what holds nothing stays."""
+    other = type(tree)()
+    inside = other.__dict__
+    for name, value in tree.__dict__.items():
+        if isinstance(value, list):
+            value = [copied(one) if isinstance(one, ast.AST) else one for one in value]
+        elif isinstance(value, ast.AST) and value._fields:
+            value = copied(value)
+        inside[name] = value
+    return other
 
 
 def text_of(node: ast.AST) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
 
 _KEPT = 64
@@ -108,7 +107,7 @@ def _numbers(value: Any) -> Array | None:
 
 def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
     """A copy in which every expression tells its value."""
-    own = copy.deepcopy(tree)
+    own = copied(tree)
     numbers = {id(node): number for number, node in enumerate(nodes(own))}
     for parent in nodes(own):
         for name, value in ast.iter_fields(parent):

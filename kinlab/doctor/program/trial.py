@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
@@ -314,7 +314,7 @@ def _key(value: Any) -> Any:
 
 def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
     """A copy that prints nothing and whose loops end."""
-    own = copy.deepcopy(tree)
+    own = copied(tree)
     own.returns, own.args.defaults = None, []
     own.args.kw_defaults = [None] * len(own.args.kwonlyargs)
     for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 from types import ModuleType
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
@@ -52,7 +51,7 @@ class Scope:
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
-        self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
+        self.ranges = [copied(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
@@ -138,16 +137,19 @@ class Scope:
         text = ast.unparse(node)
         if names & inner or len(text) > _LONG:
             return
-        own = copy.deepcopy(node)
-        self.pieces.setdefault(seen.shape, {}).setdefault(text, own)
+        known = self.pieces.setdefault(seen.shape, {})
+        own = known[text] = known.get(text) or copied(node)
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
+        if isinstance(node, ast.Name):
+            return 0.0 if node.id in self.unused else _UNUSED / 2
+        if not self.unused:
+            return _UNUSED
         names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
-        short = isinstance(node, ast.Name)
-        return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
+        return 0.0 if names & self.unused else _UNUSED
 
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""

@@ -7,11 +7,10 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -170,7 +169,7 @@ def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for counter in scope.counters:
         if used.count(counter) > 1:
             for step in (1, -1):
-                moved = _Moved(counter, step).visit(copy.deepcopy(value))
+                moved = _Moved(counter, step).visit(copied(value))
                 yield here.within(here.node, "value", moved, "index", 1.13)
 
 

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
@@ -43,7 +42,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
-        yield here.within(here.node, "value", _Turned().visit(copy.deepcopy(value)), "sin/cos", 1.1)
+        yield here.within(here.node, "value", _Turned().visit(copied(value)), "sin/cos", 1.1)
 
 
 def _plain(node: ast.Name | ast.Subscript) -> bool:
@@ -60,16 +59,16 @@ class _Renamed(ast.NodeTransformer):
 
     def of(self, value: ast.expr) -> ast.expr:
         """A copy of an expression with the others in it."""
-        new: ast.expr = self.visit(copy.deepcopy(value))
+        new: ast.expr = self.visit(copied(value))
         return new
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
-        return copy.deepcopy(self.others.get(node.id, node))
+        return copied(self.others.get(node.id, node))
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         other = self.others.get(ast.unparse(node))
         if other is not None:
-            return copy.deepcopy(other)
+            return copied(other)
         self.generic_visit(node)
         return node
 
