@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import copy
+import operator
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -73,6 +74,8 @@ class Trial:
         for name in program.data:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
+        owned = [self.space[name] for name in program.data]
+        self._kept = [*_held([*owned, *self.bound])]
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -162,6 +165,19 @@ class Trial:
             for k in every:
                 self.place(k, kept[k])
 
+    def settle(self) -> None:
+        """Puts back what a run with changes in it has written into the data."""
+        spoilt = [(held, old) for held, old in self._kept if not _as_before(held, old)]
+        if not spoilt or self._touched:
+            return
+        for held, old in spoilt:
+            if isinstance(held, dict):
+                held.clear()
+                held.update(old)
+            else:
+                held[:] = old
+        self._remembering = [_remembering(one) for one in self._made]
+
     def function(self, *state: Any) -> Any:
         """The program at one state."""
         self._turns = 0
@@ -172,6 +188,30 @@ class Trial:
         if self._turns > _TURNS:
             raise RuntimeError("a loop without end")
         return True
+
+
+def _held(values: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
+    """Arrays, lists, dictionaries that are kept in values, each with a copy of what it holds."""
+    waiting, seen = [*values], set()
+    while waiting:
+        value = waiting.pop()
+        if id(value) in seen:
+            continue
+        seen.add(id(value))
+        own = getattr(value, "__dict__", None)  # of a class it cannot be written into
+        for held in (value, own):
+            if isinstance(held, np.ndarray | list | dict):
+                yield held, held.copy()
+        waiting += [*value] if isinstance(value, list | tuple) else []
+        waiting += [*value.values()] if isinstance(value, dict) else [*(own or {}).values()]
+
+
+def _as_before(held: Any, old: Any) -> bool:
+    if isinstance(held, np.ndarray):
+        return bool(held.tobytes() == old.tobytes())
+    if isinstance(held, dict):
+        return held.keys() == old.keys() and all(held[key] is old[key] for key in old)
+    return len(held) == len(old) and all(map(operator.is_, held, old))
 
 
 def _numbers_only(value: Any) -> bool:
