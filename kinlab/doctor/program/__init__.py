@@ -6,14 +6,16 @@ module            what it holds
 ``digits``        Whether a program is right to the digits that its numbers are written with
 ``elsewhere``     The lines of a function that lives in another process
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
+``kept``          What a program's data hold, so that what an edited run writes into them is put
+                  back
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``places``        The places of a program, and what is put there instead
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
 ``repair``        The edits that make a program right
-``several``       Two or three edits that together make a program right
 ``trial``         A program run with edits in it
 ``words``         A repair in words: the line, what stands there, what should
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
+``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

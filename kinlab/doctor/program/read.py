@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import functools
 import inspect
 import itertools
@@ -148,7 +149,11 @@ class _Reader:
             self.parts[owner, name] = OwnFunction(name, tree, one, owner)
             if not self._names_of(one):
                 return None
-        return OwnProgram(tuple(self.parts.values()), bound, self.space, tuple(self.data))
+        space = {
+            label: value if label in self.data else _out_of_reach(value)
+            for label, value in self.space.items()
+        }
+        return OwnProgram(tuple(self.parts.values()), bound, space, tuple(self.data))
 
     def _names_of(self, one: FunctionType) -> bool:
         free = _free(one)
@@ -339,6 +344,24 @@ def _used(code: CodeType) -> Iterator[str]:
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield from _used(constant)
+
+
+def _out_of_reach(value: Any) -> Any:
+    """Data of the module that the program does not use: an edit that names them changes nothing."""
+    if isinstance(value, np.ndarray):
+        view = value.view()
+        view.flags.writeable = False
+        return view
+    return copy.deepcopy(value) if isinstance(value, list | dict) and _numbers(value) else value
+
+
+def _numbers(value: Any) -> bool:
+    """Whether there is nothing but numbers in it."""
+    if isinstance(value, dict):
+        value = [*value.values()]
+    if isinstance(value, list | tuple):
+        return all(_numbers(one) for one in value)
+    return isinstance(value, int | float | np.ndarray)
 
 
 def _numeric(value: Any) -> bool:

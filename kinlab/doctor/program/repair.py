@@ -9,7 +9,7 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -105,6 +105,12 @@ class LineSearch:
         self.observed = Observed(self.trial, self.states)
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+
+    @property
+    def scale(self) -> Array:
+        """What differences at the first states are relative to, beside the answers there."""
+        sizes = self.sizes[self.first]
+        return sizes.reshape(-1, *[1] * (self.wanted.ndim - 1))
 
     @property
     def faithful(self) -> bool:
@@ -262,8 +268,7 @@ class LineSearch:
     def right(self, values: Array) -> Any:
         """Which entries of answers at the first states are right."""
         gap = np.abs(values - self.wanted[self.first])
-        sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * sizes
+        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
         return near.all(axis=0).ravel()
 
     def verdict(
@@ -299,12 +304,7 @@ class LineSearch:
         return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
 
 
-@contextmanager
-def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> Iterator[None]:
-    """The program with edits in it; what they write into its data is put back."""
+def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextManager[None]:
+    """The program with edits in it."""
     parts = {edit.part for edit in several}
-    try:
-        with trial.changed(parts, [change for edit in several for change in edit.changes]):
-            yield
-    finally:
-        trial.settle()
+    return trial.changed(parts, [change for edit in several for change in edit.changes])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import copy
-import operator
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
 
@@ -74,8 +74,9 @@ class Trial:
         for name in program.data:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
-        owned = [self.space[name] for name in program.data]
-        self._kept = [*_held([*owned, *self.bound])]
+        owned = [value for one in self.classes.values() for value in vars(one).values()]
+        held = [self.space[name] for name in program.data]
+        self._contents = Contents([*held, *self.bound, *owned])
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -147,6 +148,7 @@ class Trial:
         before = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        held = self._contents.now()
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
@@ -161,22 +163,10 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
+            self._contents.put_back(held)
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
-
-    def settle(self) -> None:
-        """Puts back what a run with changes in it has written into the data."""
-        spoilt = [(held, old) for held, old in self._kept if not _as_before(held, old)]
-        if not spoilt or self._touched:
-            return
-        for held, old in spoilt:
-            if isinstance(held, dict):
-                held.clear()
-                held.update(old)
-            else:
-                held[:] = old
-        self._remembering = [_remembering(one) for one in self._made]
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
@@ -188,30 +178,6 @@ class Trial:
         if self._turns > _TURNS:
             raise RuntimeError("a loop without end")
         return True
-
-
-def _held(values: Sequence[Any]) -> Iterator[tuple[Any, Any]]:
-    """Arrays, lists, dictionaries that are kept in values, each with a copy of what it holds."""
-    waiting, seen = [*values], set()
-    while waiting:
-        value = waiting.pop()
-        if id(value) in seen:
-            continue
-        seen.add(id(value))
-        own = getattr(value, "__dict__", None)  # of a class it cannot be written into
-        for held in (value, own):
-            if isinstance(held, np.ndarray | list | dict):
-                yield held, held.copy()
-        waiting += [*value] if isinstance(value, list | tuple) else []
-        waiting += [*value.values()] if isinstance(value, dict) else [*(own or {}).values()]
-
-
-def _as_before(held: Any, old: Any) -> bool:
-    if isinstance(held, np.ndarray):
-        return bool(held.tobytes() == old.tobytes())
-    if isinstance(held, dict):
-        return held.keys() == old.keys() and all(held[key] is old[key] for key in old)
-    return len(held) == len(old) and all(map(operator.is_, held, old))
 
 
 def _numbers_only(value: Any) -> bool:

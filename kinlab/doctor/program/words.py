@@ -16,7 +16,7 @@ from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.several import several
+from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
 
