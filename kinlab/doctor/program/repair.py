@@ -53,10 +53,12 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
-_TURNS = 5
+_TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
+_WHOLE = 3
+"""Digits of a number that may stand for a whole one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -227,7 +229,10 @@ class LineSearch:
 
     def _numbers(self) -> Iterator[ProgramRepair]:
         """Single numbers, of the text or the data, with which the program is right."""
-        for place in numbers(self.trial, self.observed):
+        against = self.evidence.against
+        every = [*numbers(self.trial, self.observed)]
+        every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
+        for place in every:
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
@@ -244,6 +249,7 @@ class LineSearch:
             return None
         wanted, old = self.wanted[self.first], float(place.value)
         at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
+        least, worse = np.inf, 0
         for _turn in range(_TURNS):
             with changed(self.trial, (place.edit(at + step),)):
                 values = self.values(self.first)
@@ -252,12 +258,17 @@ class LineSearch:
             after = (values - wanted).ravel()
             slope = (after - before) / step
             flat = float(slope @ slope)
-            if not flat > 0.0:
+            worse = 0 if (size := float(after @ after)) < least else worse + 1
+            least = min(least, size)
+            if not flat > 0.0 or worse > 1:
                 return None
             at, before, step = at + step, after, -float(after @ slope) / flat
             if abs(step) <= 1e-9 * max(abs(at), 1e-3):
                 break
-        for digits in range(1, _DIGITS):
+        if abs(at + step) <= 1e-9 * max(abs(old), 1e-3):
+            step = -at
+        most = _DIGITS if isinstance(place.value, float) else _WHOLE
+        for digits in range(1, most):
             value = float(f"{at + step:.{digits - 1}e}")
             with changed(self.trial, (place.edit(value),)):
                 values = self.values(self.first)

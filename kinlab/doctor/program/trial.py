@@ -173,11 +173,16 @@ class Trial:
         finally:
             for change, value in reversed(old):
                 change.put(value)
-            self._contents.put_back(held)
+            if self._contents.put_back(held):  # answers may rest on what was written
+                self._forget()
             self._touched, self._made = outer, before
             self.space["_edit"] = 0
             for k in every:
                 self.place(k, kept[k])
+
+    def _forget(self) -> None:
+        for one in self._remembering:
+            one.known.clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
@@ -287,6 +292,7 @@ def _remembering(function: FunctionType) -> Any:
             known[key] = function(*asked)
         return _again(known[key])
 
+    remembered.known = known  # type: ignore[attr-defined]
     return remembered
 
 
