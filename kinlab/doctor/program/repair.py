@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from typing import Any
@@ -150,7 +150,7 @@ class LineSearch:
                 if repair is not None:
                     found.append(repair)
             if not found or found[0].edits[-1].cost > _NUMBER:
-                found = [*self._numbers(), *found]
+                found = self._numbers() + found
         return found
 
     def cost_of(self, edit: ProgramEdit) -> int:
@@ -163,8 +163,12 @@ class LineSearch:
         work = self.observed.work
         return edit.cost + _DEAR * float(np.log10(max(1, work[edit.part]) / max(1, work[0])))
 
-    def _numbers(self) -> Iterator[ProgramRepair]:
-        """Single numbers, of the text or the data, with which the program is right."""
+    def _numbers(self) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+        """
+        found: list[tuple[int, ProgramRepair]] = []
         for place in numbers(self.trial, self.observed):
             value = self._solved(place)
             if value is not None:
@@ -172,8 +176,8 @@ class LineSearch:
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    yield repair
-                    return
+                    found.append((len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[0])[1]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""

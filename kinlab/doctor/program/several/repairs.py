@@ -19,7 +19,7 @@ _KNOWN = 3
 """Repairs from which the likeliest is taken."""
 _FURTHER = 40
 """Combinations that are tried once one has made the program right."""
-_STEPS = 4
+_STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _DEEPEST = 2
 """Edits that may stand already when more are looked for."""
@@ -45,14 +45,14 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
     found = tried.first(known.adding_up(2)) or tried.first(_in_a_row(search, known, 2))
     if found:
         return found
-    wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
+    wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
     joined = known if wider is None else known.beside(wider)
-    found = tried.dear(joined, joined.pairs(), search.most // 3)
+    found = tried.dear(joined, joined.pairs(), search.most // 4)
     if not found and len(search.stand) < _DEEPEST:
         found = _one_after_another(search, joined)
     if not found and not search.stand:
         found = tried.first(known.adding_up(3)) or tried.first(_in_a_row(search, known, 3))
-        found = found or tried.dear(joined, joined.triples(), search.most // 6)
+        found = found or tried.dear(joined, joined.triples(), search.most // 8)
     return found
 
 
