@@ -22,7 +22,7 @@ _FURTHER = 40
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _DEEPEST = 2
-"""Edits that may stand already when more are looked for."""
+"""Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
 """The shape of an answer that is a product of matrices."""
 
@@ -48,7 +48,7 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
     wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
     joined = known if wider is None else known.beside(wider)
     found = tried.dear(joined, joined.pairs(), search.most // 4)
-    if not found and len(search.stand) < _DEEPEST:
+    if not found:
         found = _one_after_another(search, joined)
     if not found and not search.stand:
         found = tried.first(known.adding_up(3)) or tried.first(_in_a_row(search, known, 3))
@@ -67,7 +67,9 @@ def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair
         try:
             with changed(search.trial, (edit,)):
                 here = search.beside((*search.stand, edit))
-                found = here.singles() or _found(here)
+                found = here.singles()
+                if not found and len(here.stand) < _DEEPEST:
+                    found = _found(here)
         except NoProgramError:
             continue
         if found:
