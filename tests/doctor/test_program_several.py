@@ -93,7 +93,12 @@ def f(q, W):
 def effects(rows, own, goal):
     rows = np.array(rows, dtype=float)
     return Effects(
-        [[Named(k)] for k in range(len(rows))], rows, np.array(own), np.array(goal), 1e-7
+        [[Named(k)] for k in range(len(rows))],
+        rows,
+        np.array(own),
+        np.array(goal),
+        1e-7,
+        lambda edit: 1.0,
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterable
 from typing import Any
 
@@ -49,15 +50,24 @@ class Contents:
         return [(one, one.copy()) for one in self._holders.values()]
 
     @staticmethod
-    def put_back(before: list[tuple[Any, Any]]) -> None:
-        """What was held when :meth:`now` was asked, wherever something was written."""
-        for one, copy in before:
+    def put_back(before: list[tuple[Any, Any]]) -> bool:
+        """What was held when :meth:`now` was asked; whether something else was written."""
+        spoilt = [(one, copy) for one, copy in before if not _same(one, copy)]
+        for one, copy in spoilt:
             if isinstance(one, np.ndarray):
-                if one.tobytes() != copy.tobytes():
-                    one[...] = copy
+                one[...] = copy
             elif isinstance(one, list):
-                if len(one) != len(copy) or any(a is not b for a, b in zip(one, copy, strict=True)):
-                    one[:] = copy
-            elif one.keys() != copy.keys() or any(one[key] is not copy[key] for key in copy):
+                one[:] = copy
+            else:
                 one.clear()
                 one.update(copy)
+        return bool(spoilt)
+
+
+def _same(one: Any, copy: Any) -> bool:
+    """Whether it still holds the same things."""
+    if isinstance(one, np.ndarray):
+        return bool(one.tobytes() == copy.tobytes())
+    if isinstance(one, list):
+        return len(one) == len(copy) and all(map(operator.is_, one, copy))
+    return one.keys() == copy.keys() and all(one[key] is copy[key] for key in copy)

@@ -68,6 +68,7 @@ class Trial:
         self.space = dict(program.space)
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in program.data)))
+        self._copies: dict[int, Any] = {}
         module = program.parts[0].function.__module__
         self.classes = {one: _copied(one) for one in owners if written(one, module)}
         for name in program.data:
@@ -93,10 +94,28 @@ class Trial:
         """A copy of data; of a class, and of an object of it, one whose methods can be changed."""
         if isinstance(value, type):
             return self.classes.get(value, value)
+        if id(value) in self._copies:
+            return self._copies[id(value)]
+        if type(value) in (list, tuple, dict) and not _numbers_only(value):
+            return self._own_list(value)
         if type(value) not in self.classes:
             return copy.deepcopy(value)
         new: Any = object.__new__(self.classes[type(value)])
-        new.__dict__.update(copy.deepcopy(getattr(value, "__dict__", {})))
+        self._copies[id(value)] = new
+        new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
+        return new
+
+    def _own_list(self, value: Any) -> Any:
+        """A list, tuple or dictionary in which objects may be kept."""
+        if isinstance(value, tuple):
+            parts = [self._own(one) for one in value]
+            return type(value)(parts)
+        new: Any = {} if isinstance(value, dict) else []
+        self._copies[id(value)] = new
+        if isinstance(value, dict):
+            new.update({key: self._own(one) for key, one in value.items()})
+        else:
+            new += [self._own(one) for one in value]
         return new
 
     def _compiled(self, k: int) -> FunctionType:
@@ -144,7 +163,9 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
-            self._contents.put_back(held)
+            if self._contents.put_back(held):
+                for one in self._remembering:
+                    one.known.clear()
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
@@ -159,6 +180,12 @@ class Trial:
         if self._turns > _TURNS:
             raise RuntimeError("a loop without end")
         return True
+
+
+def _numbers_only(value: Any) -> bool:
+    """Whether a list holds numbers alone."""
+    inner = value.values() if isinstance(value, dict) else value
+    return all(isinstance(one, int | float) for one in inner)
 
 
 def is_data(value: Any) -> bool:
@@ -252,6 +279,7 @@ def _remembering(function: FunctionType) -> Any:
             known[key] = function(*asked)
         return copy.deepcopy(known[key])
 
+    remembered.known = known  # type: ignore[attr-defined]
     return remembered
 
 

@@ -7,7 +7,7 @@ their own: with T the answer, T1 and T2 what it is with one edit each, both make
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import product
 from typing import Any
@@ -50,6 +50,7 @@ class Effects:
         rows: the effects, (E, P), relative to the answer's size.
         own, goal: the answer as it is, and what is missing, (P,).
         near: what may be left of it.
+        likely: how far-fetched an edit is.
     """
 
     alike: list[list[ProgramEdit]]
@@ -57,6 +58,7 @@ class Effects:
     own: Array
     goal: Array
     near: float
+    likely: Callable[[ProgramEdit], float]
 
     def beside(self, other: Effects) -> Effects:
         """More numbers of the same answers, for those edits of which they are known."""
@@ -70,11 +72,12 @@ class Effects:
             np.concatenate([self.own, other.own]),
             np.concatenate([self.goal, other.goal]),
             self.near,
+            self.likely,
         )
 
     @property
     def costs(self) -> Array:
-        return np.array([edits[0].cost for edits in self.alike])
+        return np.array([self.likely(edits[0]) for edits in self.alike])
 
     @property
     def right(self) -> Flags:
@@ -103,6 +106,11 @@ class Effects:
         """The likeliest edits of these effects, and then the others of the same effects."""
         yield from product(*(self.alike[k] for k in chosen))
 
+    def cost(self, way: Way) -> float:
+        """How far-fetched edits are together."""
+        swapped = {"extra term", "missing term"} <= {edit.kind for edit in way}
+        return sum(map(self.likely, way)) + (_EXCHANGED if swapped else 0.0)
+
     def likeliest(self, chosen: tuple[int, ...]) -> Way:
         return tuple(self.alike[k][0] for k in chosen)
 
@@ -117,7 +125,7 @@ class Effects:
                 pairs = pairs_adding_up(rows[:k], goal - rows[k], allowance)
                 found += [(k, one, two) for one, two in pairs]
         ways = [self.likeliest(chosen) for chosen in found]
-        return sorted(ways, key=way_cost)
+        return sorted(ways, key=self.cost)
 
     def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Way]:
         """Edits of factors of one product of matrices, as the answer is."""
@@ -141,7 +149,7 @@ class Effects:
         for before, goal in firsts:
             found += [(*before, i, j) for i, j in _meeting(undone @ goal, each, self.near)]
         ways = [self.likeliest(tuple(int(usable[k]) for k in chosen)) for chosen in found]
-        return sorted((way for way in ways if len({*way}) == count), key=way_cost)
+        return sorted((way for way in ways if len({*way}) == count), key=self.cost)
 
     def pairs(self) -> list[tuple[int, ...]]:
         """Pairs that nothing speaks against, those first that explain most of the numbers."""
@@ -216,19 +224,13 @@ def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
             continue
         key = (np.round(effect, 7) + 0.0).tobytes()
         kept.setdefault(key, ([], effect))[0].append(edit)
-    alike = [(sorted(edits, key=lambda e: e.cost)[:_ALIKE], row) for edits, row in kept.values()]
-    alike.sort(key=lambda pair: pair[0][0].cost)
+    alike = [(sorted(edits, key=search.likely)[:_ALIKE], row) for edits, row in kept.values()]
+    alike.sort(key=lambda pair: search.likely(pair[0][0]))
     return Effects(
         [edits for edits, _row in alike],
         np.array([row for _edits, row in alike]).reshape(len(alike), own.size),
         (own / scale).ravel(),
         ((search.wanted[search.first] - own) / scale).ravel(),
         max(TOLERANCES.tried_further, search.allowed),
+        search.likely,
     )
-
-
-def way_cost(way: Way) -> float:
-    """How far-fetched edits are together."""
-    kinds = {edit.kind for edit in way}
-    swapped = _EXCHANGED if {"extra term", "missing term"} <= kinds else 0.0
-    return sum(edit.cost for edit in way) + swapped

@@ -9,14 +9,18 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.several.effects import Effects, Way, effects_of, way_cost
+from kinlab.doctor.program.several.effects import Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 _VERIFIED = 60
 """Combinations that are tried in the program, the likeliest first."""
-_KNOWN = 3
+_KNOWN = 6
 """Repairs from which the likeliest is taken."""
+_RIVALS = 4
+"""Repairs of which it is looked what they leave right."""
+_ALIKE = 0.15
+"""Cost beyond the first's of repairs that nothing else tells from it."""
 _FURTHER = 40
 """Combinations that are tried once one has made the program right."""
 _STEPS = 3
@@ -34,7 +38,18 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return sorted(_found(search), key=lambda repair: way_cost(repair.edits))
+        return _by_evidence(search, _found(search))
+
+
+def _by_evidence(search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+    """Of equally likely ones those first that leave most of the program as a textbook has it."""
+    costs = {id(one): sum(map(search.likely, one.edits)) for one in found}
+    ranked = sorted(found, key=lambda one: costs[id(one)])
+    near = [one for one in ranked if costs[id(one)] <= costs[id(ranked[0])] + _ALIKE][:_RIVALS]
+    if len(near) < 2 or not search.evidence.known:
+        return ranked
+    rights = {id(one): search.left_right(one.edits) for one in near}
+    return sorted(near, key=lambda one: (-rights[id(one)], costs[id(one)]))
 
 
 def _found(search: LineSearch) -> list[ProgramRepair]:
@@ -100,8 +115,6 @@ class _Tried:
             for way in known.edits(chosen) if turn < _VERIFIED else [known.likeliest(chosen)]:
                 work += max(self.search.cost_of(edit) for edit in way)
                 found += self._verified(way)
-                if found:
-                    break
             if found and left == len(ranked):
                 left = turn + _FURTHER
             if work > most or turn >= left or len(found) >= _KNOWN:
