@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -28,13 +29,15 @@ _LEADING = 40
 """Edits that make numbers right, of which any two are joined with a third."""
 _THIRDS = 4
 """Edits that are tried as the third of two."""
-_ALIKE = 3
+_ALIKE = 8
 """Edits of one effect that are kept."""
 _EXCHANGED = 0.5
 """What it costs to take a term out and put another in."""
 
 Flags = Any
 """An array of truth values."""
+Chosen = tuple[int, ...]
+"""Effects that together may make a program right."""
 Way = tuple[ProgramEdit, ...]
 """Edits that together may make a program right."""
 Tried = list[tuple[ProgramEdit, Array]]
@@ -75,7 +78,7 @@ class Effects:
             self.likely,
         )
 
-    @property
+    @cached_property
     def costs(self) -> Array:
         return np.array([self.likely(edits[0]) for edits in self.alike])
 
@@ -102,32 +105,28 @@ class Effects:
         some = np.flatnonzero(harmless & (gains > 0))
         return [int(k) for k in some[np.lexsort((self.costs[some], -gains[some]))]]
 
-    def edits(self, chosen: tuple[int, ...]) -> Iterator[Way]:
+    def edits(self, chosen: Chosen, most: int) -> Iterator[Way]:
         """The likeliest edits of these effects, and then the others of the same effects."""
-        yield from product(*(self.alike[k] for k in chosen))
+        yield from product(*(self.alike[k][:most] for k in chosen))
 
-    def cost(self, way: Way) -> float:
-        """How far-fetched edits are together."""
-        swapped = {"extra term", "missing term"} <= {edit.kind for edit in way}
-        return sum(map(self.likely, way)) + (_EXCHANGED if swapped else 0.0)
+    def cost(self, chosen: Chosen) -> float:
+        """How far-fetched the likeliest edits of these effects are together."""
+        swapped = {"extra term", "missing term"} <= {self.alike[k][0].kind for k in chosen}
+        return float(self.costs[[*chosen]].sum()) + (_EXCHANGED if swapped else 0.0)
 
-    def likeliest(self, chosen: tuple[int, ...]) -> Way:
-        return tuple(self.alike[k][0] for k in chosen)
-
-    def adding_up(self, count: int) -> list[Way]:
+    def adding_up(self, count: int) -> list[Chosen]:
         """Two or three edits whose effects add up to what is missing, the likeliest first."""
         rows, goal, allowance = self.rows, self.goal, TOLERANCES.effects_add_up
-        found: list[tuple[int, ...]] = []
+        found: list[Chosen] = []
         if count == 2:
             found += pairs_adding_up(rows, goal, allowance)
         else:
             for k in range(2, min(_TRIPLES, len(rows))):
                 pairs = pairs_adding_up(rows[:k], goal - rows[k], allowance)
                 found += [(k, one, two) for one, two in pairs]
-        ways = [self.likeliest(chosen) for chosen in found]
-        return sorted(ways, key=self.cost)
+        return sorted(found, key=self.cost)
 
-    def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Way]:
+    def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Chosen]:
         """Edits of factors of one product of matrices, as the answer is."""
         own = self.own.reshape(-1, *shape)
         wanted = own + self.goal.reshape(own.shape)
@@ -142,16 +141,18 @@ class Effects:
         each = each[usable]
         # T1 inv(T) T2 = W where T2 = (T inv(T1)) W
         undone = own @ np.linalg.inv(each)
-        found: list[tuple[int, ...]] = []
+        found: list[Chosen] = []
         firsts = (
             [((), wanted)] if count == 2 else [((k,), undone[k] @ wanted) for k in range(len(each))]
         )
         for before, goal in firsts:
             found += [(*before, i, j) for i, j in _meeting(undone @ goal, each, self.near)]
-        ways = [self.likeliest(tuple(int(usable[k]) for k in chosen)) for chosen in found]
-        return sorted((way for way in ways if len({*way}) == count), key=self.cost)
+        apart = [
+            tuple(int(usable[k]) for k in chosen) for chosen in found if len({*chosen}) == count
+        ]
+        return sorted(apart, key=self.cost)
 
-    def pairs(self) -> list[tuple[int, ...]]:
+    def pairs(self) -> list[Chosen]:
         """Pairs that nothing speaks against, those first that explain most of the numbers."""
         some = slice(0, _PAIRED)
         right, still, rows = self.right[some], self.still[some], self.rows[some]
@@ -173,7 +174,7 @@ class Effects:
         alone = still[one, k] | still[two, k]
         return np.asarray(np.where(alone, self.wrong[k], sums | products), dtype=float)
 
-    def triples(self) -> list[tuple[int, ...]]:
+    def triples(self) -> list[Chosen]:
         """Two that make numbers right, with a third that nothing speaks against."""
         costs = self.costs
         leading = [k for k in self.gaining if k < _PAIRED][:_LEADING]

@@ -6,23 +6,23 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.several.effects import Effects, Way, effects_of
+from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 _VERIFIED = 60
-"""Combinations that are tried in the program, the likeliest first."""
-_KNOWN = 6
-"""Repairs from which the likeliest is taken."""
-_RIVALS = 4
+"""Combinations of which edits of the same effects are tried, too."""
+_SIBLINGS, _EVERY = 3, 8
+"""Edits of one effect that are tried with others: at first, and of a pair that is right."""
+_FURTHER = 40
+"""Combinations that are tried once one has made the program right."""
+_RIVALS = 6
 """Repairs of which it is looked what they leave right."""
 _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
-_FURTHER = 40
-"""Combinations that are tried once one has made the program right."""
+_NAMED = 3
+"""Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _DEEPEST = 2
@@ -38,41 +38,30 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return _by_evidence(search, _found(search))
-
-
-def _by_evidence(search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
-    """Of equally likely ones those first that leave most of the program as a textbook has it."""
-    costs = {id(one): sum(map(search.likely, one.edits)) for one in found}
-    ranked = sorted(found, key=lambda one: costs[id(one)])
-    near = [one for one in ranked if costs[id(one)] <= costs[id(ranked[0])] + _ALIKE][:_RIVALS]
-    if len(near) < 2 or not search.evidence.known:
-        return ranked
-    rights = {id(one): search.left_right(one.edits) for one in near}
-    return sorted(near, key=lambda one: (-rights[id(one)], costs[id(one)]))
+        return _found(search)
 
 
 def _found(search: LineSearch) -> list[ProgramRepair]:
     known = effects_of(search, search.tried)
     if known is None or not known.alike:
         return []
+    pose = search.wanted.shape[1:] == _POSE
     tried = _Tried(search)
-    found = tried.first(known.adding_up(2)) or tried.first(_in_a_row(search, known, 2))
+    found = tried.first(known, known.adding_up(2))
+    if not found and pose:
+        found = tried.first(known, known.in_a_row(2, _POSE))
     if found:
         return found
     wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
     joined = known if wider is None else known.beside(wider)
     found = tried.dear(joined, joined.pairs(), search.most // 4)
-    if not found:
-        found = _one_after_another(search, joined)
+    found = found or _one_after_another(search, joined)
     if not found and not search.stand:
-        found = tried.first(known.adding_up(3)) or tried.first(_in_a_row(search, known, 3))
+        found = tried.first(known, known.adding_up(3))
+        if not found and pose:
+            found = tried.first(known, known.in_a_row(3, _POSE))
         found = found or tried.dear(joined, joined.triples(), search.most // 8)
     return found
-
-
-def _in_a_row(search: LineSearch, known: Effects, count: int) -> list[Way]:
-    return known.in_a_row(count, _POSE) if search.wanted.shape[1:] == _POSE else []
 
 
 def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair]:
@@ -98,33 +87,59 @@ class _Tried:
     def __init__(self, search: LineSearch) -> None:
         self.search = search
 
-    def first(self, ways: Iterable[Way]) -> list[ProgramRepair]:
-        """What the likeliest of a few combinations make of the program."""
-        found: list[ProgramRepair] = []
-        for _turn, way in zip(range(_VERIFIED), ways, strict=False):
-            found += self._verified(way)
-            if len(found) == _KNOWN:
-                break
-        return found
+    def first(self, known: Effects, ranked: list[Chosen]) -> list[ProgramRepair]:
+        """What the likeliest of many combinations make of the program."""
+        return self.dear(known, ranked[:_VERIFIED], self.search.most // 4)
 
-    def dear(self, known: Effects, ranked: list[tuple[int, ...]], most: int) -> list[ProgramRepair]:
-        """What many make of it, as many as so much work allows."""
-        found: list[ProgramRepair] = []
+    def dear(self, known: Effects, ranked: list[Chosen], most: int) -> list[ProgramRepair]:
+        """What combinations make of it, as many as so much work allows."""
+        fitting: list[Way] = []
         left, work = len(ranked), 0
         for turn, chosen in enumerate(ranked):
-            for way in known.edits(chosen) if turn < _VERIFIED else [known.likeliest(chosen)]:
+            ways = [*known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1)]
+            while ways and work <= most:
+                way = ways.pop(0)
                 work += max(self.search.cost_of(edit) for edit in way)
-                found += self._verified(way)
-            if found and left == len(ranked):
-                left = turn + _FURTHER
-            if work > most or turn >= left or len(found) >= _KNOWN:
+                fits = self._fits(way) if fitting else self._repair(way) is not None
+                if fits and not fitting:
+                    # what has the same effect may be likelier
+                    left, ways = turn + _FURTHER, [*known.edits(chosen, _EVERY)]
+                    ways.remove(way)
+                fitting += [way] if fits else []
+            if work > most or turn >= left:
                 break
-        return found
+        return self._likeliest(fitting)
 
-    def _verified(self, way: Way) -> list[ProgramRepair]:
+    def _repair(self, way: Way) -> ProgramRepair | None:
+        """The repair, if edits make the program right."""
         try:
             with changed(self.search.trial, way):
-                repair = self.search.verdict((*self.search.stand, *way))
+                return self.search.verdict((*self.search.stand, *way))
         except NoProgramError:
-            return []
-        return [] if repair is None else [repair]
+            return None
+
+    def _fits(self, way: Way) -> bool:
+        """Whether edits make the program right at the first states."""
+        try:
+            with changed(self.search.trial, way):
+                values = self.search.values(self.search.first)
+        except NoProgramError:
+            return False
+        return values is not None and bool(self.search.right(values).all())
+
+    def _likeliest(self, ways: list[Way]) -> list[ProgramRepair]:
+        """Those first that leave most of the program as a textbook has it."""
+        search = self.search
+        costs = {way: sum(map(search.likely, way)) for way in ways}
+        ranked = sorted(costs, key=lambda way: costs[way])
+        near = [way for way in ranked if costs[way] <= costs[ranked[0]] + _ALIKE][:_RIVALS]
+        if len(near) > 1 and search.evidence.known:
+            rights = {way: search.left_right(way) for way in near}
+            near.sort(key=lambda way: (-rights[way], costs[way]))
+        found: list[ProgramRepair] = []
+        for way in [*near, *(way for way in ranked if way not in near)]:
+            repair = self._repair(way)
+            found += [] if repair is None else [repair]
+            if len(found) == _NAMED:
+                break
+        return found
