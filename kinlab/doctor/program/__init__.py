@@ -3,6 +3,7 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
+``digits``        Whether a program is right to the digits that its numbers are written with
 ``elsewhere``     The lines of a function that lives in another process
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``kept``          What a program's data hold, so that what an edited run writes into them is put

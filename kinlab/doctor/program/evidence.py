@@ -14,8 +14,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.glossary.meaning import meaning_of
-from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
+from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial
@@ -31,6 +30,8 @@ _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potenti
 """Things of which an arm has one."""
 _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
+_OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
+"""The arm's own numbers, which do not vary: any value may meet one."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
 
@@ -77,11 +78,10 @@ class Grounds:
     def count(self, observed: Observed) -> int:
         """How many statements give what a textbook has."""
         return sum(
-            bool(senses) and all(one is not None and not one.form for one in senses)
+            self._of(node.value, observed) is not None
             for tree in self.trial.trees
             for node in ast.walk(tree)
             if isinstance(node, ast.Assign | ast.Return) and node.value is not None
-            for senses in [self.senses(node.value, observed)]
         )
 
     def _uses(self, part: int, name: str) -> bool:
@@ -94,21 +94,28 @@ class Grounds:
         for node in ast.walk(tree):
             if not isinstance(node, ast.Assign | ast.Return) or node.value is None:
                 continue
-            senses = self.senses(node.value, observed)
-            good = bool(senses) and all(one is not None and not one.form for one in senses)
+            if isinstance(node.value, ast.Tuple):
+                for one in node.value.elts:
+                    self._right_alone(one, observed)
+            senses = self._of(node.value, observed)
+            good = senses is not None
             if good and not isinstance(node.value, ast.Name):
                 self.right |= {id(inner) for inner in ast.walk(node)}
             near = self._is_whole(node.value, observed)
             if near:
                 self.trusted |= {k for k in range(1, len(self.trial.trees)) if self._calls(node, k)}
             if isinstance(node, ast.Return) and observed.of(node.value) is not None:
-                told = [one for one in senses if one is not None]
+                told = senses or []
                 numbers = {one.number for one in told}
                 apart = len(numbers) == len(told) > 1 and None not in numbers
                 steps = good and apart and all(one.what in _STEPS for one in told)
                 returned.append(near or steps)
         if part and returned and all(returned):
             self.sound.add(part)
+
+    def _right_alone(self, node: ast.expr, observed: Observed) -> None:
+        if self._of(node, observed) is not None:
+            self.right |= {id(inner) for inner in ast.walk(node)}
 
     def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
         """Whether a value is nearly one of the things that an arm has one of: also a little beside
@@ -127,19 +134,44 @@ class Grounds:
                     return True
         return False
 
-    def senses(self, node: ast.expr, observed: Observed) -> list[Sense | None]:
-        """What an expression was at each of its passes, the same at all the states."""
-        seen = observed.of(node)
-        count = len(self.known)
+    def _of(self, node: ast.expr, observed: Observed) -> list[Sense] | None:
+        """What an expression was at each of its passes, the same at all the states.
+
+        None where it was something unknown at one of them, or nothing but zeros and ones.
+        """
+        seen, count = observed.of(node), len(self.known)
         if seen is None or seen.shape is None or not count or seen.count % count:
-            return []
-        passes = seen.count // count
+            return None
         if len(seen.values) < seen.count:
-            return []
-        values: list[list[Array]] = [
-            [seen.values[k + passes * j] for j in range(count)] for k in range(passes)
-        ]
-        return [None if _plain(one[0]) else meaning_of(self.known, one) for one in values]
+            return None
+        passes = seen.count // count
+        found: list[Sense] = []
+        for k in range(passes):
+            values = [seen.values[k + passes * j] for j in range(count)]
+            if not all(np.all((x == 0) | (np.abs(x) == 1)) for x in values):
+                sense = self._thing(values)
+                if sense is None:
+                    return None
+                found.append(sense)
+        return found or None
+
+    def _thing(self, values: list[Array]) -> Sense | None:
+        """A thing of the arm's that a value is at all the states: the first of several."""
+        same: Array | None = None
+        rows: Sequence[Row] = ()
+        for known, value in zip(self.known, values, strict=True):
+            if known.plane and value.shape in ((), (2,)):
+                value = np.append(value, 0.0) if value.shape else np.array([0.0, 0.0, value])
+            rows, things = known.things.get(value.shape, ((), value))
+            if not rows:
+                return None
+            gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
+            here = gap <= TOLERANCES.same_relation * float(np.max(np.abs(value)))
+            same = here if same is None else same & here
+        for k in np.flatnonzero(same) if same is not None else ():
+            if rows[int(k)][1].what not in _OWN:
+                return rows[int(k)][1]
+        return None
 
     def _below(self) -> None:
         """Parts that only sound ones use are sound too; what a trusted one uses is trusted."""
@@ -156,7 +188,3 @@ class Grounds:
     def _calls(self, tree: ast.AST, part: int) -> bool:
         name = self.trial.program.parts[part].name
         return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in ast.walk(tree))
-
-
-def _plain(value: Array) -> bool:
-    return value.ndim == 0 and float(value) == np.round(value)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import operator
 from collections.abc import Iterable
 from typing import Any
 
@@ -51,23 +50,20 @@ class Contents:
 
     @staticmethod
     def put_back(before: list[tuple[Any, Any]]) -> bool:
-        """What was held when :meth:`now` was asked; whether something else was written."""
+        """Puts back what was held when :meth:`now` was asked; whether anything was not so."""
         spoilt = [(one, copy) for one, copy in before if not _same(one, copy)]
         for one, copy in spoilt:
-            if isinstance(one, np.ndarray):
-                one[...] = copy
-            elif isinstance(one, list):
-                one[:] = copy
-            else:
+            if isinstance(one, dict):
                 one.clear()
                 one.update(copy)
+            else:
+                one[... if isinstance(one, np.ndarray) else slice(None)] = copy
         return bool(spoilt)
 
 
 def _same(one: Any, copy: Any) -> bool:
-    """Whether it still holds the same things."""
     if isinstance(one, np.ndarray):
         return bool(one.tobytes() == copy.tobytes())
-    if isinstance(one, list):
-        return len(one) == len(copy) and all(map(operator.is_, one, copy))
-    return one.keys() == copy.keys() and all(one[key] is copy[key] for key in copy)
+    if isinstance(one, dict):
+        return one.keys() == copy.keys() and all(one[key] is copy[key] for key in copy)
+    return len(one) == len(copy) and all(a is b for a, b in zip(one, copy, strict=True))

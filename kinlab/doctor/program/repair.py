@@ -51,10 +51,12 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
-_TURNS = 5
+_TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
+_WHOLE = 3
+"""Digits of a number that may stand for a whole one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,16 +221,19 @@ class LineSearch:
 
         Of several the one that is typed with the fewest digits: others only make up for it.
         """
-        found: list[tuple[int, ProgramRepair]] = []
-        for place in numbers(self.trial, self.observed):
+        found: list[tuple[float, int, ProgramRepair]] = []
+        against = self.evidence.against
+        every = [*numbers(self.trial, self.observed)]
+        every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
+        for place in every:
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    found.append((len(f"{value:.12g}"), repair))
-        return [min(found, key=lambda one: one[0])[1]] if found else []
+                    found.append((against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -237,6 +242,7 @@ class LineSearch:
             return None
         wanted, old = self.wanted[self.first], float(place.value)
         at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
+        least, worse = np.inf, 0
         for _turn in range(_TURNS):
             with changed(self.trial, (place.edit(at + step),)):
                 values = self.values(self.first)
@@ -245,12 +251,17 @@ class LineSearch:
             after = (values - wanted).ravel()
             slope = (after - before) / step
             flat = float(slope @ slope)
-            if not flat > 0.0:
+            worse = 0 if (size := float(after @ after)) < least else worse + 1
+            least = min(least, size)
+            if not flat > 0.0 or worse > 1:
                 return None
             at, before, step = at + step, after, -float(after @ slope) / flat
             if abs(step) <= 1e-9 * max(abs(at), 1e-3):
                 break
-        for digits in range(1, _DIGITS):
+        if abs(at + step) <= 1e-9 * max(abs(old), 1e-3):
+            step = -at
+        most = _DIGITS if isinstance(place.value, float) else _WHOLE
+        for digits in range(1, most):
             value = float(f"{at + step:.{digits - 1}e}")
             with changed(self.trial, (place.edit(value),)):
                 values = self.values(self.first)

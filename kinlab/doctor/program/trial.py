@@ -163,12 +163,15 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
-            if self._contents.put_back(held):
-                for one in self._remembering:
-                    one.known.clear()
+            if self._contents.put_back(held):  # answers may rest on what was written
+                self._forget()
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
+
+    def _forget(self) -> None:
+        for one in self._remembering:
+            one.known.clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""

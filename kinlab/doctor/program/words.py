@@ -11,6 +11,7 @@ from typing import Any
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case
+from kinlab.doctor.program.digits import nearly, to_the_digits
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
 from kinlab.doctor.program.read import read
@@ -84,16 +85,21 @@ class WrongLines:
         causes: the likeliest first.
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
+        digits: of a program that is nearly right, what its rounded numbers stand for, if they are
+            all of it; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
+    digits: tuple[str, ...] | None = None
 
 
 def lines(
     function: Callable[..., Any], case: Case, wanted: Array, allowed: float
 ) -> Iterator[WrongLines]:
     """What single lines of a function should be, and then, if asked on, what several should.
+
+    Of a function that is nearly right, before them, what its rounded numbers stand for.
 
     Args:
         function: the hand formula; nothing comes of one that cannot be read.
@@ -110,6 +116,8 @@ def lines(
         return
     if not search.faithful:
         return
+    if nearly(case.hand, wanted):
+        yield WrongLines([], search.written_out, to_the_digits(search))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:

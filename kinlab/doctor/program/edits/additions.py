@@ -168,6 +168,10 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     literal = isinstance(node, ast.List | ast.Tuple)
     if shape and not literal and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
+    row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
+    if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
+        total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
+        yield here.instead(ast.Call(total, [node], []), "function", 1.1)
     if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
         yield from _instead_of_zero(here, scope)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
@@ -183,7 +187,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
-        cost = 1.0 if first or entry else 1.03 if whole else 1.1
+        given = isinstance(here.above[-2], ast.Assign) if isinstance(parent, ast.Tuple) else whole
+        alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
+        cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):

@@ -32,7 +32,7 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
             yield leaf.edit(2 * leaf.value, "factor", 1.2)
             yield leaf.edit(leaf.value / 2, "factor", 1.2)
             yield leaf.edit(leaf.value * pi / 180, "degrees", 1.15)
-        if leaf.value in _RIGHT_ANGLES:
+        if leaf.value in _RIGHT_ANGLES or abs(leaf.value) in (pi, 2 * pi):
             for other in _RIGHT_ANGLES:
                 if other != leaf.value:
                     yield leaf.edit(other, "number", 1.12)
@@ -41,6 +41,8 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         for new, kind in _whole(value):
             yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
         yield from _exchanged(name, value, ())
+    for held in trial.bound:
+        yield from _exchanged("self", held, ())
     yield from _names_exchanged(trial)
 
 
@@ -58,9 +60,8 @@ def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
 
 def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[ProgramEdit]:
     """Two numbers of a row, two rows, or two columns of a table for one another."""
-    if isinstance(value, dict):
-        for k, one in value.items():
-            yield from _exchanged(name, one, (*place, k))
+    for key, one in _members(value):
+        yield from _exchanged(name, one, (*place, key))
     if not isinstance(value, list | np.ndarray) or not 1 < len(value) <= _ROWS:
         return
     if all(_is_plain(one) for one in value):
@@ -90,6 +91,22 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
         if not np.array_equal(rows[i], rows[j]):
             changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
             yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
+
+
+def _members(value: Any) -> list[tuple[Any, Any]]:
+    """What a dictionary or an object holds, by key or by name; of a list the objects in it."""
+    if isinstance(value, dict):
+        return [*value.items()]
+    if isinstance(value, list):
+        return [(k, x) for k, x in enumerate(value) if isinstance(x, dict) or _is_object(x)]
+    if not _is_object(value):
+        return []
+    return [(f".{k}", x) for k, x in vars(value).items() if not k.startswith("__")]
+
+
+def _is_object(value: Any) -> bool:
+    plain = isinstance(value, np.ndarray | list | tuple | str) or callable(value)
+    return hasattr(value, "__dict__") and not (plain and not isinstance(value, type))
 
 
 def _swap(
@@ -193,6 +210,8 @@ def _measured(holder: ast.AST) -> bool:
 def _leaves(trial: Trial) -> Iterator[NumberPlace]:
     for name in trial.program.data:
         yield from _within(trial.space, name, trial.space[name], name, (), ())
+    for held in trial.bound:
+        yield from _below(held, "self", ())
 
 
 def _within(

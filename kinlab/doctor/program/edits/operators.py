@@ -35,7 +35,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         if index:
             return
         for new in _together(node):
-            yield here.instead(new, "parentheses", 1.16)
+            yield here.instead(new, "parentheses", 1.09)
         for side, inner in (("left", left), ("right", right)):
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
@@ -80,24 +80,38 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
 
+_Factors = list[tuple[ast.operator, ast.expr]]
+"""Terms or factors, each with the operator before it."""
+
+
 def _together(node: ast.BinOp) -> Iterator[ast.expr]:
     """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
-    left, right, op = node.left, node.right, node.op
-    first, factors = _factors(left)
-    for k in range(len(factors)):
-        by, last = factors[k][0], _times(factors[k][1], factors[k + 1 :])
-        if isinstance(by, ast.Mult | ast.MatMult):
-            yield ast.BinOp(_times(first, factors[:k]), by, ast.BinOp(last, op, right))
-    first, factors = _factors(right)
+    head, terms = _sum(node)
+    for i in range(len(terms)):
+        # of the terms from the i-th to the last, a factor of the first belongs to all
+        first, factors = _factors(terms[i - 1][1] if i else head)
+        for k, (by, factor) in enumerate(factors):
+            if isinstance(by, ast.Mult | ast.MatMult):
+                inner = _times(_times(factor, factors[k + 1 :]), terms[i:])
+                whole: ast.expr = ast.BinOp(_times(first, factors[:k]), by, inner)
+                yield _times(head, [*terms[: i - 1], (terms[i - 1][0], whole)]) if i else whole
+    op, last = terms[-1]
+    first, factors = _factors(last)
     for k in range(len(factors)):
         before, after = _times(first, factors[:k]), factors[k:]
-        yield _times(ast.BinOp(left, op, before), after)
-        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add | ast.Sub):
-            inner = _times(ast.BinOp(left.right, op, before), after)
-            yield ast.BinOp(left.left, left.op, inner)
+        yield _times(ast.BinOp(node.left, op, before), after)
+        if len(terms) > 1:
+            inner = _times(ast.BinOp(terms[-2][1], op, before), after)
+            yield _times(head, [*terms[:-2], (terms[-2][0], inner)])
 
 
-_Factors = list[tuple[ast.operator, ast.expr]]
+def _sum(node: ast.expr) -> tuple[ast.expr, _Factors]:
+    """A sum as its first term and the others, each with its operator."""
+    others: _Factors = []
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        others.insert(0, (node.op, node.right))
+        node = node.left
+    return node, others
 
 
 def _factors(node: ast.expr) -> tuple[ast.expr, _Factors]:
@@ -153,7 +167,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         for k in range(len(plain) - 1):
             swapped = [*plain]
             swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
-            cost = 1.05 if name in _ORDERED else 1.15
+            cost = 1.02 if name == "cross" else 1.05 if name in _ORDERED else 1.15
             yield here.within(node, "args", swapped, "order", cost)
         if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in ANGLES:
             yield here.instead(plain[0], "extra factor", 1.25)

@@ -47,20 +47,20 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
         return []
     pose = search.wanted.shape[1:] == _POSE
     tried = _Tried(search)
-    found = tried.first(known, known.adding_up(2))
+    found = tried.likeliest(known, known.adding_up(2))
     if not found and pose:
-        found = tried.first(known, known.in_a_row(2, _POSE))
+        found = tried.likeliest(known, known.in_a_row(2, _POSE))
     if found:
         return found
     wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
     joined = known if wider is None else known.beside(wider)
-    found = tried.dear(joined, joined.pairs(), search.most // 4)
+    found = tried.likeliest(joined, joined.pairs())
     found = found or _one_after_another(search, joined)
     if not found and not search.stand:
-        found = tried.first(known, known.adding_up(3))
+        found = tried.likeliest(known, known.adding_up(3))
         if not found and pose:
-            found = tried.first(known, known.in_a_row(3, _POSE))
-        found = found or tried.dear(joined, joined.triples(), search.most // 8)
+            found = tried.likeliest(known, known.in_a_row(3, _POSE))
+        found = found or tried.likeliest(joined, joined.triples())
     return found
 
 
@@ -87,28 +87,37 @@ class _Tried:
     def __init__(self, search: LineSearch) -> None:
         self.search = search
 
-    def first(self, known: Effects, ranked: list[Chosen]) -> list[ProgramRepair]:
-        """What the likeliest of many combinations make of the program."""
-        return self.dear(known, ranked[:_VERIFIED], self.search.most // 4)
+    def likeliest(self, known: Effects, ranked: list[Chosen]) -> list[ProgramRepair]:
+        """What combinations make of it, as many as some work allows.
 
-    def dear(self, known: Effects, ranked: list[Chosen], most: int) -> list[ProgramRepair]:
-        """What combinations make of it, as many as so much work allows."""
+        Beside one that makes it right others are looked at: what has the same effects, what comes
+        next, and pairs that explain as much.
+        """
+        most = self.search.most // 4
         fitting: list[Way] = []
-        left, work = len(ranked), 0
         for turn, chosen in enumerate(ranked):
-            ways = [*known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1)]
-            while ways and work <= most:
-                way = ways.pop(0)
-                work += max(self.search.cost_of(edit) for edit in way)
-                fits = self._fits(way) if fitting else self._repair(way) is not None
-                if fits and not fitting:
-                    # what has the same effect may be likelier
-                    left, ways = turn + _FURTHER, [*known.edits(chosen, _EVERY)]
-                    ways.remove(way)
-                fitting += [way] if fits else []
-            if work > most or turn >= left:
+            for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
+                most -= self._cost(way)
+                if self._repair(way) is not None:
+                    fitting = [way]
+                    break
+            if fitting or most < 0:
                 break
-        return self._likeliest(fitting)
+        if not fitting:
+            return []
+        further = [*ranked[turn + 1 : turn + 1 + _FURTHER], *known.pairs()[:_FURTHER]]
+        rivals = [*known.edits(chosen, _EVERY)]
+        rivals += [way for one in dict.fromkeys(further) for way in known.edits(one, _SIBLINGS)]
+        for way in dict.fromkeys(rivals):
+            most -= self._cost(way)
+            if most < -self.search.most // 8:
+                break
+            if way != fitting[0] and self._fits(way):
+                fitting.append(way)
+        return self._ranked(fitting)
+
+    def _cost(self, way: Way) -> int:
+        return max(self.search.cost_of(edit) for edit in way)
 
     def _repair(self, way: Way) -> ProgramRepair | None:
         """The repair, if edits make the program right."""
@@ -127,7 +136,7 @@ class _Tried:
             return False
         return values is not None and bool(self.search.right(values).all())
 
-    def _likeliest(self, ways: list[Way]) -> list[ProgramRepair]:
+    def _ranked(self, ways: list[Way]) -> list[ProgramRepair]:
         """Those first that leave most of the program as a textbook has it."""
         search = self.search
         costs = {way: sum(map(search.likely, way)) for way in ways}
