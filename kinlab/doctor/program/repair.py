@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -176,7 +176,7 @@ class LineSearch:
                     best = min(best, self.likely(edit))
             found = self._by_evidence(found)
             if not found or best > _NUMBER:
-                found = [*self._numbers(), *found]
+                found = self._numbers() + found
         return found
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -195,7 +195,7 @@ class LineSearch:
                 lines.setdefault(row_of(edit), repair)
         if len(lines) < 2:
             return found
-        rights = {id(one): self._left_right(one) for one in [*lines.values()][:_RIVALS]}
+        rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
         most = max(rights.values())
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
@@ -203,9 +203,9 @@ class LineSearch:
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 
-    def _left_right(self, repair: ProgramRepair) -> int:
-        """How many statements are what a textbook has, once a repair stands."""
-        with changed(self.trial, repair.edits[-1:]):
+    def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
+        """How many statements are what a textbook has, once edits stand."""
+        with changed(self.trial, several):
             try:
                 return self.evidence.count(Observed(self.trial, self.states))
             except Exception:  # noqa: BLE001  what cannot be watched tells nothing
@@ -227,8 +227,12 @@ class LineSearch:
             np.log10(max(1, work[edit.part]) / max(1, work[0]))
         )
 
-    def _numbers(self) -> Iterator[ProgramRepair]:
-        """Single numbers, of the text or the data, with which the program is right."""
+    def _numbers(self) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+        """
+        found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
         every = [*numbers(self.trial, self.observed)]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
@@ -239,8 +243,8 @@ class LineSearch:
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    yield repair
-                    return
+                    found.append((against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
