@@ -16,6 +16,7 @@ module            what it holds
 ``trial``         A program run with edits in it
 ``words``         A repair in words: the line, what stands there, what should
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
+``scaled``        Whether a repair holds for another arm too: all lengths longer, all masses heavier
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

@@ -81,9 +81,13 @@ class Grounds:
             return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
         if edit.kind in _SPOILING and id(edit.node) in self.right:
             return _SPOILED
-        if edit.kind == "factor" and _factor(edit) in self.values:
+        if self.coincident(edit):
             return _COINCIDENT
         return _TRUSTED if edit.part in self.trusted else 0.0
+
+    def coincident(self, edit: ProgramEdit) -> bool:
+        """Whether an edit multiplies by a number that a name of the program has as its value."""
+        return edit.kind == "factor" and _factor(edit) in self.values
 
     def count(self, observed: Observed) -> int:
         """How many statements give what a textbook has."""
