@@ -19,6 +19,7 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
+from kinlab.doctor.changes import split_name
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import (
@@ -28,7 +29,6 @@ from kinlab.doctor.file import (
 )
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree

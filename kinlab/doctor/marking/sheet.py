@@ -32,9 +32,9 @@ from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.changes import split_name
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name
