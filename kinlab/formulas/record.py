@@ -189,9 +189,11 @@ def formulas_in(module: Any) -> list[Formula]:
 def state_by_state(function: Function) -> Function:
     """Gives a function of one state the calling convention of ``Formula.function``.
 
-    It gets copies, so that it cannot change the states of the comparison. One that asks for one
-    argument more, of a name in :data:`SIDES` such as ``elbow``, gets +1 and then -1 for it, and
-    answers with a row for each. The function itself stays its ``__wrapped__``.
+    It gets copies, so that it cannot change the states of the comparison, and its answers are
+    copied, so that one that fills the same array at every state is not told its last answer for
+    all. One that asks for one argument more, of a name in :data:`SIDES` such as ``elbow``, gets +1
+    and then -1 for it, and answers with a row for each. The function itself stays its
+    ``__wrapped__``.
 
     Raises:
         FormulaError: (when called) the function raised, or answered with changing shapes.
@@ -203,7 +205,10 @@ def state_by_state(function: Function) -> Function:
         sides = _sides(function, len(stacks))
         for k, state in enumerate(zip(*stacks, strict=True)):
             try:
-                rows = [np.asarray(function(*(np.array(x) for x in state), *s)) for s in sides]
+                rows = [
+                    _numbers(function(*(np.array(x) for x in state), *side), function)
+                    for side in sides
+                ]
                 answers.append(
                     rows[0]
                     if len(rows) == 1
@@ -226,6 +231,21 @@ def state_by_state(function: Function) -> Function:
     stacked.__name__ = function_name(function)  # what messages call it
     stacked.__wrapped__ = function  # type: ignore[attr-defined]
     return stacked
+
+
+def _numbers(answer: Any, function: Function) -> Any:
+    """An answer as an array of its own; numbers of sympy or fractions become floats."""
+    if answer is None:
+        raise FormulaError(
+            f"function {function_name(function)!r} gives nothing back (None): is a return missing?"
+        )
+    found = np.array(answer)
+    if found.dtype == object and all(hasattr(x, "__float__") for x in found.flat):
+        try:
+            return found.astype(float)
+        except (TypeError, ValueError):  # a formula with letters left in it
+            return found
+    return found
 
 
 SIDES = ("elbow", "branch", "sign", "mode", "side")

@@ -348,6 +348,27 @@ def test_an_edit_does_not_write_into_the_users_array(student) -> None:
     assert (space["TURN"] == np.eye(4)).all()
 
 
+def test_an_edit_does_not_write_into_data_that_only_the_module_has(student) -> None:
+    """An edit that takes ``G`` for ``out`` would write into it: it is an array of two, too."""
+    text = HEAD + textwrap.dedent("""
+        G = np.array([0.0, -9.81])
+        ALSO = [0.0, -9.81]
+        M = [2.0, 1.5]
+
+        def f(q):
+            out = np.zeros(2)
+            x = np.cumsum(q)
+            for i in range(2):
+                for j in range(i + 1):
+                    out[j] += M[i]*9.81*sum([l1, l2][k]*cos(x[k]) for k in range(j, i + 1))*1.3
+                    out[j] -= M[i]*np.array([0, 0.0, -9.81])@np.array([q[j], 1.0, 0.1])
+            return out
+    """)
+    space = student(text)
+    said(space["f"], quantity="gravity_torques")
+    assert space["G"].tolist() == space["ALSO"] == [0.0, -9.81]
+
+
 def test_a_file_that_was_changed_since_is_not_believed(student, tmp_path) -> None:
     function = student(HEAD + WRONG)["f"]
     (tmp_path / "hand.py").write_text(

@@ -451,6 +451,28 @@ def test_an_entry_may_be_called_by_its_letter():
     )
 
 
+@pytest.mark.parametrize(
+    ("answer", "kind"),
+    [
+        ("-(m1 + m2)*g*l1 - m2*g*l2", "sign"),
+        ("2*((m1 + m2)*g*l1 + m2*g*l2)", "factor"),
+        ("46.107", "factor"),
+        ("-23.0535", "sign"),
+        ("40", "unknown"),
+        ("17 + 6", "unknown"),
+        (
+            "(m1 + m2)*g*l1",
+            "unknown",
+        ),  # a term is lost: no factor, though every number is a multiple
+        ("m1*g*l1 + m2*g*l2", "unknown"),
+    ],
+)
+def test_a_number_is_not_called_a_multiple_of_the_right_one(answer, kind):
+    question = {"id": "q1", "answer": "(m1 + m2)*g*l1 + m2*g*l2", "points": 4}
+    found = marked({"q1": answer}, questions=[question], slips={"factor": 0.25, "sign": 0.5})["q1"]
+    assert (found.kinds, found.points) == ((kind,), {"factor": 3.0, "sign": 2.0}.get(kind, 0.0))
+
+
 def test_a_line_that_answers_no_question_is_told(tmp_path):
     sheet = sheet_of(SHEET, "s")
     (tmp_path / "a.txt").write_text("student: ada\nx = l1*c1 + l2*c12\ntau7 = 3\n")

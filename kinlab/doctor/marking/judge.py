@@ -81,6 +81,10 @@ def of_values(
     case = replace(case, lines=lines)
     found = examine(case, values, engine, question.quantity, question.id, {})
     outcome = _of_diagnoses(question, [found], None, robot)
+    if values.shape != engine.shape:
+        said = _("the answer has the shape {has}, asked is {asked}")
+        shapes = {"has": values.shape[1:], "asked": engine.shape[1:]}
+        outcome = replace(outcome, remark=said.format(**shapes))
     return _told(outcome, level, _secrets(sheet, question))
 
 

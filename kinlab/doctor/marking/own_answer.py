@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
@@ -100,14 +101,13 @@ def _gap(
         said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
         raise ExpressionError(said.format(entry=name, name=sorted(strange)[0][:40]))
     rng = np.random.default_rng(7)
-    at = {}
+    at: dict[str, Array] = {}
     for one in sorted(tree.names(mine) | tree.names(theirs)):
         at[one] = np.full(_STATES, words[one]) if one in words else rng.uniform(0.3, 1.7, _STATES)
         if one in _joints():
             at[one] = at[one] * rng.choice([-1.0, 1.0], _STATES)
     with np.errstate(all="ignore"):
-        hand = np.array(np.broadcast_to(tree.evaluate(mine, at), _STATES), dtype=float)
-        truth = np.array(np.broadcast_to(tree.evaluate(theirs, at), _STATES), dtype=float)
+        hand, truth = _values(mine, at, _STATES), _values(theirs, at, _STATES)
         there = np.isfinite(truth)
         if not there.any():
             raise SheetError(f"{name}: the sheet's own answer has no value at any state")
@@ -117,11 +117,37 @@ def _gap(
         written = Written(name, file.texts[name], mine, file.symbol_texts)
         if error and stand_ins(written, at, truth, error_sizes(truth)) is not None:
             return error, ("rounded",)
-        ratio = hand / truth
-    steady = np.all(np.isfinite(ratio)) and np.ptp(ratio) <= 1e-9 * abs(ratio[0])
-    if steady and abs(ratio[0] + 1.0) <= 1e-9:
-        return error, ("sign",)
-    return error, ("factor",) if steady and ratio[0] else ("unknown",)
+        return error, _multiple(mine, theirs, at, words)
+
+
+def _multiple(
+    mine: Node, theirs: Node, at: Mapping[str, Array], words: Mapping[str, float]
+) -> tuple[str, ...]:
+    """Whether a formula is the other with a sign or a factor.
+
+    One in names must be so with any numbers of the arm, or a lost term would be a factor. One in
+    bare numbers is told a factor only where it is 2 or 1/2: of two numbers each is a multiple of
+    the other.
+    """
+    named = tree.names(mine) & {*words}
+    rng = np.random.default_rng(11)
+    if named:
+        at = {k: v * rng.uniform(0.7, 1.4, v.shape) if k in words else v for k, v in at.items()}
+    count = max((len(stack) for stack in at.values()), default=1)
+    truth = _values(theirs, at, count)
+    there = np.isfinite(truth)
+    ratio = _values(mine, at, count)[there] / truth[there]
+    steady = ratio.size and np.all(np.isfinite(ratio)) and np.ptp(ratio) <= 1e-9 * abs(ratio[0])
+    if not steady or not ratio[0]:
+        return ("unknown",)
+    if abs(ratio[0] + 1.0) <= 1e-9:
+        return ("sign",)
+    plain = min(abs(abs(ratio[0]) - factor) for factor in (2.0, 0.5)) <= 1e-9
+    return ("factor",) if named or plain else ("unknown",)
+
+
+def _values(node: Node, at: Mapping[str, Array], count: int) -> Array:
+    return np.array(np.broadcast_to(tree.evaluate(node, at), count), dtype=float)
 
 
 def _joints() -> set[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import functools
 import inspect
 import itertools
@@ -130,6 +131,7 @@ class _Reader:
         self.space = dict(function.__globals__)
         self.parts: dict[tuple[type | None, str], OwnFunction] = {}
         self.data: list[str] = []
+        self.owners: dict[type, None] = {}
         self.waiting: list[tuple[type | None, str, FunctionType]] = []
 
     def program(self, bound: tuple[Any, ...]) -> OwnProgram | None:
@@ -147,7 +149,11 @@ class _Reader:
             self.parts[owner, name] = OwnFunction(name, tree, one, owner)
             if not self._names_of(one):
                 return None
-        return OwnProgram(tuple(self.parts.values()), bound, self.space, tuple(self.data))
+        space = {
+            label: value if label in self.data else _out_of_reach(value)
+            for label, value in self.space.items()
+        }
+        return OwnProgram(tuple(self.parts.values()), bound, space, tuple(self.data))
 
     def _names_of(self, one: FunctionType) -> bool:
         free = _free(one)
@@ -164,16 +170,14 @@ class _Reader:
                 self._wait(None, label, value)
             elif _numeric(value) and label not in self.data:
                 self.data.append(label)
-            owner = value if isinstance(value, type) else type(value)
-            if written(owner, self.function.__module__):
-                self.data += [label] if label not in self.data else []
-                for name, method in vars(owner).items():
-                    if isinstance(method, FunctionType) and (name in used or name == "__call__"):
-                        self._wait(owner, name, method)
-        for owner in {part.owner for part in self.parts.values() if part.owner}:
-            for name in used:
-                method = vars(owner).get(name)
-                if isinstance(method, FunctionType):
+            found = dict.fromkeys(_owners(value, self.function.__module__))
+            if found and label not in self.data:
+                self.data.append(label)
+            self.owners |= found
+        self.owners |= {part.owner: None for part in self.parts.values() if part.owner}
+        for owner in self.owners:
+            for name, method in vars(owner).items():
+                if isinstance(method, FunctionType) and (name in used or name == "__call__"):
                     self._wait(owner, name, method)
         return True
 
@@ -270,6 +274,19 @@ def written(owner: type, module: str | None) -> bool:
     return made and owner.__module__ == (module or "builtins")  # so exec has it without a name
 
 
+def _owners(value: Any, module: str | None, depth: int = _DEEP) -> Iterator[type]:
+    """The program's own classes of which objects are kept in a value: in lists, in one another."""
+    owner = value if isinstance(value, type) else type(value)
+    inner: list[Any] = []
+    if written(owner, module):
+        yield owner
+        inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
+    elif isinstance(value, list | tuple | dict):
+        inner = [*value.values()] if isinstance(value, dict) else [*value]
+    for one in inner[:_MOST] if depth else ():
+        yield from _owners(one, module, depth - 1)
+
+
 def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:
     """Whether an edited program may be given a value: what is only arithmetic cannot be hurt.
 
@@ -327,6 +344,24 @@ def _used(code: CodeType) -> Iterator[str]:
     for constant in code.co_consts:
         if isinstance(constant, CodeType):
             yield from _used(constant)
+
+
+def _out_of_reach(value: Any) -> Any:
+    """Data of the module that the program does not use: an edit that names them changes nothing."""
+    if isinstance(value, np.ndarray):
+        view = value.view()
+        view.flags.writeable = False
+        return view
+    return copy.deepcopy(value) if isinstance(value, list | dict) and _numbers(value) else value
+
+
+def _numbers(value: Any) -> bool:
+    """Whether there is nothing but numbers in it."""
+    if isinstance(value, dict):
+        value = [*value.values()]
+    if isinstance(value, list | tuple):
+        return all(_numbers(one) for one in value)
+    return isinstance(value, int | float | np.ndarray)
 
 
 def _numeric(value: Any) -> bool:

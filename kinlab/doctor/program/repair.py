@@ -10,7 +10,7 @@ import ast
 import copy
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,10 +18,11 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.program.data import NumberPlace, numbers
-from kinlab.doctor.program.edits import edits
+from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.doctor.program.edits.every import edits
+from kinlab.doctor.program.evidence import Grounds
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ProgramEdit, called
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.errors import KinlabError
@@ -36,6 +37,12 @@ _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
+_ALIKE = 0.03
+"""Costs that are nothing to go by beside what a repair leaves right."""
+_SAME = 0.011
+"""Costs that are one."""
+_RIVALS = 4
+"""Lines of which it is looked what their repairs leave right."""
 _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _WATCHED = 2
@@ -44,10 +51,12 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
-_TURNS = 5
+_TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
+_WHOLE = 3
+"""Digits of a number that may stand for a whole one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +67,13 @@ class ProgramRepair:
         edits: one or several.
         error: the relative error that is left.
         cost: how far-fetched they are.
+        rivals: repairs of other lines that nothing tells from this one.
     """
 
     edits: tuple[ProgramEdit, ...]
     error: float
     cost: float
+    rivals: tuple[ProgramRepair, ...] = ()
 
 
 class LineSearch:
@@ -90,9 +101,16 @@ class LineSearch:
 
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
-        states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
-        self.observed = Observed(self.trial, states)
+        self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
+        self.observed = Observed(self.trial, self.states)
         self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+        self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+
+    @property
+    def scale(self) -> Array:
+        """What differences at the first states are relative to, beside the answers there."""
+        sizes = self.sizes[self.first]
+        return sizes.reshape(-1, *[1] * (self.wanted.ndim - 1))
 
     @property
     def faithful(self) -> bool:
@@ -125,9 +143,10 @@ class LineSearch:
     def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""
         found: list[ProgramRepair] = []
+        best = np.inf
         with quietly():
             for edit in sorted(edits(self.trial, self.observed), key=self._dear):
-                if found and edit.cost > found[0].edits[-1].cost + _TIED:
+                if found and self.likely(edit) > best + _TIED:
                     break
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
@@ -143,9 +162,47 @@ class LineSearch:
                     continue
                 if repair is not None:
                     found.append(repair)
-            if not found or found[0].edits[-1].cost > _NUMBER:
+                    best = min(best, self.likely(edit))
+            found = self._by_evidence(found)
+            if not found or best > _NUMBER:
                 found = [*self._numbers(), *found]
         return found
+
+    def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The likeliest first; of repairs of several lines the one that leaves more of them right.
+
+        What nothing tells apart is marked as tied.
+        """
+        found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
+        if not found or not self.evidence.known:
+            return found
+        least = self.likely(found[0].edits[-1])
+        lines: dict[int, ProgramRepair] = {}
+        for repair in found:
+            edit = repair.edits[-1]
+            if edit.part != DATA and self.likely(edit) <= least + _ALIKE:
+                lines.setdefault(row_of(edit), repair)
+        if len(lines) < 2:
+            return found
+        rights = {id(one): self._left_right(one) for one in [*lines.values()][:_RIVALS]}
+        most = max(rights.values())
+        ahead = [one for one in lines.values() if rights.get(id(one)) == most]
+        first = ahead[0]
+        same = [one for one in ahead if abs(one.cost - first.cost) <= _SAME]
+        first = replace(first, rivals=tuple(same[1:2]))
+        return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _left_right(self, repair: ProgramRepair) -> int:
+        """How many statements are what a textbook has, once a repair stands."""
+        with changed(self.trial, repair.edits[-1:]):
+            try:
+                return self.evidence.count(Observed(self.trial, self.states))
+            except Exception:  # noqa: BLE001  what cannot be watched tells nothing
+                return 0
+
+    def likely(self, edit: ProgramEdit) -> float:
+        """Its cost, and what speaks against it."""
+        return edit.cost + self.evidence.against(edit)
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """Expressions that are evaluated, and nodes compiled, to try an edit."""
@@ -155,11 +212,16 @@ class LineSearch:
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
         work = self.observed.work
-        return edit.cost + _DEAR * float(np.log10(max(1, work[edit.part]) / max(1, work[0])))
+        return self.likely(edit) + _DEAR * float(
+            np.log10(max(1, work[edit.part]) / max(1, work[0]))
+        )
 
     def _numbers(self) -> Iterator[ProgramRepair]:
         """Single numbers, of the text or the data, with which the program is right."""
-        for place in numbers(self.trial, self.observed):
+        against = self.evidence.against
+        every = [*numbers(self.trial, self.observed)]
+        every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
+        for place in every:
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
@@ -176,6 +238,7 @@ class LineSearch:
             return None
         wanted, old = self.wanted[self.first], float(place.value)
         at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
+        least, worse = np.inf, 0
         for _turn in range(_TURNS):
             with changed(self.trial, (place.edit(at + step),)):
                 values = self.values(self.first)
@@ -184,12 +247,17 @@ class LineSearch:
             after = (values - wanted).ravel()
             slope = (after - before) / step
             flat = float(slope @ slope)
-            if not flat > 0.0:
+            worse = 0 if (size := float(after @ after)) < least else worse + 1
+            least = min(least, size)
+            if not flat > 0.0 or worse > 1:
                 return None
             at, before, step = at + step, after, -float(after @ slope) / flat
             if abs(step) <= 1e-9 * max(abs(at), 1e-3):
                 break
-        for digits in range(1, _DIGITS):
+        if abs(at + step) <= 1e-9 * max(abs(old), 1e-3):
+            step = -at
+        most = _DIGITS if isinstance(place.value, float) else _WHOLE
+        for digits in range(1, most):
             value = float(f"{at + step:.{digits - 1}e}")
             with changed(self.trial, (place.edit(value),)):
                 values = self.values(self.first)
@@ -200,8 +268,7 @@ class LineSearch:
     def right(self, values: Array) -> Any:
         """Which entries of answers at the first states are right."""
         gap = np.abs(values - self.wanted[self.first])
-        sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * sizes
+        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
         return near.all(axis=0).ravel()
 
     def verdict(

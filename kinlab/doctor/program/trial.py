@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
 
@@ -67,11 +68,15 @@ class Trial:
         self.space = dict(program.space)
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in program.data)))
+        self._copies: dict[int, Any] = {}
         module = program.parts[0].function.__module__
         self.classes = {one: _copied(one) for one in owners if written(one, module)}
         for name in program.data:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
+        owned = [value for one in self.classes.values() for value in vars(one).values()]
+        held = [self.space[name] for name in program.data]
+        self._contents = Contents([*held, *self.bound, *owned])
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -89,10 +94,28 @@ class Trial:
         """A copy of data; of a class, and of an object of it, one whose methods can be changed."""
         if isinstance(value, type):
             return self.classes.get(value, value)
+        if id(value) in self._copies:
+            return self._copies[id(value)]
+        if type(value) in (list, tuple, dict) and not _numbers_only(value):
+            return self._own_list(value)
         if type(value) not in self.classes:
             return copy.deepcopy(value)
         new: Any = object.__new__(self.classes[type(value)])
-        new.__dict__.update(copy.deepcopy(getattr(value, "__dict__", {})))
+        self._copies[id(value)] = new
+        new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
+        return new
+
+    def _own_list(self, value: Any) -> Any:
+        """A list, tuple or dictionary in which objects may be kept."""
+        if isinstance(value, tuple):
+            parts = [self._own(one) for one in value]
+            return type(value)(parts)
+        new: Any = {} if isinstance(value, dict) else []
+        self._copies[id(value)] = new
+        if isinstance(value, dict):
+            new.update({key: self._own(one) for key, one in value.items()})
+        else:
+            new += [self._own(one) for one in value]
         return new
 
     def _compiled(self, k: int) -> FunctionType:
@@ -125,6 +148,7 @@ class Trial:
         before = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        held = self._contents.now()
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
@@ -139,6 +163,7 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
+            self._contents.put_back(held)
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
@@ -153,6 +178,12 @@ class Trial:
         if self._turns > _TURNS:
             raise RuntimeError("a loop without end")
         return True
+
+
+def _numbers_only(value: Any) -> bool:
+    """Whether a list holds numbers alone."""
+    inner = value.values() if isinstance(value, dict) else value
+    return all(isinstance(one, int | float) for one in inner)
 
 
 def is_data(value: Any) -> bool:

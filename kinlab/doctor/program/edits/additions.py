@@ -29,6 +29,8 @@ class Scope:
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
+        attributes: of objects, by their shapes.
+        keys: of dictionaries, by the shapes of what is there.
         counters: names that count.
         ranges: what they count through.
         unused: names that are set, in the part or in the module, and used nowhere.
@@ -43,6 +45,8 @@ class Scope:
         self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
+        self.attributes: dict[str, Shape] = {}
+        self.keys: dict[str, Shape] = {}
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
@@ -52,9 +56,16 @@ class Scope:
         for node in ast.walk(tree):
             if isinstance(node, ast.For | ast.comprehension):
                 names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
-                self.counters += [n for n in names if n not in self.counters]
+                passed = dict(_passed(node.target, node.iter, observed))
+                self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
+                self.counters += [n for n in names if n not in (*self.counters, *passed)]
                 if isinstance(node, ast.comprehension):
                     inner |= {*names}
+        for one in trial.trees:
+            for node in ast.walk(one):
+                self._of_member(node, observed)
+        for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
+            self._of_object(held)
         loaded = {
             n.id
             for one in trial.trees
@@ -69,7 +80,7 @@ class Scope:
                     self.shapes.setdefault(name, shape)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         for name, value in trial.program.space.items():
-            if name[:1] != "_" and isinstance(value, int | float | list | tuple | np.ndarray):
+            if name[:1] != "_" and _is_number(value):
                 known = _shape(value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
@@ -90,6 +101,27 @@ class Scope:
                 counted = ast.Name(counter, ast.Load())
                 entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+
+    def _of_member(self, node: ast.AST, observed: Observed) -> None:
+        shape = observed.shape(node)
+        if shape is None:
+            return
+        owner = node.value if isinstance(node, ast.Attribute) and node.attr != "T" else None
+        if isinstance(owner, ast.Name) and owner.id not in ("np", "math", "numpy"):
+            assert isinstance(node, ast.Attribute)
+            self.attributes.setdefault(node.attr, shape)
+        key = node.slice if isinstance(node, ast.Subscript) else None
+        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+            self.keys.setdefault(key.value, shape)
+
+    def _of_object(self, held: object) -> None:
+        own = self.keys if isinstance(held, dict) else self.attributes
+        members = held if isinstance(held, dict) else getattr(held, "__dict__", {})
+        for name, value in members.items():
+            if isinstance(name, str) and name[:1] != "_" and _is_number(value):
+                known = _shape(value)
+                if known is not None:
+                    own.setdefault(name, known)
 
     def _of_expression(self, node: ast.expr, observed: Observed, inner: set[str]) -> None:
         seen = observed.of(node)
@@ -136,6 +168,12 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     literal = isinstance(node, ast.List | ast.Tuple)
     if shape and not literal and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
+    row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
+    if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
+        total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
+        yield here.instead(ast.Call(total, [node], []), "function", 1.1)
+    if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
+        yield from _instead_of_zero(here, scope)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
         return
     operated = isinstance(parent, ast.BinOp)
@@ -149,7 +187,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
-        cost = 1.0 if first or entry else 1.03 if whole else 1.1
+        given = isinstance(here.above[-2], ast.Assign) if isinstance(parent, ast.Tuple) else whole
+        alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
+        cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
@@ -168,6 +208,13 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _scalars(here, scope, summand or whole or below, operated)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
+
+
+def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A name for a zero that is given on, or that is an entry."""
+    for _text, scalar in scope.simple(()):
+        if isinstance(scalar, ast.Name):
+            yield here.instead(scalar, "name", 1.12 + scope.dear(scalar))
 
 
 def _leftmost(node: ast.expr) -> ast.expr:
@@ -257,6 +304,10 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                     yield here.instead(new, "missing term", 1.15)
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | list | tuple | np.ndarray)
+
+
 def _shape(value: object) -> Shape | None:
     if isinstance(value, bool):
         return None
@@ -265,6 +316,32 @@ def _shape(value: object) -> Shape | None:
     except ValueError:
         return None
     return numbers.shape if numbers.dtype.kind in "fi" else None
+
+
+def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:
+    """The names that a loop sets to entries of tables and lists, each with its shape."""
+    inner = over.args if isinstance(over, ast.Call) else []
+    parts = target.elts if isinstance(target, ast.Tuple) else []
+    if isinstance(over, ast.Call) and called(over) == "zip" and len(inner) == len(parts):
+        for one, own in zip(parts, inner, strict=True):
+            yield from _passed(one, own, observed)
+        return
+    if isinstance(over, ast.Call) and called(over) == "enumerate" and inner and len(parts) == 2:
+        yield from _passed(parts[1], inner[0], observed)
+        return
+    shape = observed.shape(over)
+    if not shape or (isinstance(over, ast.Call) and called(over) in ("range", "reversed")):
+        return
+    if isinstance(target, ast.Name) and (shape[1:] or not _whole(over, observed)):
+        yield target.id, shape[1:]
+    for one in parts if len(shape) > 1 else ():
+        if isinstance(one, ast.Name):
+            yield one.id, shape[2:]
+
+
+def _whole(node: ast.AST, observed: Observed) -> bool:
+    seen = observed.of(node)
+    return seen is not None and seen.whole
 
 
 def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
