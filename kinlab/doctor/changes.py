@@ -7,7 +7,6 @@ other convention), the arguments (degrees), the engine's question (another frame
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -17,7 +16,6 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.quantity import Quantity
-from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -114,8 +112,6 @@ def table_of(mechanism: Any) -> DHTable | None:
 
 # -------- The single entries of an answer, with the index they have in the whole quantity
 
-_INDEX = re.compile(r"(\w+)\[([\d:,\s-]+)\]")
-
 
 @dataclass(frozen=True, eq=False)
 class AnswerEntry:
@@ -144,26 +140,6 @@ class AnswerEntry:
         """Largest difference relative to the size of the answer."""
         gap = np.abs(one - two)
         return float(np.max(np.where(np.isfinite(gap), gap, np.inf) / self.scale))
-
-
-def split_name(name: str) -> tuple[str, tuple[Any, ...]]:
-    """``"fk[:3,3]"`` as ``("fk", (slice(None, 3), 3))``.
-
-    Raises:
-        NameUnknownError: no such quantity, or an index that cannot be read.
-    """
-    find_quantity(name)  # refuses what cannot be read
-    found = _INDEX.fullmatch(name.strip())
-    if found is None:
-        return name, ()
-    return found.group(1), tuple(_one(text.strip()) for text in found.group(2).split(","))
-
-
-def _one(text: str) -> int | slice:
-    if ":" not in text:
-        return int(text)
-    start, stop = (int(part) if part.strip() else None for part in text.split(":"))
-    return slice(start, stop)
 
 
 def entries(case: Case, engine: Array) -> Iterator[AnswerEntry]:

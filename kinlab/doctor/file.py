@@ -10,7 +10,8 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis
-from kinlab.doctor.changes import Case, split_name
+from kinlab.check.quantities.registry import split_name
+from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits

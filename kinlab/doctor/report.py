@@ -14,12 +14,11 @@ from kinlab.check.catalogue import Row
 from kinlab.check.compare import need_function
 from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
 from kinlab.check.guest import GuestFunction
-from kinlab.check.quantities.registry import quantities
+from kinlab.check.quantities.registry import quantities, split_name
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
-from kinlab.doctor.changes import split_name
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import (

@@ -11,7 +11,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
-from kinlab.doctor.changes import split_name
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas

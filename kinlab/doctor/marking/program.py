@@ -27,7 +27,7 @@ import numpy as np
 
 from kinlab.check.diagnosis import Cause
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor.changes import split_name
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.marking.judge import of_values, states_of
 from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet

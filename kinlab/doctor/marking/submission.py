@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
-from kinlab.doctor.changes import split_name
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, FileError, KinlabError
