@@ -22,7 +22,7 @@ _FEWEST = 3
 """Digits from which on a number may be another one rounded."""
 _MOST = 7
 """Digits from which on it is not."""
-_UNIT = 1e-3
+_UNIT = 1 / 1000
 """Share of a number by which it is moved to see what it does."""
 _ENDLESS = (1 / 3, 2 / 3, 1 / 6, 1 / 12, math.pi, math.pi / 2, math.sqrt(2), math.sqrt(0.5))
 """Numbers that nobody can type in full."""

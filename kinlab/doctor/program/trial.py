@@ -163,10 +163,15 @@ class Trial:
         finally:
             for change, old in reversed(before):
                 change.put(old)
-            self._contents.put_back(held)
+            if self._contents.put_back(held):  # answers may rest on what was written
+                self._forget()
             self._touched, self._made = outer, compiled
             for k in every:
                 self.place(k, kept[k])
+
+    def _forget(self) -> None:
+        for one in self._remembering:
+            one.known.clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
@@ -277,6 +282,7 @@ def _remembering(function: FunctionType) -> Any:
             known[key] = function(*asked)
         return copy.deepcopy(known[key])
 
+    remembered.known = known  # type: ignore[attr-defined]
     return remembered
 
 
