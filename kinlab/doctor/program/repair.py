@@ -146,6 +146,13 @@ class LineSearch:
             for node in nodes(part.tree)
         )
 
+    def at(self, case: Case, wanted: Array) -> LineSearch:
+        """The same program asked at other states, all of which are its first."""
+        other = copy.copy(self)
+        other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
+        other._few = other._at(other.first)
+        return other
+
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
