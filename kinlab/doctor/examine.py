@@ -22,6 +22,7 @@ from kinlab.doctor.confusions.tried import in_pairs, singly, the_formula
 from kinlab.doctor.derivations.joined import (
     Found,
     Ready,
+    likeliest,
     one_for_each_kind,
     ready,
     several_taken_otherwise,
@@ -151,13 +152,19 @@ def _explained(
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
-    if edited and silent is not None:
-        return edited[:1], (), None, None
+    if program and edited and (silent or program.written_out or len(edited[0].kinds) > 1):
+        return edited[:1], (), None, None  # with nothing more to be said of what that means
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
+        if edited:  # what that may well mean
+            likely = [reading for reading in tried if reading.cost <= _FETCHED]
+            every = [*singly(loose, likely)]
+            known = [c.cost for c in every if c.error_after <= TOLERANCES.formula_agrees]
+            every += map(_as_steps, likeliest(loose, ways, min([_FETCHED, *known])))
+        else:
+            every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -169,8 +176,8 @@ def _explained(
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
-            known = [cause for cause in read_so if cause.cost <= _FETCHED]
-            return meant(edited, known), (), None, None
+            plain = [cause for cause in read_so if cause.cost <= _FETCHED]
+            return meant(edited, plain), (), None, None
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)

@@ -35,6 +35,7 @@ from kinlab.doctor.bytecode.instructions import (
     unchain,
 )
 from kinlab.doctor.bytecode.steps import do
+from kinlab.doctor.bytecode.syntax import nodes
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
@@ -65,7 +66,7 @@ def definition(made: Made, name: str) -> ast.FunctionDef:
         made.notes.get("return"),
     )
     line = code.co_firstlineno
-    last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
+    last = max((span_of(n) or (line, line))[1] for n in nodes(tree))
     at(tree, (line, max(line, last), 0, 0))
     place(tree)
     return tree
@@ -440,7 +441,7 @@ def _asserts(raised: ast.expr | None) -> bool:
 
 def _turn(node: ast.expr) -> int:
     """When an expression is done, among the others of its statement."""
-    return max(getattr(part, "turn", -1) for part in ast.walk(node))
+    return max(getattr(part, "turn", -1) for part in nodes(node))
 
 
 def _stamp(lines: list[ast.stmt], step: CodeStep) -> None:

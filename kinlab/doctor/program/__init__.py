@@ -14,8 +14,10 @@ module            what it holds
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
 ``repair``        The edits that make a program right
 ``trial``         A program run with edits in it
+``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
+``scaled``        Whether a repair holds for another arm too: all lengths longer, all masses heavier
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
 from kinlab.doctor.program.observed import Observed
@@ -24,6 +25,8 @@ _SOUND = 0.2
 """What an edit costs more in a function whose answers are all right."""
 _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
+_COINCIDENT = 0.04
+"""What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
@@ -52,14 +55,21 @@ class Grounds:
         self.trial = trial
         self.known: list[Glossary] = []
         self.right: set[int] = set()
+        self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
+        self._of_data: dict[str, float] = {}
         if table_of(case.robot) is None:
             return
         stacks = case.arguments.items()
         self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
         for part, tree in enumerate(trial.trees):
             self._look(part, tree, observed)
+            for node in ast.walk(tree):
+                seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
+                if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
+                    own = float(seen.values[0])
+                    self.values |= {own, 1 / own} if own else set()
         self._below()
 
     def against(self, edit: ProgramEdit) -> float:
@@ -67,31 +77,43 @@ class Grounds:
         if edit.part in self.sound:
             return _SOUND
         if edit.part == DATA:
-            using = [k for k in self.trial.above[DATA] if self._uses(k, str(edit.node))]
-            if using and all(k in self.sound for k in using):
-                return _SOUND
-            return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
+            name = str(edit.node)
+            if name not in self._of_data:
+                self._of_data[name] = self._against_data(name)
+            return self._of_data[name]
         if edit.kind in _SPOILING and id(edit.node) in self.right:
             return _SPOILED
+        if self.coincident(edit):
+            return _COINCIDENT
         return _TRUSTED if edit.part in self.trusted else 0.0
+
+    def _against_data(self, name: str) -> float:
+        using = [k for k in self.trial.above[DATA] if self._uses(k, name)]
+        if using and all(k in self.sound for k in using):
+            return _SOUND
+        return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
+
+    def coincident(self, edit: ProgramEdit) -> bool:
+        """Whether an edit multiplies by a number that a name of the program has as its value."""
+        return edit.kind == "factor" and _factor(edit) in self.values
 
     def count(self, observed: Observed) -> int:
         """How many statements give what a textbook has."""
         return sum(
             self._of(node.value, observed) is not None
             for tree in self.trial.trees
-            for node in ast.walk(tree)
+            for node in nodes(tree)
             if isinstance(node, ast.Assign | ast.Return) and node.value is not None
         )
 
     def _uses(self, part: int, name: str) -> bool:
         tree = self.trial.trees[part]
-        return any(isinstance(node, ast.Name) and node.id == name for node in ast.walk(tree))
+        return any(isinstance(node, ast.Name) and node.id == name for node in nodes(tree))
 
     def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
         """Statements that give what a textbook has, and whether the part returns it."""
         returned: list[bool] = []
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if not isinstance(node, ast.Assign | ast.Return) or node.value is None:
                 continue
             if isinstance(node.value, ast.Tuple):
@@ -100,7 +122,7 @@ class Grounds:
             senses = self._of(node.value, observed)
             good = senses is not None
             if good and not isinstance(node.value, ast.Name):
-                self.right |= {id(inner) for inner in ast.walk(node)}
+                self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
             if near:
                 self.trusted |= {k for k in range(1, len(self.trial.trees)) if self._calls(node, k)}
@@ -157,11 +179,16 @@ class Grounds:
 
     def _thing(self, values: list[Array]) -> Sense | None:
         """A thing of the arm's that a value is at all the states: the first of several."""
+        found = self._row(values)
+        if found is None and self.known[0].plane and values[0].shape in ((), (2,)):
+            lifted = [np.append(x, 0.0) if x.shape else np.array([0.0, 0.0, x]) for x in values]
+            found = self._row(lifted)
+        return found
+
+    def _row(self, values: list[Array]) -> Sense | None:
         same: Array | None = None
         rows: Sequence[Row] = ()
         for known, value in zip(self.known, values, strict=True):
-            if known.plane and value.shape in ((), (2,)):
-                value = np.append(value, 0.0) if value.shape else np.array([0.0, 0.0, value])
             rows, things = known.things.get(value.shape, ((), value))
             if not rows:
                 return None
@@ -187,4 +214,14 @@ class Grounds:
 
     def _calls(self, tree: ast.AST, part: int) -> bool:
         name = self.trial.program.parts[part].name
-        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in ast.walk(tree))
+        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in nodes(tree))
+
+
+def _factor(edit: ProgramEdit) -> float:
+    """The number by which an edit multiplies; 0 where it does something else."""
+    new, old = edit.changes[0].new, 1.0
+    if isinstance(new, ast.BinOp) and isinstance(new.left, ast.Constant):
+        new = new.left.value
+    elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
+        old = float(edit.node.value)
+    return float(new) / old if isinstance(new, int | float) and old else 0.0

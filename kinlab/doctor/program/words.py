@@ -10,6 +10,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.digits import nearly, to_the_digits
 from kinlab.doctor.program.named import named
@@ -254,7 +255,7 @@ def _of_data(edit: ProgramEdit) -> str:
 def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
     """What stands there, and what should: the widest that is short."""
     tree = trial.trees[edit.part]
-    above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+    above = {id(child): node for node in nodes(tree) for child in ast.iter_child_nodes(node)}
     chain = [edit.node]
     while id(chain[-1]) in above and isinstance(chain[-1], ast.expr):
         chain.append(above[id(chain[-1])])

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 from types import ModuleType
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
@@ -50,29 +50,29 @@ class Scope:
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
-        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-        self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
+        calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
+        self.ranges = [copied(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
-                names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
+                names = [n.id for n in nodes(node.target) if isinstance(n, ast.Name)]
                 passed = dict(_passed(node.target, node.iter, observed))
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
                 self.counters += [n for n in names if n not in (*self.counters, *passed)]
                 if isinstance(node, ast.comprehension):
                     inner |= {*names}
         for one in trial.trees:
-            for node in ast.walk(one):
+            for node in nodes(one):
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
         loaded = {
             n.id
             for one in trial.trees
-            for n in ast.walk(one)
+            for n in nodes(one)
             if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
         }
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
@@ -85,7 +85,7 @@ class Scope:
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {
-            n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
+            n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
         }
         self.unused = {name for name in self.shapes if name not in loaded}
         for name, shape in self.shapes.items():
@@ -133,20 +133,23 @@ class Scope:
             self.shapes.setdefault(node.id, seen.shape)
             if seen.whole and seen.shape == ():
                 return
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
         text = ast.unparse(node)
         if names & inner or len(text) > _LONG:
             return
-        own = copy.deepcopy(node)
-        self.pieces.setdefault(seen.shape, {}).setdefault(text, own)
+        known = self.pieces.setdefault(seen.shape, {})
+        own = known[text] = known.get(text) or copied(node)
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-        short = isinstance(node, ast.Name)
-        return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
+        if isinstance(node, ast.Name):
+            return 0.0 if node.id in self.unused else _UNUSED / 2
+        if not self.unused:
+            return _UNUSED
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
+        return 0.0 if names & self.unused else _UNUSED
 
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""
@@ -252,7 +255,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
-    own = {ast.unparse(n) for n in ast.walk(node)}
+    own = {ast.unparse(n) for n in nodes(node)}
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
@@ -265,12 +268,13 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     own = ast.unparse(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
+    beside = _factors_beside(here) if term else set()
     if named and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     for text, scalar in scope.pieces.get((), {}).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
-        dear = scope.dear(scalar)
+        dear = 0.0 if text in beside else scope.dear(scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
@@ -279,6 +283,36 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _factors_beside(here: Here) -> set[str]:
+    """The factors that every other term of the sum or of the list around a term has."""
+    terms: list[ast.expr] = []
+    own: ast.AST = here.node
+    for above in reversed(here.above):
+        if isinstance(above, ast.BinOp) and isinstance(above.op, ast.Add | ast.Sub):
+            terms.append(above.left if above.right is own else above.right)
+        elif isinstance(above, ast.List | ast.Tuple):
+            terms += [one for one in above.elts if one is not own]
+        else:
+            break
+        own = above
+    sets = [
+        {ast.unparse(n) for n in ast.walk(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        for one in terms
+        for summand in _summands(one)
+        if not isinstance(summand, ast.Constant)
+    ]
+    inside = {ast.unparse(n) for n in ast.walk(here.node) if isinstance(n, ast.Name)}
+    return set.intersection(*sets) - inside if sets else set()
+
+
+def _summands(node: ast.expr) -> Iterator[ast.expr]:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        yield from _summands(node.left)
+        yield from _summands(node.right)
+    else:
+        yield node
 
 
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:
