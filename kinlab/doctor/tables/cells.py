@@ -177,9 +177,8 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
     """The row that a constant motion makes of a row: two cells of it, or a row written twice."""
     chain = first.chain
     step = row_transform(chain.modified, chain.cells[row])
-    solved = row_of(
-        chain.modified, motion @ step if chain.modified else step @ motion, target.steady
-    )
+    moved = motion @ step if chain.modified else step @ motion
+    solved = row_of(chain.modified, moved, target.steady)
     if solved is None:
         return []
     written = chain.cells[row]

@@ -169,16 +169,14 @@ def _told(
     if len(dynamic) > MOST or (len(causes) > MOST and not many):
         rows = sorted({row for cause in dynamic for row in cause.rows})
         kinematic = tuple(c for c in causes if c not in dynamic)
-        said = (
-            _("{kinematics}; {columns} differ in rows {rows}, more than one or two slips explain")
-            if rows
-            else _("{kinematics}; {columns} differ, more than one or two slips explain")
-        )
-        said = said.format(
-            kinematics=joined(kinematic) if kinematic else _("the kinematics agree"),
-            columns=listed(sorted({c.column for c in dynamic})),
-            rows=listed(rows) if rows else "",
-        )
+        said = _("{kinematics}; {columns} differ, more than one or two slips explain")
+        if rows:
+            said = _(
+                "{kinematics}; {columns} differ in rows {rows}, more than one or two slips explain"
+            )
+        found_ = joined(kinematic) if kinematic else _("the kinematics agree")
+        columns = listed(sorted({c.column for c in dynamic}))
+        said = said.format(kinematics=found_, columns=columns, rows=listed(rows) if rows else "")
         return TableDiagnosis(
             agrees=False,
             sentence=said,

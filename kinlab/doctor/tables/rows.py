@@ -18,14 +18,11 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
     for row in range(chain.n + 1):
         for slides in (False, True):
             for sign in (1.0, -1.0):
-                new = Chain(
-                    chain.modified,
-                    np.insert(chain.cells, row, 0.0, axis=0),
-                    np.insert(chain.prismatic, row, slides),
-                    np.insert(chain.sign, row, sign),
-                    chain.base,
-                    chain.tool,
-                    (*chain.source[:row], None, *chain.source[row:]),
+                new = chain.but(
+                    cells=np.insert(chain.cells, row, 0.0, axis=0),
+                    prismatic=np.insert(chain.prismatic, row, slides),
+                    sign=np.insert(chain.sign, row, sign),
+                    source=(*chain.source[:row], None, *chain.source[row:]),
                 )
                 frame = row if chain.modified else row + 1
                 gap, _last = differences(frames(new, target.few.q)[None], target.few)
