@@ -42,3 +42,9 @@ def test_entries_of_a_matrix_are_counted_from_one():
     assert said.startswith("M11, M12, M21, M22: differs")
     assert "M22: m1 should be m2" in said
     assert "[" not in said
+
+
+def test_a_link_left_out_of_the_kinetic_energy_is_not_told_of_gravity():
+    said = told("planar2r", "T", "m1*l1^2*qd1^2/2")
+    assert "leaves link 2 out" in said
+    assert "gravity" not in said
