@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors, some_rows
+from kinlab.check.compare import relative_errors, rows_alone
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import verdicts
@@ -96,8 +96,9 @@ def examine(
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
-    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
-        partial = (meant,)
+    if not same and (alone := rows_alone(values.shape, engine.shape, quantity)):
+        said = _("to compare these rows alone, ask for {first} (the first) or {last} (the last)")
+        partial = (said.format(first=alone[0], last=alone[1]),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))

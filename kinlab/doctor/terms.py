@@ -225,7 +225,7 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
 def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     form = _("{entry}: {slip} ({kind})")
     told = _("; ").join(
-        form.format(entry=written.entry, slip=c.sentence(written.told), kind=_(c.kind))
+        form.format(entry=shown_entry(written.entry), slip=c.sentence(written.told), kind=_(c.kind))
         for c in found.changes
     )
     kinds = tuple(c.kind for c in found.changes)
@@ -290,6 +290,8 @@ def _by_effect(
     for form, repair in sorted(repairs, key=lambda pair: pair[1].cost):
         told = _("; ").join(_told_function(label, form, e) for e in repair.edits)
         kinds = tuple(_TURNED.get(e.kind, e.kind) for e in repair.edits)
+        if tree.names(form) and not tree.names(repair.result):
+            continue  # a bare number: any formula becomes one if enough is left out
         values = tree.evaluate(repair.result, everywhere)
         if all(s.sentence != told for s in slips):
             slips.append(Slip(label, kinds, told, str(right), repair.cost, values, False))
@@ -347,7 +349,7 @@ def _told_function(label: str, form: Node, edit: Edit) -> str:
         said = _("{entry}: the factor {old} is missing in {term}")
     elif edit.kind == "extra factor":
         said = _("{entry}: the factor {old} is missing")
-    elif edit.kind == "factor" and edit.new == tree.mul(tree.num(2), old):
+    elif edit.kind == "factor" and tree.names(old) and edit.new == tree.mul(tree.num(2), old):
         said = _("{entry}: {old} is there twice")
     elif term:
         said = _("{entry}: it has {new} where the engine has {old} in {term} ({kind})")
