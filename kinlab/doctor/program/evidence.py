@@ -123,7 +123,7 @@ class Grounds:
 
     def _right_alone(self, node: ast.expr, observed: Observed) -> None:
         if self._of(node, observed) is not None:
-            self.right |= {id(inner) for inner in ast.walk(node)}
+            self.right |= {id(inner) for inner in nodes(node)}
 
     def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
         """Whether a value is nearly one of the things that an arm has one of: also a little beside
