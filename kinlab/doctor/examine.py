@@ -16,7 +16,7 @@ from kinlab.check.compare import relative_errors, some_rows
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import verdicts
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, entries
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.tried import in_pairs, singly, the_formula
 from kinlab.doctor.derivations.joined import (
@@ -41,7 +41,6 @@ from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.program.words import WrongLines, meant
 from kinlab.doctor.slips import LIST, RIVALS, reading_and_slips, slips_in
 from kinlab.doctor.solutions.verdict import judged
-from kinlab.doctor.terms import entries
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import OptionError

@@ -17,6 +17,7 @@ module            what it holds
 ``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
+``scaled``        Whether a repair holds for another arm too: all lengths longer, all masses heavier
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

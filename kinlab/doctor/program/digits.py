@@ -22,8 +22,8 @@ _FEWEST = 3
 """Digits from which on a number may be another one rounded."""
 _MOST = 7
 """Digits from which on it is not."""
-_UNIT = 1 / 1000
-"""Share of a number by which it is moved to see what it does."""
+_PARTS = 1000
+"""A number is moved by one part in so many to see what it does."""
 _ENDLESS = (1 / 3, 2 / 3, 1 / 6, 1 / 12, math.pi, math.pi / 2, math.sqrt(2), math.sqrt(0.5))
 """Numbers that nobody can type in full."""
 _TOLD = 3
@@ -74,7 +74,7 @@ def _stands(value: float, meant: float) -> bool:
 
 
 def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tuple[str, ...]:
-    units = [_UNIT * abs(place.value) for place in places]
+    units = [abs(place.value) / _PARTS for place in places]
     own = search.values(which)
     if own is None:
         return ()

@@ -25,6 +25,8 @@ _SOUND = 0.2
 """What an edit costs more in a function whose answers are all right."""
 _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
+_COINCIDENT = 0.04
+"""What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
@@ -53,6 +55,7 @@ class Grounds:
         self.trial = trial
         self.known: list[Glossary] = []
         self.right: set[int] = set()
+        self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
         self._of_data: dict[str, float] = {}
@@ -62,6 +65,11 @@ class Grounds:
         self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
         for part, tree in enumerate(trial.trees):
             self._look(part, tree, observed)
+            for node in ast.walk(tree):
+                seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
+                if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
+                    own = float(seen.values[0])
+                    self.values |= {own, 1 / own} if own else set()
         self._below()
 
     def against(self, edit: ProgramEdit) -> float:
@@ -75,6 +83,8 @@ class Grounds:
             return self._of_data[name]
         if edit.kind in _SPOILING and id(edit.node) in self.right:
             return _SPOILED
+        if self.coincident(edit):
+            return _COINCIDENT
         return _TRUSTED if edit.part in self.trusted else 0.0
 
     def _against_data(self, name: str) -> float:
@@ -82,6 +92,10 @@ class Grounds:
         if using and all(k in self.sound for k in using):
             return _SOUND
         return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
+
+    def coincident(self, edit: ProgramEdit) -> bool:
+        """Whether an edit multiplies by a number that a name of the program has as its value."""
+        return edit.kind == "factor" and _factor(edit) in self.values
 
     def count(self, observed: Observed) -> int:
         """How many statements give what a textbook has."""
@@ -165,11 +179,16 @@ class Grounds:
 
     def _thing(self, values: list[Array]) -> Sense | None:
         """A thing of the arm's that a value is at all the states: the first of several."""
+        found = self._row(values)
+        if found is None and self.known[0].plane and values[0].shape in ((), (2,)):
+            lifted = [np.append(x, 0.0) if x.shape else np.array([0.0, 0.0, x]) for x in values]
+            found = self._row(lifted)
+        return found
+
+    def _row(self, values: list[Array]) -> Sense | None:
         same: Array | None = None
         rows: Sequence[Row] = ()
         for known, value in zip(self.known, values, strict=True):
-            if known.plane and value.shape in ((), (2,)):
-                value = np.append(value, 0.0) if value.shape else np.array([0.0, 0.0, value])
             rows, things = known.things.get(value.shape, ((), value))
             if not rows:
                 return None
@@ -196,3 +215,13 @@ class Grounds:
     def _calls(self, tree: ast.AST, part: int) -> bool:
         name = self.trial.program.parts[part].name
         return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in nodes(tree))
+
+
+def _factor(edit: ProgramEdit) -> float:
+    """The number by which an edit multiplies; 0 where it does something else."""
+    new, old = edit.changes[0].new, 1.0
+    if isinstance(new, ast.BinOp) and isinstance(new.left, ast.Constant):
+        new = new.left.value
+    elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
+        old = float(edit.node.value)
+    return float(new) / old if isinstance(new, int | float) and old else 0.0

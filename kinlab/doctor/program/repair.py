@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -25,6 +25,7 @@ from kinlab.doctor.program.evidence import Grounds
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
+from kinlab.doctor.program.scaled import larger, scaled
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
@@ -39,6 +40,8 @@ _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
+_DOUBTED = 0.12
+"""The same where a factor is found that a name of the program has as its value."""
 _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _SAME = 0.011
@@ -152,12 +155,12 @@ class LineSearch:
     def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""
         found: list[ProgramRepair] = []
-        best = np.inf
+        best, doubted = np.inf, False
         with quietly():
             tried = sorted(edits(self.trial, self.observed), key=self._dear)
             variants = Variants(self.trial, tried)
             for edit in tried:
-                if found and self.likely(edit) > best + _TIED:
+                if found and self.likely(edit) > best + (_DOUBTED if doubted else _TIED):
                     break
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
@@ -174,9 +177,10 @@ class LineSearch:
                 if repair is not None:
                     found.append(repair)
                     best = min(best, self.likely(edit))
+                    doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if not found or best > _NUMBER:
-                found = [*self._numbers(), *found]
+                found = self._numbers() + found
         return found
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -185,8 +189,9 @@ class LineSearch:
         What nothing tells apart is marked as tied.
         """
         found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
-        if not found or not self.evidence.known:
+        if len(found) < 2 or not self.evidence.known:
             return found
+        found = self._of_any_arm(found)
         least = self.likely(found[0].edits[-1])
         lines: dict[int, ProgramRepair] = {}
         for repair in found:
@@ -195,7 +200,7 @@ class LineSearch:
                 lines.setdefault(row_of(edit), repair)
         if len(lines) < 2:
             return found
-        rights = {id(one): self._left_right(one) for one in [*lines.values()][:_RIVALS]}
+        rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
         most = max(rights.values())
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
@@ -203,9 +208,29 @@ class LineSearch:
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 
-    def _left_right(self, repair: ProgramRepair) -> int:
-        """How many statements are what a textbook has, once a repair stands."""
-        with changed(self.trial, repair.edits[-1:]):
+    def _of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """Of repairs those that hold for a larger arm too, where some do and some do not."""
+        other = scaled(self.case.robot)
+        edits = None if other is None else larger(self.case.robot, self.trial, self.observed)
+        if other is None or not edits:
+            return found
+        few = self.case.few(max(self.first) + 1)
+        try:
+            wanted = replace(few, robot=other).answer(())
+        except KinlabError:
+            return found
+        held: list[ProgramRepair] = []
+        with changed(self.trial, edits):
+            for repair in found[:_RIVALS]:
+                with changed(self.trial, repair.edits[-1:]):
+                    values = self.values(self.first)
+                    if values is not None and self.right(values, wanted).all():
+                        held.append(repair)
+        return [*held, *(one for one in found[_RIVALS:])] if held else found
+
+    def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
+        """How many statements are what a textbook has, once edits stand."""
+        with changed(self.trial, several):
             try:
                 return self.evidence.count(Observed(self.trial, self.states))
             except Exception:  # noqa: BLE001  what cannot be watched tells nothing
@@ -227,8 +252,12 @@ class LineSearch:
             np.log10(max(1, work[edit.part]) / max(1, work[0]))
         )
 
-    def _numbers(self) -> Iterator[ProgramRepair]:
-        """Single numbers, of the text or the data, with which the program is right."""
+    def _numbers(self) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+        """
+        found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
         every = [*numbers(self.trial, self.observed)]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
@@ -239,8 +268,8 @@ class LineSearch:
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    yield repair
-                    return
+                    found.append((against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -276,9 +305,9 @@ class LineSearch:
                 return value
         return None
 
-    def right(self, values: Array) -> Any:
+    def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - self.wanted[self.first])
+        gap = np.abs(values - (self.wanted[self.first] if wanted is None else wanted[self.first]))
         near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
         return near.all(axis=0).ravel()
 

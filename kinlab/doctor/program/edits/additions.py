@@ -268,12 +268,13 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     own = ast.unparse(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
+    beside = _factors_beside(here) if term else set()
     if named and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     for text, scalar in scope.pieces.get((), {}).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
-        dear = scope.dear(scalar)
+        dear = 0.0 if text in beside else scope.dear(scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
@@ -282,6 +283,36 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _factors_beside(here: Here) -> set[str]:
+    """The factors that every other term of the sum or of the list around a term has."""
+    terms: list[ast.expr] = []
+    own: ast.AST = here.node
+    for above in reversed(here.above):
+        if isinstance(above, ast.BinOp) and isinstance(above.op, ast.Add | ast.Sub):
+            terms.append(above.left if above.right is own else above.right)
+        elif isinstance(above, ast.List | ast.Tuple):
+            terms += [one for one in above.elts if one is not own]
+        else:
+            break
+        own = above
+    sets = [
+        {ast.unparse(n) for n in ast.walk(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        for one in terms
+        for summand in _summands(one)
+        if not isinstance(summand, ast.Constant)
+    ]
+    inside = {ast.unparse(n) for n in ast.walk(here.node) if isinstance(n, ast.Name)}
+    return set.intersection(*sets) - inside if sets else set()
+
+
+def _summands(node: ast.expr) -> Iterator[ast.expr]:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        yield from _summands(node.left)
+        yield from _summands(node.right)
+    else:
+        yield node
 
 
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:

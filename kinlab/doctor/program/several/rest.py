@@ -83,7 +83,9 @@ class AtRest:
                 rows.append((values - self.own).ravel())
         goal = (self.goal / self.scale - self.own).ravel()
         own = self.own.ravel()
-        return Effects(alike, np.array(rows).reshape(len(rows), own.size), own, goal, known.near)
+        return Effects(
+            alike, np.array(rows).reshape(len(rows), own.size), own, goal, known.near, known.likely
+        )
 
 
 def _states(arguments: dict[str, Array]) -> dict[str, Array]:
