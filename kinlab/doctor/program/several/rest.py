@@ -6,7 +6,6 @@ terms in the accelerations alone.
 
 from __future__ import annotations
 
-import copy
 from dataclasses import replace
 
 import numpy as np
@@ -29,7 +28,7 @@ class AtRest:
     """
 
     def __init__(self, search: LineSearch) -> None:
-        self.search = copy.copy(search)
+        self.search = search
         self.own: Array | None = None
         case = search.case
         stacks = _states(case.arguments)
@@ -40,8 +39,7 @@ class AtRest:
                 wanted = np.asarray(replace(case, arguments=stacks).answer(()), dtype=float)
         except (KinlabError, np.linalg.LinAlgError, ValueError):
             return
-        self.search.case = replace(case, arguments=stacks)
-        self.search.wanted, self.search.first = wanted, list(range(len(wanted)))
+        self.search = search.elsewhere(replace(case, arguments=stacks), wanted)
         self.differences = any(name in MOVING for name in stacks)
         self.goal = self._parts(wanted)
         size = np.abs(self.goal).max(axis=tuple(range(1, wanted.ndim)), keepdims=True)
