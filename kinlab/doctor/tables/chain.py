@@ -71,6 +71,12 @@ class Chain:
         new.__dict__.update(self.__dict__, **changes)
         return new
 
+    def permuted(self, order: list[int]) -> Chain:
+        """The rows of these numbers, with their joints, in this order."""
+        source = tuple(self.source[k] for k in order)
+        taken = {name: getattr(self, name)[order] for name in ("cells", "prismatic", "sign")}
+        return self.but(source=source, **taken)
+
     def with_cell(self, row: int, column: int, value: float) -> Chain:
         """The chain with one cell (0-based) replaced."""
         cells = self.cells.copy()
