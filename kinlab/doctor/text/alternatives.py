@@ -238,6 +238,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         pieces |= {"factor": second}
         change = Change(at, end, "", "factor", 1.25, told, pieces=pieces)
         line.put(place, left.value, change)
+        _as_fraction(line, place, left, right)
         return
     told, pieces = line.told(
         place,
@@ -252,6 +253,24 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     line.put(place, left.value, Change(at, end, "", kinds[0], 1.3, told, pieces=one))
     kind = kinds[1]
     line.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told, pieces=two))
+
+
+def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
+    """A fraction of two numbers behind a term that does not belong there: ``*180/pi``."""
+    if not isinstance(left.node, ast.BinOp) or not isinstance(left.node.op, ast.Mult):
+        return
+    front, above = line.siblings[id(left)]
+    numbers = (above.node, right.node)
+    if not all(isinstance(x, ast.Constant) or ast.unparse(x) == "pi" for x in numbers):
+        return
+    start, end = front.span[1], place.span[1]
+    told, pieces = line.told(
+        place,
+        N_("the factor {factor} does not belong"),
+        N_("the factor {factor} does not belong in {term}"),
+    )
+    pieces |= {"factor": line.source[above.span[0] : end]}
+    line.put(place, front.value, Change(start, end, "", "factor", 1.1, told, pieces=pieces))
 
 
 def _as_factor(line: Line, place: Place) -> None:
