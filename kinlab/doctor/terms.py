@@ -320,6 +320,24 @@ def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     return Slip(written.entry, kinds, told, text, found.cost, values, True, typed=typed)
 
 
+def turned(written: Written) -> Slip:
+    """The sign of a whole text, which needs no derivation: of an arm with many joints, too."""
+    plain, body = written.text.strip(), written.text.strip().removeprefix("-")
+    new = (body if body != plain else f"-{plain}") if _ONE_TERM.fullmatch(body) else f"-({plain})"
+    pieces = {"old": written.told(plain), "new": written.told(new)}
+    told = _("{old} should be {new}").format(**pieces)
+    said = _("{entry}: {slip} ({kind})").format(
+        entry=shown_entry(written.entry), slip=told, kind=_("sign")
+    )
+    text = written.restored(new)
+    typed = written.typing.corrected(text) if written.typing is not None else ""
+    return Slip(written.entry, ("sign",), said, text, 1.0, np.empty(0), True, typed=typed)
+
+
+_ONE_TERM = re.compile(r"[^-+]*(?:\([^()]*\)[^-+]*)*")
+"""A product without a sign in front, whatever stands between its parentheses."""
+
+
 def in_function(
     label: str,
     hand: Array,

@@ -60,3 +60,12 @@ def test_another_mass_is_not_told_as_a_slip_in_every_term_it_stands_in():
     said = told("planar2r", "gravity_torques", torques)
     assert "m1*g*l1*cos(q1) (index)" not in said
     assert "1.5" in said
+
+
+def test_the_sign_of_a_text_is_told_where_nothing_is_derived():
+    """Gravity on an arm with four joints; beside it no rotation was left out in every line."""
+    for typed, right in (("(m3 + m4)*g", "-(m3 + m4)*g"), ("m3*g + m4*g", "-(m3*g + m4*g)")):
+        said = told("scara", "g3", typed)
+        assert f"g3: {typed} should be {right} (sign)" in said
+        assert f"correct: g3 = {right}" in said
+        assert "or:" not in said
