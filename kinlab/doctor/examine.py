@@ -16,12 +16,13 @@ from kinlab.check.compare import relative_errors, rows_alone
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import verdicts
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, entries
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.tried import in_pairs, singly, the_formula
 from kinlab.doctor.derivations.joined import (
     Found,
     Ready,
+    likeliest,
     one_for_each_kind,
     ready,
     several_taken_otherwise,
@@ -40,7 +41,6 @@ from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.program.words import WrongLines, meant
 from kinlab.doctor.slips import LIST, RIVALS, reading_and_slips, slips_in
 from kinlab.doctor.solutions.verdict import judged
-from kinlab.doctor.terms import entries
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import OptionError
@@ -83,6 +83,10 @@ def examine(
         return replace(right, remarks=() if hidden else (*rounded, *remarks), form=form)
     case, excuse = excused(case, engine, written) if same else (case, None)
     near = excuse is not None and excuse.form == "near"
+    if near and not written:
+        first = next(case.looked_through(engine, TOLERANCES.formula_agrees), None)
+        if first is not None and first.digits:
+            excuse, near = Excuse("rounded", first.digits), False
     if same and excuse is None:
         values, errors = case.hand, relative_errors(case.hand, engine)
         worst = float(np.max(errors))
@@ -144,16 +148,26 @@ def _explained(
     read = same and not written and (silent is not None or not signs)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
+    if program is not None and program.digits is not None:
+        if program.digits:
+            return [], (), Excuse("rounded", program.digits), None
+        program = next(looking, None)
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
-    if edited and silent is not None:
-        return edited[:1], (), None, None
+    if program and edited and (silent or program.written_out or len(edited[0].kinds) > 1):
+        return edited[:1], (), None, None  # with nothing more to be said of what that means
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
+        if edited:  # what that may well mean
+            likely = [reading for reading in tried if reading.cost <= _FETCHED]
+            every = [*singly(loose, likely)]
+            known = [c.cost for c in every if c.error_after <= TOLERANCES.formula_agrees]
+            every += map(_as_steps, likeliest(loose, ways, min([_FETCHED, *known])))
+        else:
+            every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -165,8 +179,8 @@ def _explained(
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
-            known = [cause for cause in read_so if cause.cost <= _FETCHED]
-            return meant(edited, known), (), None, None
+            plain = [cause for cause in read_so if cause.cost <= _FETCHED]
+            return meant(edited, plain), (), None, None
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)

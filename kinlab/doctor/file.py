@@ -10,9 +10,9 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis, shown_entry
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values

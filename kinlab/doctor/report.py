@@ -14,7 +14,7 @@ from kinlab.check.catalogue import Row
 from kinlab.check.compare import need_function
 from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
 from kinlab.check.guest import GuestFunction
-from kinlab.check.quantities.registry import quantities
+from kinlab.check.quantities.registry import quantities, split_name
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
@@ -29,7 +29,6 @@ from kinlab.doctor.file import (
 )
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.formulas import tree

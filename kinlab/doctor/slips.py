@@ -12,9 +12,9 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
-from kinlab.doctor.changes import Case, Confusion, table_of
+from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries, table_of
 from kinlab.doctor.derived import derivation
-from kinlab.doctor.terms import AnswerEntry, Slip, entries
+from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES

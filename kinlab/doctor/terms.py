@@ -6,16 +6,12 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import chain, product
-from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import shown_entry
-from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import regression, search
-from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
@@ -27,85 +23,6 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
 from kinlab.symbolic.trig import Poly
 from kinlab.tolerances import TOLERANCES
-
-# -------- The single entries of an answer, with the index they have in the whole quantity
-
-_INDEX = re.compile(r"(\w+)\[([\d:,\s-]+)\]")
-
-
-@dataclass(frozen=True, eq=False)
-class AnswerEntry:
-    """One number of an answer over all states.
-
-    Attributes:
-        label: ``"inverse_dynamics[0]"``.
-        index: place in the whole quantity. local: place in the hand formula's answer.
-        hand, engine: (N,).
-        scale: what errors are relative to: the size of the whole answer, (N,).
-    """
-
-    label: str
-    index: tuple[int, ...]
-    local: tuple[int, ...]
-    hand: Array
-    engine: Array
-    scale: Array
-
-    @property
-    def agrees(self) -> bool:
-        """Whether this entry is right, to rounding."""
-        return self.error(self.hand, self.engine) <= TOLERANCES.formula_agrees
-
-    def error(self, one: Array, two: Array) -> float:
-        """Largest difference relative to the size of the answer."""
-        gap = np.abs(one - two)
-        return float(np.max(np.where(np.isfinite(gap), gap, np.inf) / self.scale))
-
-
-def split_name(name: str) -> tuple[str, tuple[Any, ...]]:
-    """``"fk[:3,3]"`` as ``("fk", (slice(None, 3), 3))``.
-
-    Raises:
-        NameUnknownError: no such quantity, or an index that cannot be read.
-    """
-    find_quantity(name)  # refuses what cannot be read
-    found = _INDEX.fullmatch(name.strip())
-    if found is None:
-        return name, ()
-    return found.group(1), tuple(_one(text.strip()) for text in found.group(2).split(","))
-
-
-def _one(text: str) -> int | slice:
-    if ":" not in text:
-        return int(text)
-    start, stop = (int(part) if part.strip() else None for part in text.split(":"))
-    return slice(start, stop)
-
-
-def entries(case: Case, engine: Array) -> Iterator[AnswerEntry]:
-    """Each entry of the case's answer."""
-    name = case.quantity.name
-    whole = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
-    places = np.empty(whole, dtype=object)
-    for index in np.ndindex(whole):
-        places[index] = index
-    chosen: Any = places[case.index] if case.index else places
-    scale = error_sizes(engine)
-    if engine.ndim == 1:
-        index = chosen if isinstance(chosen, tuple) else ()
-        yield AnswerEntry(_label(name, index), index, (), case.hand, engine, scale)
-        return
-    for local in np.ndindex(engine.shape[1:]):
-        at = (slice(None), *local)
-        index = chosen[local]
-        yield AnswerEntry(_label(name, index), index, local, case.hand[at], engine[at], scale)
-
-
-def _label(name: str, index: tuple[int, ...]) -> str:
-    return f"{name}[{','.join(map(str, index))}]" if index else name
-
-
-# -------- Slips within single entries: the derived formula beside a user's text or function
 
 _POINTS = 24
 _WAYS = 3

@@ -10,7 +10,7 @@ from itertools import product
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
@@ -19,7 +19,7 @@ from kinlab.doctor.rounding import (
     data_rounded,
     same_values,
 )
-from kinlab.doctor.terms import AnswerEntry, anywhere, as_rods, entries, names_for
+from kinlab.doctor.terms import anywhere, as_rods, names_for
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
 from kinlab.errors import KinlabError

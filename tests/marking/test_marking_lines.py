@@ -52,6 +52,13 @@ def test_line_and_kind_are_told_as_far_as_the_feedback_goes():
     assert (one.points, one.place, one.cause, one.answer) == (3.0, "", "", ())
 
 
+def test_an_answer_of_another_shape_says_so():
+    one = judged(WRONG.replace("return np.array([total, weight(m2, outer)])", "return [total]"))
+    assert one.verdict == "wrong" and one.points == 0.0
+    assert one.remark == "the answer has the shape (1,), asked is (2,)"
+    assert judged(WRONG).remark == ""
+
+
 @pytest.mark.parametrize("level", ["place", "cause"])
 def test_no_output_holds_a_corrected_line(level, tmp_path):
     """Nothing of the program stands in any output, so that nothing of its correction does."""

@@ -6,7 +6,7 @@ import ast
 from collections import Counter
 from dataclasses import dataclass
 
-from kinlab.doctor.bytecode.expressions import at, span_of
+from kinlab.doctor.bytecode.expressions import at, is_none, span_of
 from kinlab.doctor.bytecode.instructions import CodeStep, Span
 
 
@@ -30,6 +30,11 @@ class Decision:
     falls: CodeStep | None
     paths: Counter[CodeStep]
     span: Span | None
+
+    @property
+    def leads(self) -> tuple[CodeStep, CodeStep, bool]:
+        """Where it ends: what two ways to one value share."""
+        return self.yes, self.no, self.value
 
 
 def joined(one: Decision, two: Decision, falls: CodeStep, other: CodeStep) -> Decision | None:
@@ -80,10 +85,6 @@ def negated(test: ast.expr) -> ast.expr:
         if none:
             return at(ast.Compare(test.left, [ast.IsNot()], test.comparators), span_of(test))
     return at(ast.UnaryOp(ast.Not(), test), span_of(test))
-
-
-def is_none(node: ast.expr | None) -> bool:
-    return node is None or (isinstance(node, ast.Constant) and node.value is None)
 
 
 def place(node: ast.AST) -> None:

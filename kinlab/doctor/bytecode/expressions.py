@@ -1,25 +1,28 @@
 """Byte code without jumps as expressions and simple statements, by a stack of syntax trees.
 
 What the interpreter would put on its stack as a value stands here as the tree that makes it. Some
-entries are no expression by themselves (a half-read import, a function not yet named); they are
-the small classes at the top.
+entries are no expression by themselves (a half-read import, a function not yet named, a code
+object); they are the small classes at the top.
 """
 
 from __future__ import annotations
 
 import ast
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from types import CodeType
 from typing import TypeVar
 
-from kinlab.doctor.bytecode.instructions import Span, UnreadError
+from kinlab.doctor.bytecode.instructions import CodeStep, Span, UnreadError
 
 
 class Blank:
-    """An entry that only holds a place: under a function called, or the self of a method."""
+    """An entry that only holds a place."""
 
 
-NULL, SELF = Blank(), Blank()
+NULL, SELF, SAVED, ELEMENT = Blank(), Blank(), Blank(), Blank()
+"""Under a function called; the self of a method; a variable put aside while a comprehension uses
+its name; what a loop gives at each turn, not yet stored."""
 
 
 @dataclass(eq=False)
@@ -27,23 +30,6 @@ class Iterated:
     """What a loop goes through."""
 
     over: ast.expr
-
-
-@dataclass(eq=False)
-class Saved:
-    """A variable put aside while a comprehension uses its name."""
-
-
-@dataclass(eq=False)
-class Element:
-    """What a loop gives at each turn, not yet stored."""
-
-
-@dataclass(eq=False)
-class Raw:
-    """A constant as it stands in the byte code: a code object, or the names of keywords."""
-
-    value: object
 
 
 @dataclass(eq=False)
@@ -78,9 +64,9 @@ class Made:
     """A function just made, not yet named."""
 
     code: CodeType
-    defaults: list[ast.expr]
-    keywords: dict[str, ast.expr]
-    notes: dict[str, ast.expr]
+    defaults: list[ast.expr] = field(default_factory=list)
+    keywords: dict[str, ast.expr] = field(default_factory=dict)
+    notes: dict[str, ast.expr] = field(default_factory=dict)
     decorators: list[ast.expr] = field(default_factory=list)
 
 
@@ -103,11 +89,17 @@ class Hole:
 
 @dataclass
 class CodeHand:
-    """Where the reader is: the stack, what is being stored, and the statements so far."""
+    """Where the reader is: the stack, what is being stored, and the statements so far.
+
+    Attributes:
+        finish: A function just made as an expression: a lambda, or a comprehension over what is
+            given.
+    """
 
     stack: list[object]
-    stored: list[tuple[object, ast.expr]] = field(default_factory=list)
+    finish: Callable[[Made, ast.expr | None, Span | None], ast.expr]
     out: list[ast.stmt] = field(default_factory=list)
+    stored: list[tuple[object, ast.expr]] = field(default_factory=list)
     keywords: tuple[str, ...] = ()
 
     def pop(self) -> object:
@@ -115,13 +107,29 @@ class CodeHand:
             raise UnreadError("an empty stack")
         return self.stack.pop()
 
+    def under(self, depth: int) -> object:
+        """The entry at a depth from the top, 1 being the top."""
+        if not 1 <= depth <= len(self.stack):
+            raise UnreadError("an empty stack")
+        return self.stack[-depth]
+
+    def push(self, node: ast.expr, step: CodeStep) -> None:
+        """Put a value on the stack that a step has made."""
+        setattr(node, "turn", step.index)  # noqa: B010
+        self.stack.append(at(node, step.span))
+
     def expr(self) -> ast.expr:
         return self.as_expr(self.pop())
 
+    def many(self, count: int) -> list[ast.expr]:
+        """So many values, the lowest first."""
+        return [self.expr() for _ in range(count)][::-1]
+
     def as_expr(self, value: object) -> ast.expr:
         """An entry as an expression; a copy of it stored before makes it ``(name := value)``."""
-        if not isinstance(value, ast.expr):
-            raise UnreadError(f"{type(value).__name__} is no value")
+        if isinstance(value, Made):
+            return self.finish(value, None, None)
+        value = needed(value, ast.expr)
         held = [n for n, (stored, _) in enumerate(self.stored) if stored is value]
         if not held:
             return value
@@ -141,16 +149,25 @@ class CodeHand:
             if len(elements) != len(holes):
                 raise UnreadError("a part without a target")
             if (star := value.whole.star) is not None:
-                elements[star] = at(
-                    ast.Starred(elements[star], ast.Store()), span_of(elements[star])
-                )
+                starred = ast.Starred(elements[star], ast.Store())
+                elements[star] = at(starred, span_of(elements[star]))
             target = at(ast.Tuple(elements, ast.Store()), span_of(elements[0]))
             value = value.whole.value
         if isinstance(value, Imported) and value.module.names and isinstance(target, ast.Name):
             alias = None if value.name == target.id else target.id
             value.module.aliases.append(ast.alias(value.name, alias))
-        elif not isinstance(value, Saved):
+        elif value is not SAVED:
             self.stored.append((value, target))
+
+
+K = TypeVar("K")
+
+
+def needed(entry: object, kind: type[K]) -> K:
+    """An entry that must be of a kind."""
+    if not isinstance(entry, kind):
+        raise UnreadError(f"{type(entry).__name__} is no {kind.__name__}")
+    return entry
 
 
 N = TypeVar("N", bound=ast.AST)
@@ -180,42 +197,20 @@ def literal(value: object, span: Span | None) -> ast.expr:
         return at(ast.Tuple([literal(v, span) for v in value], ast.Load()), span)
     if isinstance(value, frozenset):
         return at(ast.Set([literal(v, span) for v in value]), span)
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and repr(value)[0] == "-":
+    if isinstance(value, slice):  # 3.14
+        return at(limits(*(literal(v, span) for v in (value.start, value.stop, value.step))), span)
+    negative = isinstance(value, (int, float)) and repr(value)[0] == "-"
+    turned = isinstance(value, complex) and repr(value)[:4] == "(-0-"  # what -1j comes to
+    if negative or turned:
+        assert isinstance(value, (int, float, complex))
         return at(ast.UnaryOp(ast.USub(), at(ast.Constant(-value), span)), span)
-    if isinstance(value, CodeType):
-        raise UnreadError("a code object is no value")
     return at(ast.Constant(value), span)  # type: ignore[arg-type]
 
 
-BINARY: tuple[type[ast.operator], ...] = (
-    ast.Add,
-    ast.BitAnd,
-    ast.FloorDiv,
-    ast.LShift,
-    ast.MatMult,
-    ast.Mult,
-    ast.Mod,
-    ast.BitOr,
-    ast.Pow,
-    ast.RShift,
-    ast.Sub,
-    ast.Div,
-    ast.BitXor,
-)
-"""In the order of BINARY_OP's argument; behind them stand the augmented ones, then ``[]``."""
+def limits(*parts: ast.expr) -> ast.Slice:
+    """The limits of a slice, those that are None left out."""
+    return ast.Slice(*(None if is_none(part) else part for part in parts))
 
-UNARY: dict[str, type[ast.unaryop]] = {
-    "UNARY_NEGATIVE": ast.USub,
-    "UNARY_POSITIVE": ast.UAdd,
-    "UNARY_INVERT": ast.Invert,
-    "UNARY_NOT": ast.Not,
-}
-COMPARE: dict[str, type[ast.cmpop]] = {
-    "<": ast.Lt,
-    "<=": ast.LtE,
-    "==": ast.Eq,
-    "!=": ast.NotEq,
-    ">": ast.Gt,
-    ">=": ast.GtE,
-}
-COMPARES = {"COMPARE_OP", "IS_OP", "CONTAINS_OP"}
+
+def is_none(node: ast.expr | None) -> bool:
+    return node is None or (isinstance(node, ast.Constant) and node.value is None)

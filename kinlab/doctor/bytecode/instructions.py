@@ -4,13 +4,14 @@ Jumps are edges, not steps; what only paces the interpreter (``NOP``, ``RESUME``
 out. Two graphs that agree step by step on every path from their entries do the same, however the
 compiler has laid them out: with a short exit copied or not, a jump threaded or not.
 
-Source: the ``dis`` chapter of the Python library reference, 3.11 to 3.13.
+Source: the ``dis`` chapter of the Python library reference, 3.11 to 3.14.
 """
 
 from __future__ import annotations
 
 import dis
 import inspect
+import re
 import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -57,18 +58,17 @@ JUMPS = {"JUMP_FORWARD", "JUMP_BACKWARD", "JUMP_BACKWARD_NO_INTERRUPT"}
 ENDING = 0 if sys.version_info < (3, 12) else 1 if sys.version_info < (3, 13) else 2
 """How many instructions end a loop that has run out: ``END_FOR``, then ``POP_TOP`` too."""
 
-SAME = {
+SAME: dict[object, str] = {
     "LOAD_FAST_CHECK": "LOAD_FAST",
     "LOAD_FAST_BORROW": "LOAD_FAST",
     "LOAD_SMALL_INT": "LOAD_CONST",
     "POP_ITER": "POP_TOP",
+    ("CALL_INTRINSIC_1", 5): "UNARY_POSITIVE",
+    ("CALL_INTRINSIC_1", 6): "LIST_TO_TUPLE",
+    ("BINARY_OP", 26): "BINARY_SUBSCR",  # 3.14
 }
-DOUBLE = {
-    "LOAD_FAST_LOAD_FAST": ("LOAD_FAST", "LOAD_FAST"),
-    "LOAD_FAST_BORROW_LOAD_FAST_BORROW": ("LOAD_FAST", "LOAD_FAST"),
-    "STORE_FAST_STORE_FAST": ("STORE_FAST", "STORE_FAST"),
-    "STORE_FAST_LOAD_FAST": ("STORE_FAST", "LOAD_FAST"),
-}
+"""Steps by another name, some with their argument only."""
+
 LAST = {"RETURN_CONST", "RETURN_VALUE", "RAISE_VARARGS", "RERAISE"}
 BITS = {"LOAD_GLOBAL"} if sys.version_info < (3, 12) else {"LOAD_GLOBAL", "LOAD_ATTR"}
 FLAGS = inspect.CO_OPTIMIZED | inspect.CO_NEWLOCALS | inspect.CO_VARARGS | inspect.CO_VARKEYWORDS
@@ -96,7 +96,7 @@ def entry(code: CodeType) -> CodeStep:
             if n >= len(steps):
                 break
             if steps[n].op in JUMPS:
-                n = place[_target(instructions[n])]
+                n = place[int(instructions[n].argval)]
             elif steps[n].op in PACING:
                 n += 1
             else:
@@ -112,16 +112,16 @@ def entry(code: CodeType) -> CodeStep:
         except UnreadError:
             continue  # behind the last line of a loop that never ends: nothing gets here
         if step.op == "TEST":
-            other = at(place[_target(instructions[n])])
+            other = at(place[int(instructions[n].argval)])
             holds = name.endswith(("IF_TRUE", "IF_NONE"))
             step.after = [other, following] if holds else [following, other]
-            behind = steps[n + 1]
+            behind = next(s for s in steps[n + 1 :] if s.op != "NOT_TAKEN")
             turned = behind.op == "JUMP_BACKWARD" and behind.span == step.span
             step.falls = int(holds != turned)  # a test may only leap over its own jump (3.12)
         elif step.op in ("AND", "OR", "FOR_ITER"):
             ending = ENDING if step.op == "FOR_ITER" else 0
-            step.ends = 2 * place[_target(instructions[n])] if step.op == "FOR_ITER" else 0
-            step.after = [following, at(place[_target(instructions[n])] + ending)]
+            step.ends = 2 * place[int(instructions[n].argval)] if step.op == "FOR_ITER" else 0
+            step.after = [following, at(place[int(instructions[n].argval)] + ending)]
         else:
             step.after = [following]
     for step in steps:
@@ -134,25 +134,29 @@ def entry(code: CodeType) -> CodeStep:
     return first
 
 
-def _target(instruction: dis.Instruction) -> int:
-    return int(instruction.argval)
-
-
 def _in_parts(step: CodeStep) -> None:
     """A step that does two things, as two."""
-    names, span, index = step.value, step.span, step.index + 1
-    second = None
+    parts = re.findall(r"(?:LOAD|STORE)_FAST", step.op)
     if step.op == "RETURN_CONST":
-        second, step.op = CodeStep("RETURN_VALUE", None, 0, span, index), "LOAD_CONST"
-    elif step.op in DOUBLE and isinstance(names, tuple):
-        second = CodeStep(DOUBLE[step.op][1], names[1], 0, span, index, step.after)
-        step.op, step.value = DOUBLE[step.op][0], names[0]
-    if second is not None:
-        step.after = [second]
+        step.op, second = "LOAD_CONST", CodeStep("RETURN_VALUE", None, 0, step.span, step.index + 1)
+    elif len(parts) == 2 and isinstance(step.value, tuple):
+        (step.op, op), (step.value, name) = parts, step.value
+        second = CodeStep(op, name, 0, step.span, step.index + 1, step.after)
+    else:
+        return
+    step.after = [second]
 
 
 def _keeping(step: CodeStep) -> None:
-    """``COPY``, a test and ``POP_TOP`` as one step that keeps its value where it jumps."""
+    """``COPY``, a test and ``POP_TOP`` as one step that keeps its value where it jumps.
+
+    From 3.14 on a call such as ``any(x for x in y)`` has a short way of its own where the name is
+    still the builtin's: it is left out.
+    """
+    path = _path(step, 4)
+    if [s.op for s in path] == ["COPY", "LOAD_COMMON_CONSTANT", "IS_OP", "TEST"]:
+        plain = path[3].after[1]
+        step.op, step.value, step.after = plain.op, plain.value, plain.after
     test = step.after[0] if step.op == "COPY" and step.value == 1 and step.after else step
     if test.op == "TEST" and test.value is True:
         falls, jumps = test.after[test.falls], test.after[1 - test.falls]
@@ -174,12 +178,14 @@ def _step(code: CodeType, n: int, instruction: dis.Instruction) -> CodeStep:
         value = None
     elif op == "KW_NAMES":
         value = code.co_consts[instruction.arg or 0]
-    elif op == "BINARY_OP":
-        value = instruction.arg
     elif op == "LOAD_ATTR" and bit:
         op = "LOAD_METHOD"
-    elif op in SAME:
-        op = SAME[op]
+    else:
+        if op == "BINARY_OP":
+            value = instruction.arg
+        if op == "CALL_FUNCTION_EX" and value is None:
+            value = 1  # 3.14: keywords, or an empty entry for them
+        op = SAME.get(op) or SAME.get((op, instruction.arg), op)
     p = instruction.positions
     span = None
     if p is not None and p.lineno is not None:
@@ -253,9 +259,7 @@ def folded(first: CodeStep) -> CodeStep:
 def unchain(first: CodeStep) -> None:
     """Make ``a < b < c`` one path: the way out in its middle only throws a value away."""
     for step in sorted(reachable([first]), key=lambda step: step.index):
-        path = [step]
-        while len(path) < 4 and len(path[-1].after) == 1:
-            path.append(path[-1].after[0])
+        path = _path(step, 4)
         if [s.op for s in path[:2]] != ["SWAP", "COPY"] or len(path) < 4:
             continue
         compare, branch = path[2:]
@@ -266,6 +270,14 @@ def unchain(first: CodeStep) -> None:
             continue
         step.op, step.value = "CHAIN", (compare.op, compare.value)
         step.span, step.after = compare.span, [branch.after[0]]
+
+
+def _path(step: CodeStep, most: int) -> list[CodeStep]:
+    """The steps that must follow one another, from one on."""
+    path = [step]
+    while len(path) < most and len(path[-1].after) == 1:
+        path.append(path[-1].after[0])
+    return path
 
 
 def constant(value: object) -> object:

@@ -7,17 +7,18 @@ import inspect
 from collections import Counter
 from types import CodeType
 
-from kinlab.doctor.bytecode.conditions import Decision, is_none, joined, negated, place, together
+from kinlab.doctor.bytecode.comprehensions import comprehension, gathers, only_value
+from kinlab.doctor.bytecode.conditions import Decision, joined, negated, place, together
 from kinlab.doctor.bytecode.expressions import (
+    ELEMENT,
     Changed,
     CodeHand,
-    Element,
     Imported,
     Iterated,
     Made,
     Module,
-    Saved,
     at,
+    is_none,
     span_of,
 )
 from kinlab.doctor.bytecode.instructions import (
@@ -34,6 +35,7 @@ from kinlab.doctor.bytecode.instructions import (
     unchain,
 )
 from kinlab.doctor.bytecode.steps import do
+from kinlab.doctor.bytecode.syntax import nodes
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
@@ -64,7 +66,7 @@ def definition(made: Made, name: str) -> ast.FunctionDef:
         made.notes.get("return"),
     )
     line = code.co_firstlineno
-    last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
+    last = max((span_of(n) or (line, line))[1] for n in nodes(tree))
     at(tree, (line, max(line, last), 0, 0))
     place(tree)
     return tree
@@ -113,17 +115,14 @@ class Reader:
         out: list[ast.stmt] = []
         while step is not None:
             if step in stops:
-                if stops[step] == "continue":
-                    out.append(ast.Continue())
-                elif stops[step] == "break":
-                    out.append(ast.Break())
+                if stops[step] != "on":
+                    out.append(ast.Continue() if stops[step] == "continue" else ast.Break())
                 break
-            if step in self.heads and step.op != "FOR_ITER":
-                behind = reachable(step.after, stops)
-                if step in behind:
-                    step = self.loop(step, stack, stops, out)
-                    continue
-            step = self.statement(step, stack, stops, out)
+            returned = step in self.heads and step.op != "FOR_ITER"
+            if returned and step in reachable(step.after, stops):
+                step = self.loop(step, stack, stops, out)
+            else:
+                step = self.statement(step, stack, stops, out)
         return out
 
     def statement(
@@ -134,7 +133,7 @@ class Reader:
         self.left -= 1
         if self.left < 0:
             raise UnreadError("read again and again")
-        hand = CodeHand(stack, [], out)
+        hand = CodeHand(stack, self.finish, out)
         start, lines = step, len(out)
         while True:
             if step.op in BRANCHES:
@@ -148,14 +147,14 @@ class Reader:
                 stack.append(decision.test)
                 step = decision.yes
                 continue
-            if step.op == "FOR_ITER" and _gathers(stack):
+            if step.op == "FOR_ITER" and gathers(stack):
                 step = self.gathered(step, stack)
                 continue
             if step.op == "FOR_ITER":
                 if len(stack) != base + 1:
                     raise UnreadError("a loop within an expression")
                 return self.turns(step, stack, stops, out)
-            do(step, hand, self.finish)
+            do(step, hand)
             if len(stack) <= base:
                 self.flush(hand)
                 _stamp(out[lines:], start)
@@ -167,61 +166,43 @@ class Reader:
     def flush(self, hand: CodeHand) -> None:
         """Make what was stored into statements."""
         stored, hand.stored = hand.stored, []
-        values: list[object] = []
-        for value, _ in stored:
-            if not any(value is known for known in values):
-                values.append(value)
-        if not values:
+        values = {id(value): value for value, _ in stored}
+        targets: dict[int, list[ast.expr]] = {}
+        for value, target in stored:
+            targets.setdefault(id(value), []).append(target)
+        if len(stored) == 1 and (line := self.bound(*stored[0])) is not None:
+            hand.out.append(line)
             return
-        targets = [[t for v, t in stored if v is value] for value in values]
-        value = values[0]
-        if len(values) == 1 and len(targets[0]) == 1 and not isinstance(value, ast.expr):
-            hand.out.extend(self.bound(value, targets[0][0]))
-            return
-        nodes: list[tuple[ast.expr, list[ast.expr]]] = []
-        for value, found in zip(values, targets, strict=True):
-            if isinstance(value, Made):
-                nodes.append((self.finish(value, None, None), found))
-            elif isinstance(value, ast.expr):
-                nodes.append((value, found))
-            else:
-                raise UnreadError("stored with others")
-        if len(nodes) == 1:
-            hand.out.append(ast.Assign(nodes[0][1], nodes[0][0]))
-            return
-        if any(len(found) > 1 for _, found in nodes):
-            raise UnreadError("several values, several times")
-        nodes.sort(key=lambda pair: _turn(pair[0]))
-        left = ast.Tuple([found[0] for _, found in nodes], ast.Store())
-        hand.out.append(ast.Assign([left], ast.Tuple([node for node, _ in nodes], ast.Load())))
+        pairs = [(hand.as_expr(value), targets[key]) for key, value in values.items()]
+        if len(pairs) == 1:
+            hand.out.append(ast.Assign(pairs[0][1], pairs[0][0]))
+        elif pairs:
+            if len(stored) > len(pairs):
+                raise UnreadError("several values, several times")
+            pairs.sort(key=lambda pair: _turn(pair[0]))
+            left = ast.Tuple([found[0] for _, found in pairs], ast.Store())
+            hand.out.append(ast.Assign([left], ast.Tuple([node for node, _ in pairs], ast.Load())))
 
-    def bound(self, value: object, target: ast.expr) -> list[ast.stmt]:
-        """A name given to what is no expression."""
+    def bound(self, value: object, target: ast.expr) -> ast.stmt | None:
+        """A name given to what is no expression; None where it is one, or becomes one."""
         if isinstance(value, Changed):
-            return [ast.AugAssign(_stored(value.target, target), value.op, value.by)]
-        if isinstance(value, Element):
-            return [ast.Assign([target], ast.Constant(None))]
-        if not isinstance(target, ast.Name):
-            if isinstance(value, Made):
-                return [ast.Assign([target], self.finish(value, None, None))]
-            raise UnreadError("no name")
-        if isinstance(value, Made):
-            if value.code.co_name == "<lambda>":
-                return [ast.Assign([target], self.finish(value, None, None))]
-            return [definition(value, target.id)]
-        if isinstance(value, Module):
-            top = value.name.partition(".")[0]
-            return [ast.Import([ast.alias(value.name, None if top == target.id else target.id)])]
-        if isinstance(value, Imported):
-            return [ast.Import([ast.alias(value.module.name, target.id)])]
-        raise UnreadError("not stored here")
+            return ast.AugAssign(_stored(value.target, target), value.op, value.by)
+        if value is ELEMENT:
+            return ast.Assign([target], ast.Constant(None))
+        name = target.id if isinstance(target, ast.Name) else ""
+        if isinstance(value, Made) and name and value.code.co_name != "<lambda>":
+            return definition(value, name)
+        if isinstance(value, (Module, Imported)) and name:
+            module = value if isinstance(value, Module) else value.module
+            plain = value is module and name == module.name.partition(".")[0]
+            return ast.Import([ast.alias(module.name, None if plain else name)])
+        return None
 
     # Conditions
 
     def branch(self, step: CodeStep, hand: CodeHand) -> Decision:
         """A conditional jump as a decision, its value taken from the stack."""
-        top = hand.pop()
-        test = self.finish(top, None, step.span) if isinstance(top, Made) else hand.as_expr(top)
+        test = hand.expr()
         if hand.stored or hand.keywords:
             raise UnreadError("stored before a branch")
         first, second = step.after
@@ -241,7 +222,7 @@ class Reader:
             return None
 
     def _decide(self, step: CodeStep, stack: list[object]) -> Decision | None:
-        hand = CodeHand(list(stack))
+        hand = CodeHand(list(stack), self.finish)
         height, fresh, start = len(stack), False, step
         while True:
             if step.op in BRANCHES:
@@ -252,14 +233,14 @@ class Reader:
                     step, fresh = decision.yes, True
                     continue
                 return None if inner else decision
-            whole = len(hand.stack) == height + 1 and step is not start
-            if whole and not fresh and self.into[step] > 1:
+            whole = len(hand.stack) == height + 1 and step is not start and not fresh
+            if whole and self.into[step] > 1:
                 test = hand.expr()
                 if hand.stored:
                     return None
                 return Decision(test, step, step, True, None, Counter([step]), None)
             fresh = False
-            if step.op == "FOR_ITER" and _gathers(hand.stack[height:]):
+            if step.op == "FOR_ITER" and gathers(hand.stack[height:]):
                 step = self.gathered(step, hand.stack)
                 continue
             if step.op in LAST or step.op == "FOR_ITER":
@@ -267,7 +248,7 @@ class Reader:
             size = step.value if isinstance(step.value, int) else 0
             if step.op in GROWING and size + 1 > len(hand.stack) - height:
                 return None
-            do(step, hand, self.finish)
+            do(step, hand)
             if (
                 len(hand.stack) <= height
                 or hand.out
@@ -288,11 +269,7 @@ class Reader:
             both = joined(one, two, falls, other)
             if both is None and self.into[other] == one.paths[other]:
                 three = self.decide(other, stack)
-                if three is not None and (two.yes, two.no, two.value) == (
-                    three.yes,
-                    three.no,
-                    three.value,
-                ):
+                if three is not None and two.leads == three.leads:
                     test = one.test if falls is one.yes else negated(one.test)
                     node = ast.IfExp(test, two.test, three.test)
                     paths = two.paths + three.paths
@@ -312,21 +289,17 @@ class Reader:
         test = decision.test if holds else negated(decision.test)
         follow = self.meeting(body_step, other, stops)
         inner = stops if follow is None else {**stops, follow: "on"}
-        node = ast.If(test, [], [])
-        out.append(node)
-        if follow is body_step:
-            node.body = [ast.Pass()]
-            node.orelse = self.region(other, list(stack), inner)
+        body = self.region(body_step, list(stack), inner) or [ast.Pass()]
+        if follow is body_step or follow not in (None, other):
+            out.append(ast.If(test, body, self.region(other, list(stack), inner)))
             return follow
-        node.body = self.region(body_step, list(stack), inner) or [ast.Pass()]
-        raised = node.body[0]
-        if follow in (None, other):
-            if len(node.body) == 1 and isinstance(raised, ast.Raise) and _asserts(raised.exc):
-                message = raised.exc.args[0] if isinstance(raised.exc, ast.Call) else None
-                out[-1] = ast.Assert(negated(test), message)
-            return other
-        node.orelse = self.region(other, list(stack), inner)
-        return follow
+        raised = body[0]
+        if len(body) == 1 and isinstance(raised, ast.Raise) and _asserts(raised.exc):
+            message = raised.exc.args[0] if isinstance(raised.exc, ast.Call) else None
+            out.append(ast.Assert(negated(test), message))
+        else:
+            out.append(ast.If(test, body, []))
+        return other
 
     def meeting(self, one: CodeStep, two: CodeStep, stops: Stops) -> CodeStep | None:
         """Where two paths meet again before the part of the function ends."""
@@ -351,11 +324,10 @@ class Reader:
         if decision is not None and not decision.value and decision.yes is not decision.no:
             turns = [head in reachable([s], stops) for s in (decision.yes, decision.no)]
             if turns[0] != turns[1]:
-                body, leave = decision.yes, decision.no
-                test = decision.test
+                body, leave, test = decision.yes, decision.no, decision.test
                 if turns[1]:
                     body, leave, test = leave, body, negated(test)
-                end, orelse = self.leaving(head, [body], leave, stack, stops)
+                end, orelse = self.leaving(head, body, leave, stack, stops)
                 inner: Stops = {head: "continue", end: "break"}
                 lines = _tail(self.region(body, list(stack), inner))
                 out.append(ast.While(test, lines, orelse))
@@ -363,15 +335,12 @@ class Reader:
         inside = leading(head, reachable(head.after, around), stops)
         ends = [a for s in inside for a in s.after if a not in inside]
         last = max(ends, key=lambda step: step.index, default=None)
-        inner = {head: "continue"}
-        if last is not None:
-            inner[last] = "break"
-        again = ast.While(ast.Constant(True), [], [])
-        out.append(again)
+        inner = {head: "continue"} if last is None else {head: "continue", last: "break"}
         self.heads.discard(head)
-        first = self.statement(head, (inside_stack := list(stack)), inner, again.body)
-        rest = self.region(first, inside_stack, inner)
-        again.body = _tail(again.body + rest)
+        lines, held = list[ast.stmt](), list(stack)
+        first = self.statement(head, held, inner, lines)
+        lines += self.region(first, held, inner)
+        out.append(ast.While(ast.Constant(True), _tail(lines), []))
         return last
 
     def turns(
@@ -383,31 +352,25 @@ class Reader:
         if not isinstance(over, ast.expr):
             raise UnreadError("a loop over no expression")
         body, leave = head.after
-        end, orelse = self.leaving(head, [body], leave, stack, stops)
-        inside: list[object] = [*stack, Iterated(over), Element()]
+        end, orelse = self.leaving(head, body, leave, stack, stops)
+        inside: list[object] = [*stack, Iterated(over), ELEMENT]
         first: list[ast.stmt] = []
         step = self.statement(body, inside, {}, first, base=len(inside) - 1)
         stored = first[0] if len(first) == 1 else None
         if not isinstance(stored, ast.Assign):
             raise UnreadError("a loop without a name")
         lines = _tail(self.region(step, inside, {head: "continue", end: "break"}))
-        node = ast.For(stored.targets[0], over, lines, orelse)
-        out.append(node)
+        out.append(ast.For(stored.targets[0], over, lines, orelse))
         return end
 
     def leaving(
-        self,
-        head: CodeStep,
-        body: list[CodeStep],
-        leave: CodeStep,
-        stack: list[object],
-        stops: Stops,
+        self, head: CodeStep, body: CodeStep, leave: CodeStep, stack: list[object], stops: Stops
     ) -> tuple[CodeStep, list[ast.stmt]]:
         """Where a loop's ``break`` leads, and the lines of its ``else``."""
         around = [*stops, head]
-        within = leading(head, reachable(body, around), stops)
+        within = leading(head, reachable([body], around), stops)
         broken = [a for s in within - {head} for a in s.after if a not in within]
-        broken += [s for s in body if s not in within]
+        broken += [] if body in within else [body]
         out = reachable(broken, around)
         last = max((step.index for step in within), default=head.index) + 1
         first = head.ends or (last if leave in stops else leave.index)
@@ -425,32 +388,19 @@ class Reader:
 
     def finish(self, made: Made, over: ast.expr | None, span: Span | None) -> ast.expr:
         """A lambda, or a comprehension, as an expression."""
-        code = made.code
-        if code.co_name == "<lambda>" and over is None:
-            body = Reader(code).region_value()
-            return at(ast.Lambda(_arguments(made), body), span)
+        reader = Reader(made.code)
+        if made.code.co_name == "<lambda>" and over is None:
+            return at(ast.Lambda(_arguments(made), only_value(reader.statements())), span)
+        if made.code.co_name == "__annotate__":
+            return only_value(reader.statements()[-1:])
         if over is None or made.defaults or made.keywords:
             raise UnreadError("a function without a name")
-        return at(Reader(code).comprehension(over), span)
-
-    def region_value(self) -> ast.expr:
-        """The value of a lambda."""
-        return _value(self.statements())
-
-    def comprehension(self, over: ast.expr) -> ast.expr:
-        """A comprehension, over what its first loop is given."""
-        first, stack = self.first, list[object]()
-        kind = first.op
-        makers: dict[str, ast.expr] = {
-            "BUILD_LIST": ast.List([], ast.Load()),
-            "BUILD_SET": ast.Set([]),
-        }
-        makers["BUILD_MAP"] = ast.Dict([], [])
-        if kind in makers:
-            stack.append(makers[kind])
+        first, stack = reader.first, list[object]()
+        if first.op in ("BUILD_LIST", "BUILD_SET", "BUILD_MAP"):  # what it fills, not yet given
+            do(first, CodeHand(stack, reader.finish))
             first = first.after[0]
-        made = stack[0] if stack else None
-        return _comprehension(self.region(first, stack, {}), made, over)
+        filled = stack[0] if stack else None
+        return at(comprehension(reader.region(first, stack, {}), filled, over), span)
 
     def gathered(self, head: CodeStep, stack: list[object]) -> CodeStep:
         """A comprehension within its function (3.12 on), left on the stack; the step after it."""
@@ -458,51 +408,8 @@ class Reader:
         behind = self.turns(head, stack, {}, lines)
         if behind is None or not isinstance(through, Iterated):
             raise UnreadError("no comprehension")
-        stack[-1] = at(_comprehension(lines, made, through.over), head.span)
+        stack[-1] = at(comprehension(lines, made, through.over), head.span)
         return behind
-
-
-def _gathers(stack: list[object]) -> bool:
-    """Whether a loop gathers its elements for a comprehension."""
-    return (
-        len(stack) > 2
-        and isinstance(stack[-2], (ast.List, ast.Set, ast.Dict))
-        and isinstance(stack[-3], Saved)
-    )
-
-
-def _comprehension(lines: list[ast.stmt], made: object, over: ast.expr) -> ast.expr:
-    """A comprehension from its loops, what they fill, and what the first is over."""
-    generators: list[ast.comprehension] = []
-    while lines and isinstance(loop := lines[0], ast.For):
-        source = loop.iter if generators else over
-        generators.append(ast.comprehension(loop.target, source, [], 0))
-        lines = loop.body
-        while isinstance(inner := lines[0], ast.If) and not inner.orelse and len(lines) == 1:
-            generators[-1].ifs.append(inner.test)
-            lines = inner.body
-    if not generators or len(lines) != 1:
-        raise UnreadError("no comprehension")
-    if isinstance(made, ast.Dict) and len(made.keys) == 1 and made.keys[0] is not None:
-        return ast.DictComp(made.keys[0], made.values[0], generators)
-    if isinstance(made, ast.List) and len(made.elts) == 1:
-        return ast.ListComp(made.elts[0], generators)
-    if isinstance(made, ast.Set) and len(made.elts) == 1:
-        return ast.SetComp(made.elts[0], generators)
-    given = lines[0].value if isinstance(lines[0], ast.Expr) else None
-    if made is None and isinstance(given, ast.Yield) and given.value is not None:
-        return ast.GeneratorExp(given.value, generators)
-    raise UnreadError("no comprehension")
-
-
-def _value(lines: list[ast.stmt]) -> ast.expr:
-    """Statements that only return, as one expression."""
-    line = lines[0] if lines else None
-    if isinstance(line, ast.Return) and line.value is not None:
-        return line.value
-    if isinstance(line, ast.If):
-        return ast.IfExp(line.test, _value(line.body), _value(line.orelse or lines[1:]))
-    raise UnreadError("a lambda that does more than return")
 
 
 def _tail(lines: list[ast.stmt]) -> list[ast.stmt]:
@@ -534,7 +441,7 @@ def _asserts(raised: ast.expr | None) -> bool:
 
 def _turn(node: ast.expr) -> int:
     """When an expression is done, among the others of its statement."""
-    return max(getattr(part, "turn", -1) for part in ast.walk(node))
+    return max(getattr(part, "turn", -1) for part in nodes(node))
 
 
 def _stamp(lines: list[ast.stmt], step: CodeStep) -> None:

@@ -20,6 +20,7 @@ from types import CodeType, FunctionType
 from kinlab.doctor.bytecode.expressions import Made
 from kinlab.doctor.bytecode.instructions import UnreadError, alike
 from kinlab.doctor.bytecode.reading import definition
+from kinlab.doctor.bytecode.syntax import nodes
 
 
 def recovered(function: FunctionType) -> ast.FunctionDef | None:
@@ -70,7 +71,7 @@ def _literals(values: tuple[object, ...]) -> list[ast.expr] | None:
 
 def _compiled(tree: ast.FunctionDef, code: CodeType) -> CodeType | None:
     """The tree's own byte code, in surroundings that have the variables it takes from outside."""
-    calls = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and hasattr(n, "of_import")]
+    calls = [n for n in nodes(tree) if isinstance(n, ast.Call) and hasattr(n, "of_import")]
     named = [n.func.value for n in calls if isinstance(n.func, ast.Attribute)]
     modules = sorted({n.id for n in named if isinstance(n, ast.Name)})
     body: list[ast.stmt] = [tree]

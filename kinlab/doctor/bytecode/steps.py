@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import ast
+import re
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import CodeType
 
 from kinlab.doctor.bytecode.expressions import (
-    BINARY,
-    COMPARE,
     NULL,
+    SAVED,
     SELF,
-    UNARY,
     Changed,
     CodeHand,
     Hole,
@@ -20,425 +19,318 @@ from kinlab.doctor.bytecode.expressions import (
     Iterated,
     Made,
     Module,
-    Raw,
-    Saved,
     Unpacked,
     at,
+    is_none,
+    limits,
     literal,
+    needed,
     span_of,
 )
-from kinlab.doctor.bytecode.instructions import CodeStep, Span, UnreadError
+from kinlab.doctor.bytecode.instructions import CodeStep, UnreadError
 
 NULL_ABOVE = sys.version_info >= (3, 13)
 """Whether the empty entry of a call lies above its function, not below."""
 
-Finish = Callable[[Made, "ast.expr | None", "Span | None"], ast.expr]
-"""A function just made as an expression: a lambda, or a comprehension over what is given."""
+_OPERATORS = "Add BitAnd FloorDiv LShift MatMult Mult Mod BitOr Pow RShift Sub Div BitXor"
+BINARY: list[type[ast.operator]] = [getattr(ast, name) for name in re.findall(r"\w+", _OPERATORS)]
+"""In the order of BINARY_OP's argument; behind them stand the augmented ones, then ``[]``."""
+
+CONTEXTS = {"LOAD": ast.Load, "BINARY": ast.Load, "STORE": ast.Store, "DELETE": ast.Del}
+"""What is done with a variable or a part, by the first word of a step's name."""
+
+COMPARE: dict[object, type[ast.cmpop]] = {
+    "<": ast.Lt,
+    "<=": ast.LtE,
+    "==": ast.Eq,
+    "!=": ast.NotEq,
+    ">": ast.Gt,
+    ">=": ast.GtE,
+    ("IS_OP", 0): ast.Is,
+    ("IS_OP", 1): ast.IsNot,
+    ("CONTAINS_OP", 0): ast.In,
+    ("CONTAINS_OP", 1): ast.NotIn,
+}
+
+TAKING: dict[str, tuple[int | None, Callable[[list[ast.expr]], ast.expr]]] = {
+    "UNARY_NEGATIVE": (1, lambda e: ast.UnaryOp(ast.USub(), *e)),
+    "UNARY_POSITIVE": (1, lambda e: ast.UnaryOp(ast.UAdd(), *e)),
+    "UNARY_INVERT": (1, lambda e: ast.UnaryOp(ast.Invert(), *e)),
+    "UNARY_NOT": (1, lambda e: ast.UnaryOp(ast.Not(), *e)),
+    "YIELD_VALUE": (1, lambda e: ast.Yield(*e)),
+    "LIST_TO_TUPLE": (1, lambda e: ast.Tuple(needed(e[0], ast.List).elts, ast.Load())),
+    "BUILD_SLICE": (None, lambda e: limits(*e)),
+    "BUILD_TUPLE": (None, lambda e: ast.Tuple(e, ast.Load())),
+    "BUILD_LIST": (None, lambda e: ast.List(e, ast.Load())),
+    "BUILD_SET": (None, ast.Set),
+    "BUILD_STRING": (None, lambda e: _joined(e)),
+}
+"""Steps that take values and give one: how many (None: as the step says), and which."""
+
+CONVERSIONS: dict[object, int] = {None: -1, str: ord("s"), repr: ord("r"), ascii: ord("a")}
+"""The letters of ``!s``, ``!r`` and ``!a`` in an f-string, by their functions."""
 
 
-def do(step: CodeStep, hand: CodeHand, finish: Finish) -> None:
+def do(step: CodeStep, hand: CodeHand) -> None:
     """One step that does not jump.
 
     Raises:
         UnreadError: The step is not known, or the stack is not as it needs.
     """
-    op, span, stack = step.op, step.span, hand.stack
-    value = step.value
+    op, span, stack, value = step.op, step.span, hand.stack, step.value
     number = value if isinstance(value, int) else 0
-    name = value if isinstance(value, str) else ""
-
-    def push(node: ast.expr) -> None:
-        setattr(node, "turn", step.index)  # noqa: B010
-        stack.append(at(node, span))
-
-    def pop() -> ast.expr:
-        top = hand.pop()
-        if isinstance(top, Made):
-            return finish(top, None, span)
-        return hand.as_expr(top)
-
-    def many(count: int) -> list[ast.expr]:
-        return [pop() for _ in range(count)][::-1]
-
-    def under(depth: int) -> object:
-        if not 1 <= depth <= len(stack):
-            raise UnreadError("an empty stack")
-        return stack[-depth]
-
+    if op in TAKING:
+        count, make = TAKING[op]
+        hand.push(make(hand.many(number if count is None else count)), step)
+        return
+    verb, _, kind = op.partition("_")
+    if verb in CONTEXTS and (part := _part(kind, CONTEXTS[verb](), step, hand)) is not None:
+        _used(verb, part, step, hand)
+        return
     match op:
-        case "LOAD_FAST" | "LOAD_GLOBAL" | "LOAD_DEREF" | "LOAD_NAME":
-            if step.bit and not NULL_ABOVE:
-                stack.append(NULL)
-            push(ast.Name(name, ast.Load()))
-            if step.bit and NULL_ABOVE:
-                stack.append(NULL)
         case "LOAD_FAST_AND_CLEAR":
-            stack.append(Saved())
-        case "LOAD_CLOSURE":
-            push(ast.Name(name, ast.Load()))
+            stack.append(SAVED)
+        case "LOAD_CONST" if isinstance(value, CodeType):
+            stack.append(value)
         case "LOAD_CONST":
-            if isinstance(value, CodeType):
-                stack.append(Raw(value))
-            else:
-                push(literal(value, span))
+            hand.push(literal(value, span), step)
         case "PUSH_NULL":
             stack.append(NULL)
-        case "LOAD_ASSERTION_ERROR":
-            push(ast.Name("AssertionError", ast.Load()))
+        case "LOAD_ASSERTION_ERROR" | "LOAD_COMMON_CONSTANT" if number < 2:
+            hand.push(ast.Name(("AssertionError", "NotImplementedError")[number], ast.Load()), step)
             setattr(stack[-1], "asserted", True)  # noqa: B010
         case "POP_TOP":
-            _pop_top(hand, pop, span)
+            _pop_top(step, hand)
         case "COPY":
-            stack.append(under(number))
+            stack.append(hand.under(number))
         case "SWAP":
-            under(number)
+            hand.under(number)
             stack[-1], stack[-number] = stack[-number], stack[-1]
-        case _ if op in UNARY:
-            push(ast.UnaryOp(UNARY[op](), pop()))
         case "BINARY_OP":
-            right, left = pop(), pop()
+            left, right = hand.many(2)
             if number < len(BINARY):
-                push(ast.BinOp(left, BINARY[number](), right))
-            elif number < 2 * len(BINARY):
+                hand.push(ast.BinOp(left, BINARY[number](), right), step)
+            else:
                 stack.append(Changed(left, BINARY[number - len(BINARY)](), right))
-            else:  # 3.14
-                push(ast.Subscript(left, right, ast.Load()))
-        case "BINARY_SUBSCR":
-            index, whole = pop(), pop()
-            push(ast.Subscript(whole, index, ast.Load()))
-        case "BINARY_SLICE":
-            parts = [None if _none(part) else part for part in many(2)]
-            push(ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Load()))
-        case "STORE_SLICE":
-            parts = [None if _none(part) else part for part in many(2)]
-            whole = ast.Subscript(pop(), at(ast.Slice(*parts), span), ast.Store())
-            hand.store(hand.pop(), at(whole, span))
         case "COMPARE_OP" | "IS_OP" | "CONTAINS_OP" | "CHAIN":
-            _compare(step, hand, pop)
-        case "LOAD_ATTR":
-            push(ast.Attribute(pop(), name, ast.Load()))
-        case "LOAD_METHOD":
-            push(ast.Attribute(pop(), name, ast.Load()))
-            stack.append(SELF)
-        case "BUILD_SLICE":
-            parts = [None if _none(part) else part for part in many(number)]
-            push(ast.Slice(*parts))
-        case "BUILD_TUPLE":
-            push(ast.Tuple(many(number), ast.Load()))
-        case "BUILD_LIST":
-            push(ast.List(many(number), ast.Load()))
-        case "BUILD_SET":
-            push(ast.Set(many(number)))
+            _compare(step, hand)
         case "BUILD_MAP":
-            pairs = many(2 * number)
-            push(ast.Dict(list(pairs[::2]), pairs[1::2]))
+            pairs = hand.many(2 * number)
+            hand.push(ast.Dict(list(pairs[::2]), pairs[1::2]), step)
         case "BUILD_CONST_KEY_MAP":
-            keys = pop()
-            if not isinstance(keys, ast.Tuple):
-                raise UnreadError("keys that are no tuple")
-            push(ast.Dict(list(keys.elts), many(number)))
-        case "LIST_EXTEND" | "SET_UPDATE":
-            more = pop()
-            into = under(number)
+            keys = needed(hand.expr(), ast.Tuple)
+            hand.push(ast.Dict(list(keys.elts), hand.many(number)), step)
+        case "LIST_EXTEND" | "SET_UPDATE" | "LIST_APPEND" | "SET_ADD":
+            more = hand.expr()
+            into = hand.under(number)
             if not isinstance(into, (ast.List, ast.Set)):
                 raise UnreadError("not extended here")
-            if isinstance(more, (ast.Tuple, ast.Set)) and not into.elts and len(more.elts) > 2:
+            if op in ("LIST_APPEND", "SET_ADD"):
+                into.elts.append(more)
+            elif isinstance(more, (ast.Tuple, ast.Set)) and not into.elts and len(more.elts) > 2:
                 into.elts.extend(more.elts)
             else:
                 into.elts.append(at(ast.Starred(more, ast.Load()), span))
-        case "LIST_APPEND" | "SET_ADD":
-            element = pop()
-            into = under(number)
-            if not isinstance(into, (ast.List, ast.Set)):
-                raise UnreadError("not appended here")
-            into.elts.append(element)
-        case "MAP_ADD":
-            element, key = pop(), pop()
-            _dict(under(number)).keys.append(key)
-            _dict(under(number)).values.append(element)
-        case "DICT_UPDATE" | "DICT_MERGE":
-            more = pop()
-            into = _dict(under(number))
-            if op == "DICT_UPDATE" and isinstance(more, ast.Dict) and None not in more.keys:
-                into.keys.extend(more.keys)  # a long literal, made piece by piece
-                into.values.extend(more.values)
+        case "MAP_ADD" | "DICT_UPDATE" | "DICT_MERGE":
+            element = hand.expr()
+            key = hand.expr() if op == "MAP_ADD" else None
+            mapping = needed(hand.under(number), ast.Dict)
+            if op == "DICT_UPDATE" and isinstance(element, ast.Dict) and None not in element.keys:
+                mapping.keys.extend(element.keys)  # a long literal, made piece by piece
+                mapping.values.extend(element.values)
             else:
-                into.keys.append(None)
-                into.values.append(more)
-        case "LIST_TO_TUPLE":
-            push(ast.Tuple(_list(pop()).elts, ast.Load()))
-        case "CALL_INTRINSIC_1" if number == 5:
-            push(ast.UnaryOp(ast.UAdd(), pop()))
-        case "CALL_INTRINSIC_1" if number == 6:
-            push(ast.Tuple(_list(pop()).elts, ast.Load()))
-        case "FORMAT_VALUE":
-            flags = step.value
-            if not isinstance(flags, tuple):
-                raise UnreadError("FORMAT_VALUE")
-            spec = _joined([pop()], span) if flags[1] else None
-            conversion = _conversion(flags[0])
-            push(ast.JoinedStr([at(ast.FormattedValue(pop(), conversion, spec), span)]))
+                mapping.keys.append(key)
+                mapping.values.append(element)
         case "CONVERT_VALUE":
-            push(ast.FormattedValue(pop(), _conversion(value), None))
-        case "FORMAT_SIMPLE" | "FORMAT_WITH_SPEC":
-            spec = _joined([pop()], span) if op == "FORMAT_WITH_SPEC" else None
-            part = pop()
-            if not isinstance(part, ast.FormattedValue):
-                part = at(ast.FormattedValue(part, -1, None), span)
-            part.format_spec = spec
-            push(ast.JoinedStr([part]))
-        case "BUILD_STRING":
-            stack.append(_joined(many(number), span))
+            hand.push(ast.FormattedValue(hand.expr(), CONVERSIONS[value], None), step)
+        case "FORMAT_VALUE" | "FORMAT_SIMPLE" | "FORMAT_WITH_SPEC":
+            by, given_so = value if isinstance(value, tuple) else (None, op.endswith("SPEC"))
+            spec = at(_joined([hand.expr()]), span) if given_so else None
+            shown = hand.expr()
+            if not isinstance(shown, ast.FormattedValue):
+                shown = at(ast.FormattedValue(shown, CONVERSIONS[by], None), span)
+            shown.format_spec = spec
+            hand.push(ast.JoinedStr([shown]), step)
         case "KW_NAMES":
-            if not isinstance(value, tuple):
-                raise UnreadError("KW_NAMES")
-            hand.keywords = value
+            hand.keywords = needed(value, tuple)
         case "CALL_KW":
-            hand.keywords = _names(hand.pop())
-            _call(hand, number, pop, many, finish, span)
-        case "SET_FUNCTION_ATTRIBUTE":
-            function = hand.pop()
-            if not isinstance(function, Made):
-                raise UnreadError("no function")
-            _attribute(function, number, pop)
-            stack.append(function)
+            named = needed(hand.pop(), ast.Tuple).elts
+            hand.keywords = tuple(str(e.value) for e in named if isinstance(e, ast.Constant))
+            _call(step, hand, number)
         case "CALL":
-            _call(hand, number, pop, many, finish, span)
+            _call(step, hand, number)
         case "CALL_FUNCTION_EX":
-            _call_stars(hand, number & 1, pop, span)
+            if hand.under(1) is NULL:  # 3.14: an empty entry where no keywords are
+                hand.pop()
+                number = 0
+            _call_stars(step, hand, number & 1)
         case "MAKE_FUNCTION":
-            stack.append(_made(hand, number, pop))
+            function = Made(needed(hand.pop(), CodeType))
+            for flag in (8, 4, 2, 1):
+                _attribute(function, number & flag, hand)
+            stack.append(function)
+        case "SET_FUNCTION_ATTRIBUTE":
+            function = needed(hand.pop(), Made)
+            _attribute(function, number, hand)
+            stack.append(function)
         case "GET_ITER":
-            stack.append(Iterated(pop()))
-        case "YIELD_VALUE":
-            push(ast.Yield(pop()))
+            stack.append(Iterated(hand.expr()))
         case "UNPACK_SEQUENCE" | "UNPACK_EX":
-            star = None
-            if op == "UNPACK_EX":
-                star = number & 0xFF
-                number = star + 1 + (number >> 8)
-            parted = Unpacked(hand.pop(), [None] * number, star)
-            stack.extend(Hole(parted, n) for n in reversed(range(number)))
-        case "STORE_FAST" | "STORE_GLOBAL" | "STORE_DEREF" | "STORE_NAME":
-            hand.store(hand.pop(), at(ast.Name(name, ast.Store()), span))
-        case "STORE_ATTR":
-            target = at(ast.Attribute(pop(), name, ast.Store()), span)
-            hand.store(hand.pop(), target)
-        case "STORE_SUBSCR":
-            index, whole_ = pop(), pop()
-            hand.store(hand.pop(), at(ast.Subscript(whole_, index, ast.Store()), span))
-        case "DELETE_FAST" | "DELETE_GLOBAL" | "DELETE_DEREF" | "DELETE_NAME":
-            hand.out.append(ast.Delete([at(ast.Name(name, ast.Del()), span)]))
-        case "DELETE_SUBSCR":
-            index, whole_ = pop(), pop()
-            hand.out.append(ast.Delete([at(ast.Subscript(whole_, index, ast.Del()), span)]))
-        case "DELETE_ATTR":
-            hand.out.append(ast.Delete([at(ast.Attribute(pop(), name, ast.Del()), span)]))
+            star = number & 0xFF if op == "UNPACK_EX" else None
+            parts = number if star is None else star + 1 + (number >> 8)
+            parted = Unpacked(hand.pop(), [None] * parts, star)
+            stack.extend(Hole(parted, n) for n in reversed(range(parts)))
         case "RETURN_VALUE":
-            given = pop()
-            alone = _none(given) and span_of(given) == span
-            hand.out.append(at(ast.Return(None if alone else given), span))
+            told = hand.expr()
+            alone = is_none(told) and span_of(told) == span
+            hand.out.append(at(ast.Return(None if alone else told), span))
         case "RAISE_VARARGS":
-            parts_ = many(number)
-            hand.out.append(at(ast.Raise(*parts_), span))
+            hand.out.append(at(ast.Raise(*hand.many(number)), span))
         case "IMPORT_NAME":
-            names, level = pop(), pop()
-            if not isinstance(level, ast.Constant) or not isinstance(level.value, int):
-                raise UnreadError("an import from no level")
-            stack.append(Module(name, level.value, not _none(names)))
+            level, names = hand.many(2)
+            depth = needed(needed(level, ast.Constant).value, int)
+            stack.append(Module(str(value), depth, not is_none(names)))
         case "IMPORT_FROM":
-            module = under(1)
-            if isinstance(module, Imported):
-                module = module.module
-            if not isinstance(module, Module):
-                raise UnreadError("not from a module")
-            stack.append(Imported(module, name))
+            top = hand.under(1)
+            module = top.module if isinstance(top, Imported) else needed(top, Module)
+            stack.append(Imported(module, str(value)))
         case _:
             raise UnreadError(op)
 
 
-def _none(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and node.value is None
+def _part(kind: str, use: ast.expr_context, step: CodeStep, hand: CodeHand) -> ast.expr | None:
+    """A variable, an attribute, an element or a slice; None where a step is about none of them."""
+    match kind:
+        case "FAST" | "GLOBAL" | "DEREF" | "NAME" | "CLOSURE":
+            return ast.Name(str(step.value), use)
+        case "ATTR" | "METHOD":
+            return ast.Attribute(hand.expr(), str(step.value), use)
+        case "SUBSCR":
+            whole, index = hand.many(2)
+            return ast.Subscript(whole, index, use)
+        case "SLICE":
+            whole, *ends = hand.many(3)
+            return ast.Subscript(whole, at(limits(*ends), step.span), use)
+    return None
 
 
-def _conversion(by: object) -> int:
-    """The letter of ``!s``, ``!r`` or ``!a`` in an f-string, by its function; -1 for none."""
-    for function, letter in ((None, -1), (str, ord("s")), (repr, ord("r")), (ascii, ord("a"))):
-        if by is function:
-            return letter
-    raise UnreadError("a conversion")
+def _used(verb: str, part: ast.expr, step: CodeStep, hand: CodeHand) -> None:
+    """A variable or a part loaded, stored or deleted."""
+    if verb == "STORE":
+        hand.store(hand.pop(), at(part, step.span))
+    elif verb == "DELETE":
+        hand.out.append(ast.Delete([at(part, step.span)]))
+    else:
+        above = SELF if step.op == "LOAD_METHOD" else NULL if step.bit else None
+        hand.push(part, step)
+        if above is not None:
+            below = above is NULL and not NULL_ABOVE
+            hand.stack.insert(len(hand.stack) - below, above)
 
 
-def _dict(node: object) -> ast.Dict:
-    if not isinstance(node, ast.Dict):
-        raise UnreadError("no dict")
-    return node
-
-
-def _list(node: object) -> ast.List:
-    if not isinstance(node, ast.List):
-        raise UnreadError("no list")
-    return node
-
-
-def _joined(parts: list[ast.expr], span: Span | None) -> ast.JoinedStr:
+def _joined(parts: Sequence[ast.expr]) -> ast.JoinedStr:
     values: list[ast.expr] = []
     for part in parts:
         values.extend(part.values if isinstance(part, ast.JoinedStr) else [part])
-    return at(ast.JoinedStr(values), span)
+    return ast.JoinedStr(values)
 
 
-def _pop_top(hand: CodeHand, pop: Callable[[], ast.expr], span: Span | None) -> None:
-    top = hand.stack[-1] if hand.stack else None
-    if isinstance(top, Module):
+def _pop_top(step: CodeStep, hand: CodeHand) -> None:
+    top = hand.under(1)
+    if isinstance(top, (Iterated, Imported, Module)):
         hand.pop()
-        if top.aliases:
-            hand.out.append(at(ast.ImportFrom(top.name or None, top.aliases, top.level), span))
-    elif isinstance(top, (Iterated, Imported)):
-        hand.pop()
+        if isinstance(top, Module) and top.aliases:
+            line = ast.ImportFrom(top.name or None, top.aliases, top.level)
+            hand.out.append(at(line, step.span))
     else:
-        node = pop()
+        node = hand.expr()
         if isinstance(node, ast.NamedExpr):
             raise UnreadError("a value stored and left")
-        hand.out.append(at(ast.Expr(node), None))
+        hand.out.append(ast.Expr(node))
 
 
-def _compare(step: CodeStep, hand: CodeHand, pop: Callable[[], ast.expr]) -> None:
-    right, left = pop(), pop()
-    kind, value = step.op, step.value
-    if kind == "CHAIN":
-        if not isinstance(value, tuple):
-            raise UnreadError("CHAIN")
-        kind, value = value
-    if kind == "COMPARE_OP":
-        if str(value) not in COMPARE:
-            raise UnreadError(f"a comparison by {value}")
-        op: ast.cmpop = COMPARE[str(value)]()
-    elif kind == "IS_OP":
-        op = ast.IsNot() if value else ast.Is()
-    else:
-        op = ast.NotIn() if value else ast.In()
-    node = ast.Compare(left, [op], [right])
+def _compare(step: CodeStep, hand: CodeHand) -> None:
+    left, right = hand.many(2)
+    chained = step.op == "CHAIN"
+    kind, value = needed(step.value, tuple) if chained else (step.op, step.value)
+    op = COMPARE.get(value if kind == "COMPARE_OP" else (kind, value))
+    if op is None:
+        raise UnreadError(f"a comparison by {value}")
+    node = ast.Compare(left, [op()], [right])
     if isinstance(left, ast.Compare) and getattr(left, "open", False):
-        node = ast.Compare(left.left, [*left.ops, op], [*left.comparators, right])
-    if step.op == "CHAIN":
-        setattr(node, "open", True)  # noqa: B010
+        node = ast.Compare(left.left, [*left.ops, op()], [*left.comparators, right])
+    setattr(node, "open", chained)  # noqa: B010
     hand.stack.append(at(node, step.span))
 
 
-def _call(
-    hand: CodeHand,
-    count: int,
-    pop: Callable[[], ast.expr],
-    many: Callable[[int], list[ast.expr]],
-    finish: Finish,
-    span: Span | None,
-) -> None:
-    arguments = many(count)
+def _call(step: CodeStep, hand: CodeHand, count: int) -> None:
+    arguments = hand.many(count)
     names, hand.keywords = hand.keywords, ()
     positional = len(arguments) - len(names)
-    keywords = [
-        at(ast.keyword(name, node), span)
-        for name, node in zip(names, arguments[positional:], strict=True)
-    ]
+    given = zip(names, arguments[positional:], strict=True)
+    keywords = [at(ast.keyword(name, node), step.span) for name, node in given]
     arguments = arguments[:positional]
     upper, lower = hand.pop(), hand.pop()
     if upper is SELF:
         function = hand.as_expr(lower)
     elif lower is NULL or upper is NULL:
-        upper, lower = (lower, upper) if upper is NULL else (upper, lower)
-        function = finish(upper, None, span) if isinstance(upper, Made) else hand.as_expr(upper)
+        function = hand.as_expr(lower if upper is NULL else upper)
     elif isinstance(lower, Made) and isinstance(upper, Iterated):
-        hand.stack.append(finish(lower, upper.over, span))
+        hand.stack.append(hand.finish(lower, upper.over, step.span))
         return
     elif getattr(lower, "asserted", False) and not count:
-        node = ast.Call(hand.as_expr(lower), [hand.as_expr(upper)], [])
-        hand.stack.append(at(node, span))
-        return
+        function, arguments = hand.as_expr(lower), [hand.as_expr(upper)]
     elif isinstance(upper, Made) and not upper.code.co_name.startswith("<"):
         upper.decorators.insert(0, hand.as_expr(lower))
         hand.stack.append(upper)
         return
     else:
         raise UnreadError("a call of nothing known")
-    node = at(ast.Call(function, arguments, keywords), span)
-    if lower is NULL and isinstance(function, ast.Attribute):
+    node = at(ast.Call(function, arguments, keywords), step.span)
+    if isinstance(function, ast.Attribute) and NULL in (lower, upper):
         setattr(node, "of_import", True)  # noqa: B010
     hand.stack.append(node)
 
 
-def _call_stars(hand: CodeHand, named: int, pop: Callable[[], ast.expr], span: Span | None) -> None:
-    keywords: list[ast.keyword] = []
+def _call_stars(step: CodeStep, hand: CodeHand, named: int) -> None:
+    pairs: list[tuple[ast.expr | None, ast.expr]] = []
     if named:
-        given = pop()
+        given = hand.expr()
+        pairs = [(None, given)]
         if isinstance(given, ast.Dict) and given.keys:
-            for key, node in zip(given.keys, given.values, strict=True):
-                if key is not None and not isinstance(key, ast.Constant):
-                    raise UnreadError("a keyword that is no name")
-                arg = None if key is None else str(key.value)
-                keywords.append(at(ast.keyword(arg, node), span))
-        else:
-            keywords.append(at(ast.keyword(None, given), span))
-    stars = pop()
-    if isinstance(stars, ast.Tuple) and (named or len(stars.elts) > 15 or _starred(stars)):
-        arguments = stars.elts
-    else:
-        arguments = [at(ast.Starred(stars, ast.Load()), span)]
+            pairs = [*zip(given.keys, given.values, strict=True)]
+    keywords: list[ast.keyword] = []
+    for key, node in pairs:
+        name = None if key is None else str(needed(key, ast.Constant).value)
+        keywords.append(at(ast.keyword(name, node), step.span))
+    stars = hand.expr()
+    arguments: list[ast.expr] = [at(ast.Starred(stars, ast.Load()), step.span)]
+    if isinstance(stars, ast.Tuple):
+        starred = any(isinstance(element, ast.Starred) for element in stars.elts)
+        if named or len(stars.elts) > 15 or starred:
+            arguments = stars.elts
     pair = [hand.pop(), hand.pop()]
     if NULL not in pair:
         raise UnreadError("a call of nothing known")
     pair.remove(NULL)
-    function = hand.as_expr(pair[0])
-    hand.stack.append(at(ast.Call(function, arguments, keywords), span))
+    hand.stack.append(at(ast.Call(hand.as_expr(pair[0]), arguments, keywords), step.span))
 
 
-def _starred(node: ast.Tuple) -> bool:
-    return any(isinstance(element, ast.Starred) for element in node.elts)
-
-
-def _made(hand: CodeHand, flags: int, pop: Callable[[], ast.expr]) -> Made:
-    code = hand.pop()
-    if not isinstance(code, Raw) or not isinstance(code.value, CodeType):
-        raise UnreadError("a function without code")
-    made = Made(code.value, [], {}, {})
-    for flag in (8, 4, 2, 1):
-        _attribute(made, flags & flag, pop)
-    return made
-
-
-def _attribute(made: Made, flags: int, pop: Callable[[], ast.expr]) -> None:
+def _attribute(made: Made, flags: int, hand: CodeHand) -> None:
     """What a function is made with: closure, annotations, defaults."""
     if flags & 8:
-        pop()
+        hand.pop()
     if flags & 4:
-        notes = pop()
-        if not isinstance(notes, ast.Tuple):
-            raise UnreadError("annotations")
-        made.notes = _named(notes.elts[::2], notes.elts[1::2])
-    if flags & 2:
-        given = _dict(pop())
-        made.keywords = _named(given.keys, given.values)
+        notes = needed(hand.expr(), ast.Tuple).elts
+        made.notes = _named(notes[::2], notes[1::2])
+    if flags & (2 | 16):  # 16 from 3.14 on: the annotations, given by a function
+        given = needed(hand.expr(), ast.Dict)
+        named = _named(given.keys, given.values)
+        made.keywords, made.notes = (named, made.notes) if flags & 2 else (made.keywords, named)
     if flags & 1:
-        defaults = pop()
-        if not isinstance(defaults, ast.Tuple):
-            raise UnreadError("defaults")
-        made.defaults = defaults.elts
+        made.defaults = needed(hand.expr(), ast.Tuple).elts
 
 
-def _names(node: object) -> tuple[str, ...]:
-    """The names of keywords, a tuple of strings."""
-    if not isinstance(node, ast.Tuple):
-        raise UnreadError("names that are no tuple")
-    return tuple(str(e.value) for e in node.elts if isinstance(e, ast.Constant))
-
-
-def _named(
-    keys: list[ast.expr | None] | list[ast.expr], values: list[ast.expr]
-) -> dict[str, ast.expr]:
-    if len(keys) != len(values):
-        raise UnreadError("names without values")
-    return {
-        str(key.value): value
-        for key, value in zip(keys, values, strict=True)
-        if isinstance(key, ast.Constant)
-    }
+def _named(keys: Sequence[ast.expr | None], values: list[ast.expr]) -> dict[str, ast.expr]:
+    pairs = zip(keys, values, strict=False)
+    return {str(needed(key, ast.Constant).value): value for key, value in pairs}

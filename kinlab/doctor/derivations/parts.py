@@ -32,7 +32,7 @@ _TRIED = 4
 """Steps that are joined with others for one kind of term."""
 
 REST = ""
-_TERMS = {
+MOVING = {
     "v": N_("the terms in the velocities"),
     "a": N_("the terms in the accelerations"),
     "tau": N_("the terms in tau"),
@@ -99,7 +99,7 @@ def _added(values: Array) -> Array:
 
 def apart(case: Case) -> Apart | None:
     """The case's formula by kind of term; None where it is no such sum, or cannot be asked."""
-    moving = [name for name in case.arguments if name in _TERMS]
+    moving = [name for name in case.arguments if name in MOVING]
     if case.again is None or "q" not in case.arguments or not moving:
         return None
     few = case.few(_STATES).arguments
@@ -167,7 +167,7 @@ def proved(case: Case, engine: Array, found: Apart | None) -> tuple[str, ...]:
     said = []
     if found is not None and found.right.any() and found.wrong.any():
         at_rest = _(_AT_REST.get(case.quantity.name, _GRAVITY))
-        words = [_(_TERMS[name]) if name else at_rest for name in found.names]
+        words = [_(MOVING[name]) if name else at_rest for name in found.names]
         good = [word for word, right in zip(words, found.right, strict=True) if right]
         bad = [word for word, wrong in zip(words, found.wrong, strict=True) if wrong]
         told = _("{good}: right; {bad}: wrong")

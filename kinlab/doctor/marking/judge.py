@@ -11,6 +11,7 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas
@@ -27,7 +28,6 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.program.words import WrongLines
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
@@ -81,6 +81,10 @@ def of_values(
     case = replace(case, lines=lines)
     found = examine(case, values, engine, question.quantity, question.id, {})
     outcome = _of_diagnoses(question, [found], None, robot)
+    if values.shape != engine.shape:
+        said = _("the answer has the shape {has}, asked is {asked}")
+        shapes = {"has": values.shape[1:], "asked": engine.shape[1:]}
+        outcome = replace(outcome, remark=said.format(**shapes))
     return _told(outcome, level, _secrets(sheet, question))
 
 

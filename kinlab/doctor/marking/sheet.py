@@ -31,10 +31,10 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.registry import split_name
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name

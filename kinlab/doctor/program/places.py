@@ -25,6 +25,8 @@ class ProgramEdit:
         node: what is changed: an expression or a statement; of data its name.
         place: the keys down to a number of the data.
         numbers: that number, and what it should be.
+        exchanged: of an exchange in the data, what stands there and what should; of whole rows
+            and columns, which two.
     """
 
     part: int
@@ -34,6 +36,7 @@ class ProgramEdit:
     node: Any
     place: tuple[Any, ...] = ()
     numbers: tuple[float, float] | None = None
+    exchanged: tuple[str, str] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,3 +81,13 @@ def called(node: ast.Call) -> str:
 def number(value: Any) -> ast.expr:
     """A number as it is written."""
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
+
+
+def row_of(edit: ProgramEdit) -> int:
+    """The line in which the piece stands, of a sum of several lines: its operator's."""
+    node = edit.node
+    if isinstance(node, ast.BinOp):
+        change = edit.changes[0]
+        if change.field == "op" or change.new is node.left:
+            return int(node.right.lineno)
+    return int(node.lineno)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
+from kinlab.doctor.bytecode.syntax import nodes
 
 _Cache = type(functools.lru_cache(len))
 _HEAP = 1 << 9
@@ -131,6 +132,7 @@ class _Reader:
         self.space = dict(function.__globals__)
         self.parts: dict[tuple[type | None, str], OwnFunction] = {}
         self.data: list[str] = []
+        self.owners: dict[type, None] = {}
         self.waiting: list[tuple[type | None, str, FunctionType]] = []
 
     def program(self, bound: tuple[Any, ...]) -> OwnProgram | None:
@@ -169,16 +171,14 @@ class _Reader:
                 self._wait(None, label, value)
             elif _numeric(value) and label not in self.data:
                 self.data.append(label)
-            owner = value if isinstance(value, type) else type(value)
-            if written(owner, self.function.__module__):
-                self.data += [label] if label not in self.data else []
-                for name, method in vars(owner).items():
-                    if isinstance(method, FunctionType) and (name in used or name == "__call__"):
-                        self._wait(owner, name, method)
-        for owner in {part.owner for part in self.parts.values() if part.owner}:
-            for name in used:
-                method = vars(owner).get(name)
-                if isinstance(method, FunctionType):
+            found = dict.fromkeys(_owners(value, self.function.__module__))
+            if found and label not in self.data:
+                self.data.append(label)
+            self.owners |= found
+        self.owners |= {part.owner: None for part in self.parts.values() if part.owner}
+        for owner in self.owners:
+            for name, method in vars(owner).items():
+                if isinstance(method, FunctionType) and (name in used or name == "__call__"):
                     self._wait(owner, name, method)
         return True
 
@@ -212,7 +212,7 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
 
 def _plain(tree: ast.FunctionDef) -> bool:
     """Whether a definition asks for nothing but arithmetic."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, _BEYOND):
             return False
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -246,9 +246,9 @@ def _remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
     known = {**function.__globals__, **_free(function)}
     named = inspect.signature(function, follow_wrapped=False).parameters.values()
     kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
-    own = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-    own |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)} - kept
-    for node in ast.walk(tree):
+    own = {n.id for n in nodes(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    own |= {n.arg for n in nodes(tree) if isinstance(n, ast.arg)} - kept
+    for node in nodes(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             root = _root(node.func.value)
             held = None if root is None or root in own else known.get(root, ())
@@ -273,6 +273,19 @@ def written(owner: type, module: str | None) -> bool:
     """Whether a class is the program's own."""
     made = bool(owner.__flags__ & _HEAP)  # by a class statement
     return made and owner.__module__ == (module or "builtins")  # so exec has it without a name
+
+
+def _owners(value: Any, module: str | None, depth: int = _DEEP) -> Iterator[type]:
+    """The program's own classes of which objects are kept in a value: in lists, in one another."""
+    owner = value if isinstance(value, type) else type(value)
+    inner: list[Any] = []
+    if written(owner, module):
+        yield owner
+        inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
+    elif isinstance(value, list | tuple | dict):
+        inner = [*value.values()] if isinstance(value, dict) else [*value]
+    for one in inner[:_MOST] if depth else ():
+        yield from _owners(one, module, depth - 1)
 
 
 def _harmless(value: Any, module: str | None, depth: int = _DEEP) -> bool:

@@ -8,22 +8,26 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
-from kinlab.doctor.program.data import NumberPlace, numbers
-from kinlab.doctor.program.edits import edits
+from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.doctor.program.edits.every import edits
+from kinlab.doctor.program.evidence import Grounds
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ProgramEdit, called
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
+from kinlab.doctor.program.scaled import larger, scaled
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
+from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
@@ -36,6 +40,14 @@ _NUMBERS = 4
 """Numbers of the answer at which an edit is tried first."""
 _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
+_DOUBTED = 0.12
+"""The same where a factor is found that a name of the program has as its value."""
+_ALIKE = 0.03
+"""Costs that are nothing to go by beside what a repair leaves right."""
+_SAME = 0.011
+"""Costs that are one."""
+_RIVALS = 4
+"""Lines of which it is looked what their repairs leave right."""
 _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _WATCHED = 2
@@ -44,10 +56,12 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
-_TURNS = 5
+_TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
+_WHOLE = 3
+"""Digits of a number that may stand for a whole one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +72,13 @@ class ProgramRepair:
         edits: one or several.
         error: the relative error that is left.
         cost: how far-fetched they are.
+        rivals: repairs of other lines that nothing tells from this one.
     """
 
     edits: tuple[ProgramEdit, ...]
     error: float
     cost: float
+    rivals: tuple[ProgramRepair, ...] = ()
 
 
 class LineSearch:
@@ -86,13 +102,27 @@ class LineSearch:
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
+        self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
+        self._few = self._at(self.first)
         self._prepare()
+
+    def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
+        """The arguments and the right answers at some states."""
+        chosen = list(which)
+        return [stack[chosen] for stack in self.case.arguments.values()], self.wanted[chosen]
 
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
-        states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
-        self.observed = Observed(self.trial, states)
-        self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+        self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
+        self.observed = Observed(self.trial, self.states)
+        self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
+        self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+
+    @property
+    def scale(self) -> Array:
+        """What differences at the first states are relative to, beside the answers there."""
+        sizes = self.sizes[self.first]
+        return sizes.reshape(-1, *[1] * (self.wanted.ndim - 1))
 
     @property
     def faithful(self) -> bool:
@@ -113,7 +143,7 @@ class LineSearch:
             isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
             or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))
             for part in self.program.parts
-            for node in ast.walk(part.tree)
+            for node in nodes(part.tree)
         )
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
@@ -125,15 +155,18 @@ class LineSearch:
     def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""
         found: list[ProgramRepair] = []
+        best, doubted = np.inf, False
         with quietly():
-            for edit in sorted(edits(self.trial, self.observed), key=self._dear):
-                if found and edit.cost > found[0].edits[-1].cost + _TIED:
+            tried = sorted(edits(self.trial, self.observed), key=self._dear)
+            variants = Variants(self.trial, tried)
+            for edit in tried:
+                if found and self.likely(edit) > best + (_DOUBTED if doubted else _TIED):
                     break
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
                     break
                 try:
-                    with changed(self.trial, (edit,)):
+                    with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
                         values = self.values(self.first)
                         if values is None:
                             continue
@@ -143,9 +176,69 @@ class LineSearch:
                     continue
                 if repair is not None:
                     found.append(repair)
-            if not found or found[0].edits[-1].cost > _NUMBER:
-                found = [*self._numbers(), *found]
+                    best = min(best, self.likely(edit))
+                    doubted = doubted or self.evidence.coincident(edit)
+            found = self._by_evidence(found)
+            if not found or best > _NUMBER:
+                found = self._numbers() + found
         return found
+
+    def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The likeliest first; of repairs of several lines the one that leaves more of them right.
+
+        What nothing tells apart is marked as tied.
+        """
+        found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
+        if len(found) < 2 or not self.evidence.known:
+            return found
+        found = self._of_any_arm(found)
+        least = self.likely(found[0].edits[-1])
+        lines: dict[int, ProgramRepair] = {}
+        for repair in found:
+            edit = repair.edits[-1]
+            if edit.part != DATA and self.likely(edit) <= least + _ALIKE:
+                lines.setdefault(row_of(edit), repair)
+        if len(lines) < 2:
+            return found
+        rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
+        most = max(rights.values())
+        ahead = [one for one in lines.values() if rights.get(id(one)) == most]
+        first = ahead[0]
+        same = [one for one in ahead if abs(one.cost - first.cost) <= _SAME]
+        first = replace(first, rivals=tuple(same[1:2]))
+        return [first, *(one for one in found if one.edits != first.edits)]
+
+    def _of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """Of repairs those that hold for a larger arm too, where some do and some do not."""
+        other = scaled(self.case.robot)
+        edits = None if other is None else larger(self.case.robot, self.trial, self.observed)
+        if other is None or not edits:
+            return found
+        few = self.case.few(max(self.first) + 1)
+        try:
+            wanted = replace(few, robot=other).answer(())
+        except KinlabError:
+            return found
+        held: list[ProgramRepair] = []
+        with changed(self.trial, edits):
+            for repair in found[:_RIVALS]:
+                with changed(self.trial, repair.edits[-1:]):
+                    values = self.values(self.first)
+                    if values is not None and self.right(values, wanted).all():
+                        held.append(repair)
+        return [*held, *(one for one in found[_RIVALS:])] if held else found
+
+    def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
+        """How many statements are what a textbook has, once edits stand."""
+        with changed(self.trial, several):
+            try:
+                return self.evidence.count(Observed(self.trial, self.states))
+            except Exception:  # noqa: BLE001  what cannot be watched tells nothing
+                return 0
+
+    def likely(self, edit: ProgramEdit) -> float:
+        """Its cost, and what speaks against it."""
+        return edit.cost + self.evidence.against(edit)
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """Expressions that are evaluated, and nodes compiled, to try an edit."""
@@ -155,19 +248,28 @@ class LineSearch:
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
         work = self.observed.work
-        return edit.cost + _DEAR * float(np.log10(max(1, work[edit.part]) / max(1, work[0])))
+        return self.likely(edit) + _DEAR * float(
+            np.log10(max(1, work[edit.part]) / max(1, work[0]))
+        )
 
-    def _numbers(self) -> Iterator[ProgramRepair]:
-        """Single numbers, of the text or the data, with which the program is right."""
-        for place in numbers(self.trial, self.observed):
+    def _numbers(self) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+        """
+        found: list[tuple[float, int, ProgramRepair]] = []
+        against = self.evidence.against
+        every = [*numbers(self.trial, self.observed)]
+        every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
+        for place in every:
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    yield repair
-                    return
+                    found.append((against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -176,6 +278,7 @@ class LineSearch:
             return None
         wanted, old = self.wanted[self.first], float(place.value)
         at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
+        least, worse = np.inf, 0
         for _turn in range(_TURNS):
             with changed(self.trial, (place.edit(at + step),)):
                 values = self.values(self.first)
@@ -184,12 +287,17 @@ class LineSearch:
             after = (values - wanted).ravel()
             slope = (after - before) / step
             flat = float(slope @ slope)
-            if not flat > 0.0:
+            worse = 0 if (size := float(after @ after)) < least else worse + 1
+            least = min(least, size)
+            if not flat > 0.0 or worse > 1:
                 return None
             at, before, step = at + step, after, -float(after @ slope) / flat
             if abs(step) <= 1e-9 * max(abs(at), 1e-3):
                 break
-        for digits in range(1, _DIGITS):
+        if abs(at + step) <= 1e-9 * max(abs(old), 1e-3):
+            step = -at
+        most = _DIGITS if isinstance(place.value, float) else _WHOLE
+        for digits in range(1, most):
             value = float(f"{at + step:.{digits - 1}e}")
             with changed(self.trial, (place.edit(value),)):
                 values = self.values(self.first)
@@ -197,11 +305,10 @@ class LineSearch:
                 return value
         return None
 
-    def right(self, values: Array) -> Any:
+    def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - self.wanted[self.first])
-        sizes = self.sizes[self.first].reshape(-1, *[1] * (gap.ndim - 1))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * sizes
+        gap = np.abs(values - (self.wanted[self.first] if wanted is None else wanted[self.first]))
+        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
         return near.all(axis=0).ravel()
 
     def verdict(
@@ -223,11 +330,9 @@ class LineSearch:
     def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
         quantity, robot = self.case.quantity, self.case.robot
-        asked = state_by_state(quantity.asked(robot, self.trial.function))
-        stacks = [stack[list(which)] for stack in self.case.arguments.values()]
-        wanted = self.wanted[list(which)]
+        stacks, wanted = self._few if which is self.first else self._at(which)
         try:
-            values = np.asarray(asked(None, *stacks), dtype=float)
+            values = np.asarray(self._asked(None, *stacks), dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):

@@ -10,12 +10,14 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
+from kinlab.doctor.program.digits import nearly, to_the_digits
 from kinlab.doctor.program.named import named
-from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.several import several
+from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
 
@@ -53,8 +55,27 @@ _WHAT = {
     "extra factor": N_("a factor is too many"),
     "missing term": N_("a term is missing"),
     "missing factor": N_("a factor is missing"),
+    "names exchanged": N_("two names are exchanged"),
+    "rows swapped": N_("two rows are exchanged"),
+    "columns swapped": N_("two columns are exchanged"),
+    "whole division": N_("the division leaves the remainder out"),
+    "too deep": N_("the line stands in the block before it, and belongs behind it"),
+    "not deep enough": N_("the line stands behind the loop or the condition, and belongs in it"),
+    "in the loop": N_("the line stands in the loop, and belongs before it"),
+    "before the loop": N_("the line stands before the loop, and belongs in it"),
+    "missing statement": N_("a line is missing"),
     "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }
+
+_MOVED = (
+    "extra statement",
+    "missing statement",
+    "too deep",
+    "not deep enough",
+    "in the loop",
+    "before the loop",
+)
+"""Kinds of edit of a whole statement, of which nothing else is shown."""
 
 
 @dataclass(frozen=True)
@@ -65,16 +86,21 @@ class WrongLines:
         causes: the likeliest first.
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
+        digits: of a program that is nearly right, what its rounded numbers stand for, if they are
+            all of it; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
+    digits: tuple[str, ...] | None = None
 
 
 def lines(
     function: Callable[..., Any], case: Case, wanted: Array, allowed: float
 ) -> Iterator[WrongLines]:
     """What single lines of a function should be, and then, if asked on, what several should.
+
+    Of a function that is nearly right, before them, what its rounded numbers stand for.
 
     Args:
         function: the hand formula; nothing comes of one that cannot be read.
@@ -91,6 +117,8 @@ def lines(
         return
     if not search.faithful:
         return
+    if nearly(case.hand, wanted):
+        yield WrongLines([], search.written_out, to_the_digits(search))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
@@ -120,10 +148,14 @@ def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
     known = [one for edit in repair.edits for one in named(edit, search)]
     is_ = _("`{piece}` is {thing}")
     told += [is_.format(piece=_typed(text), thing=thing) for text, thing in known[:_NAMED]]
+    sentence = _("; ").join(dict.fromkeys(told))
+    for rival in repair.rivals:
+        other = _("; ").join(dict.fromkeys(_told(rival, trial)))
+        sentence = _("{one}; or else {other}").format(one=sentence, other=other)
     return Cause(
-        _("; ").join(dict.fromkeys(told)),
+        sentence,
         tuple(edit.kind for edit in repair.edits),
-        tuple(_place(edit, trial) for edit in repair.edits),
+        tuple(_place(edit) for edit in repair.edits),
         repair.error,
         repair.cost,
     )
@@ -140,11 +172,14 @@ def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
         if edit.part == DATA:
             yield _of_data(edit)
             continue
-        old, new = _pieces(edit, trial)
+        old, new = _pieces(edit, trial) if edit.kind not in _MOVED else (_text(edit.node), "")
         said = {"place": _line(edit, trial), "old": old, "new": new, "what": _(_WHAT[edit.kind])}
         if edit.kind == "order of lines":
             yield _("{place}, `{old}`: {what}; it should stand {new}").format(**said)
-        elif edit.kind == "extra statement":
+        elif edit.kind == "missing statement":
+            told = _("after {place}, {what}: `{new}`")
+            yield told.format(place=said["place"], what=said["what"], new=_text(edit.node))
+        elif edit.kind in _MOVED:
             yield _("{place}, `{old}`: {what}").format(**said)
         else:
             yield _("{place}, {what}: `{old}` should be `{new}`").format(**said)
@@ -160,7 +195,7 @@ def _by_statement(
         after = [_statements(tree) for tree in trial.trees]
     for edit in repair.edits:
         own = None
-        if edit.part != DATA and edit.kind not in ("order of lines", "extra statement"):
+        if edit.part != DATA and edit.kind not in ("order of lines", *_MOVED):
             own = before[edit.part].get(id(edit.node)) or after[edit.part].get(id(edit.node))
         same = next((edits for one, edits in found if one is own and own is not None), None)
         if same is None:
@@ -193,19 +228,23 @@ def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial)
 def _line(edit: ProgramEdit, trial: Trial) -> str:
     part = trial.program.parts[edit.part]
     if edit.part:
-        return _("line {number} (in {function})").format(
-            number=edit.node.lineno, function=part.name
-        )
-    return _("line {number}").format(number=edit.node.lineno)
+        return _("line {number} (in {function})").format(number=row_of(edit), function=part.name)
+    return _("line {number}").format(number=row_of(edit))
 
 
-def _place(edit: ProgramEdit, trial: Trial) -> str:
-    return str(edit.node) if edit.part == DATA else f"line {edit.node.lineno}"
+def _place(edit: ProgramEdit) -> str:
+    return str(edit.node) if edit.part == DATA else f"line {row_of(edit)}"
 
 
 def _of_data(edit: ProgramEdit) -> str:
     keys = (key if str(key).startswith(".") else f"[{key!r}]" for key in edit.place)
     said = {"name": edit.node + "".join(keys), "what": _(_WHAT[edit.kind])}
+    if edit.exchanged is not None:
+        old_, new_ = edit.exchanged
+        told = _("{name}, {what}: `{old}` should be `{new}`")
+        if edit.kind != "entries swapped":
+            told = _("{name}, {what}: `{old}` and `{new}`")
+        return told.format(**said, old=old_, new=new_)
     if edit.numbers is None:
         return _("{name}, {what}").format(**said)
     old, new = edit.numbers
@@ -216,11 +255,11 @@ def _of_data(edit: ProgramEdit) -> str:
 def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
     """What stands there, and what should: the widest that is short."""
     tree = trial.trees[edit.part]
-    above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+    above = {id(child): node for node in nodes(tree) for child in ast.iter_child_nodes(node)}
     chain = [edit.node]
     while id(chain[-1]) in above and isinstance(chain[-1], ast.expr):
         chain.append(above[id(chain[-1])])
-    chain = [node for node in chain if not isinstance(node, ast.FunctionDef)]
+    chain = [n for n in chain if not isinstance(n, ast.FunctionDef | ast.comprehension)]
     if edit.kind == "order of lines":
         return _text(edit.node), _after(edit)
     before = [_text(node) for node in chain]

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 from types import ModuleType
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
@@ -29,6 +29,8 @@ class Scope:
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
+        attributes: of objects, by their shapes.
+        keys: of dictionaries, by the shapes of what is there.
         counters: names that count.
         ranges: what they count through.
         unused: names that are set, in the part or in the module, and used nowhere.
@@ -43,25 +45,34 @@ class Scope:
         self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
+        self.attributes: dict[str, Shape] = {}
+        self.keys: dict[str, Shape] = {}
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
-        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-        self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
+        calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
+        self.ranges = [copied(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
-                names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
-                self.counters += [n for n in names if n not in self.counters]
+                names = [n.id for n in nodes(node.target) if isinstance(n, ast.Name)]
+                passed = dict(_passed(node.target, node.iter, observed))
+                self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
+                self.counters += [n for n in names if n not in (*self.counters, *passed)]
                 if isinstance(node, ast.comprehension):
                     inner |= {*names}
+        for one in trial.trees:
+            for node in nodes(one):
+                self._of_member(node, observed)
+        for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
+            self._of_object(held)
         loaded = {
             n.id
             for one in trial.trees
-            for n in ast.walk(one)
+            for n in nodes(one)
             if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
         }
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
@@ -69,12 +80,12 @@ class Scope:
                     self.shapes.setdefault(name, shape)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         for name, value in trial.program.space.items():
-            if name[:1] != "_" and isinstance(value, int | float | list | tuple | np.ndarray):
+            if name[:1] != "_" and _is_number(value):
                 known = _shape(value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {
-            n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
+            n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
         }
         self.unused = {name for name in self.shapes if name not in loaded}
         for name, shape in self.shapes.items():
@@ -91,6 +102,27 @@ class Scope:
                 entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
 
+    def _of_member(self, node: ast.AST, observed: Observed) -> None:
+        shape = observed.shape(node)
+        if shape is None:
+            return
+        owner = node.value if isinstance(node, ast.Attribute) and node.attr != "T" else None
+        if isinstance(owner, ast.Name) and owner.id not in ("np", "math", "numpy"):
+            assert isinstance(node, ast.Attribute)
+            self.attributes.setdefault(node.attr, shape)
+        key = node.slice if isinstance(node, ast.Subscript) else None
+        if isinstance(key, ast.Constant) and isinstance(key.value, str):
+            self.keys.setdefault(key.value, shape)
+
+    def _of_object(self, held: object) -> None:
+        own = self.keys if isinstance(held, dict) else self.attributes
+        members = held if isinstance(held, dict) else getattr(held, "__dict__", {})
+        for name, value in members.items():
+            if isinstance(name, str) and name[:1] != "_" and _is_number(value):
+                known = _shape(value)
+                if known is not None:
+                    own.setdefault(name, known)
+
     def _of_expression(self, node: ast.expr, observed: Observed, inner: set[str]) -> None:
         seen = observed.of(node)
         if seen is not None and seen.entries is not None and isinstance(node, ast.Name):
@@ -101,20 +133,23 @@ class Scope:
             self.shapes.setdefault(node.id, seen.shape)
             if seen.whole and seen.shape == ():
                 return
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
         text = ast.unparse(node)
         if names & inner or len(text) > _LONG:
             return
-        own = copy.deepcopy(node)
-        self.pieces.setdefault(seen.shape, {}).setdefault(text, own)
+        known = self.pieces.setdefault(seen.shape, {})
+        own = known[text] = known.get(text) or copied(node)
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-        short = isinstance(node, ast.Name)
-        return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
+        if isinstance(node, ast.Name):
+            return 0.0 if node.id in self.unused else _UNUSED / 2
+        if not self.unused:
+            return _UNUSED
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
+        return 0.0 if names & self.unused else _UNUSED
 
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""
@@ -136,6 +171,12 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     literal = isinstance(node, ast.List | ast.Tuple)
     if shape and not literal and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
+    row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
+    if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
+        total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
+        yield here.instead(ast.Call(total, [node], []), "function", 1.1)
+    if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
+        yield from _instead_of_zero(here, scope)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
         return
     operated = isinstance(parent, ast.BinOp)
@@ -149,7 +190,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
-        cost = 1.0 if first or entry else 1.03 if whole else 1.1
+        given = isinstance(here.above[-2], ast.Assign) if isinstance(parent, ast.Tuple) else whole
+        alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
+        cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
@@ -168,6 +211,13 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _scalars(here, scope, summand or whole or below, operated)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
+
+
+def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A name for a zero that is given on, or that is an entry."""
+    for _text, scalar in scope.simple(()):
+        if isinstance(scalar, ast.Name):
+            yield here.instead(scalar, "name", 1.12 + scope.dear(scalar))
 
 
 def _leftmost(node: ast.expr) -> ast.expr:
@@ -205,7 +255,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
-    own = {ast.unparse(n) for n in ast.walk(node)}
+    own = {ast.unparse(n) for n in nodes(node)}
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
@@ -218,12 +268,13 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     own = ast.unparse(node)
     power = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Pow)
     named = isinstance(node, ast.Name | ast.Subscript)
+    beside = _factors_beside(here) if term else set()
     if named and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     for text, scalar in scope.pieces.get((), {}).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
-        dear = scope.dear(scalar)
+        dear = 0.0 if text in beside else scope.dear(scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
@@ -232,6 +283,36 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _factors_beside(here: Here) -> set[str]:
+    """The factors that every other term of the sum or of the list around a term has."""
+    terms: list[ast.expr] = []
+    own: ast.AST = here.node
+    for above in reversed(here.above):
+        if isinstance(above, ast.BinOp) and isinstance(above.op, ast.Add | ast.Sub):
+            terms.append(above.left if above.right is own else above.right)
+        elif isinstance(above, ast.List | ast.Tuple):
+            terms += [one for one in above.elts if one is not own]
+        else:
+            break
+        own = above
+    sets = [
+        {ast.unparse(n) for n in ast.walk(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        for one in terms
+        for summand in _summands(one)
+        if not isinstance(summand, ast.Constant)
+    ]
+    inside = {ast.unparse(n) for n in ast.walk(here.node) if isinstance(n, ast.Name)}
+    return set.intersection(*sets) - inside if sets else set()
+
+
+def _summands(node: ast.expr) -> Iterator[ast.expr]:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        yield from _summands(node.left)
+        yield from _summands(node.right)
+    else:
+        yield node
 
 
 def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[ProgramEdit]:
@@ -257,6 +338,10 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                     yield here.instead(new, "missing term", 1.15)
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | list | tuple | np.ndarray)
+
+
 def _shape(value: object) -> Shape | None:
     if isinstance(value, bool):
         return None
@@ -265,6 +350,32 @@ def _shape(value: object) -> Shape | None:
     except ValueError:
         return None
     return numbers.shape if numbers.dtype.kind in "fi" else None
+
+
+def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:
+    """The names that a loop sets to entries of tables and lists, each with its shape."""
+    inner = over.args if isinstance(over, ast.Call) else []
+    parts = target.elts if isinstance(target, ast.Tuple) else []
+    if isinstance(over, ast.Call) and called(over) == "zip" and len(inner) == len(parts):
+        for one, own in zip(parts, inner, strict=True):
+            yield from _passed(one, own, observed)
+        return
+    if isinstance(over, ast.Call) and called(over) == "enumerate" and inner and len(parts) == 2:
+        yield from _passed(parts[1], inner[0], observed)
+        return
+    shape = observed.shape(over)
+    if not shape or (isinstance(over, ast.Call) and called(over) in ("range", "reversed")):
+        return
+    if isinstance(target, ast.Name) and (shape[1:] or not _whole(over, observed)):
+        yield target.id, shape[1:]
+    for one in parts if len(shape) > 1 else ():
+        if isinstance(one, ast.Name):
+            yield one.id, shape[2:]
+
+
+def _whole(node: ast.AST, observed: Observed) -> bool:
+    seen = observed.of(node)
+    return seen is not None and seen.whole
 
 
 def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:

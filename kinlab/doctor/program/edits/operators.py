@@ -7,12 +7,16 @@ from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
-from kinlab.doctor.program.additions import ANGLES, Scope
+from kinlab.doctor.program.edits.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
+_SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
+"""Functions whose numbers are no quantities."""
 _PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
+_FEW = 8
+"""Attributes and keys among which a wrong one is looked for early."""
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
 
@@ -30,18 +34,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.instead(alone, extra, 1.1)
         if index:
             return
+        for new in _together(node):
+            yield here.instead(new, "parentheses", 1.09)
         for side, inner in (("left", left), ("right", right)):
-            if isinstance(inner, ast.BinOp) and isinstance(inner.op, _PRODUCTS):
-                # a*b + c for a*(b + c)
-                first, last = (inner.left, inner.right)
-                both = (last, right) if side == "left" else (left, first)
-                together = ast.BinOp(both[0], op, both[1])
-                new = (
-                    ast.BinOp(first, inner.op, together)
-                    if side == "left"
-                    else ast.BinOp(together, inner.op, last)
-                )
-                yield here.instead(new, "parentheses", 1.2)
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
                 yield here.instead(into, "parentheses", 1.15)
@@ -81,6 +76,57 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
         yield here.instead(left, "power", 1.1)
+    elif isinstance(op, ast.FloorDiv) and not index:
+        yield here.within(node, "op", ast.Div(), "whole division", 0.97)
+
+
+_Factors = list[tuple[ast.operator, ast.expr]]
+"""Terms or factors, each with the operator before it."""
+
+
+def _together(node: ast.BinOp) -> Iterator[ast.expr]:
+    """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
+    head, terms = _sum(node)
+    for i in range(len(terms)):
+        # of the terms from the i-th to the last, a factor of the first belongs to all
+        first, factors = _factors(terms[i - 1][1] if i else head)
+        for k, (by, factor) in enumerate(factors):
+            if isinstance(by, ast.Mult | ast.MatMult):
+                inner = _times(_times(factor, factors[k + 1 :]), terms[i:])
+                whole: ast.expr = ast.BinOp(_times(first, factors[:k]), by, inner)
+                yield _times(head, [*terms[: i - 1], (terms[i - 1][0], whole)]) if i else whole
+    op, last = terms[-1]
+    first, factors = _factors(last)
+    for k in range(len(factors)):
+        before, after = _times(first, factors[:k]), factors[k:]
+        yield _times(ast.BinOp(node.left, op, before), after)
+        if len(terms) > 1:
+            inner = _times(ast.BinOp(terms[-2][1], op, before), after)
+            yield _times(head, [*terms[:-2], (terms[-2][0], inner)])
+
+
+def _sum(node: ast.expr) -> tuple[ast.expr, _Factors]:
+    """A sum as its first term and the others, each with its operator."""
+    others: _Factors = []
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+        others.insert(0, (node.op, node.right))
+        node = node.left
+    return node, others
+
+
+def _factors(node: ast.expr) -> tuple[ast.expr, _Factors]:
+    """A product as its first factor and the others, each with its operator."""
+    others: _Factors = []
+    while isinstance(node, ast.BinOp) and isinstance(node.op, _PRODUCTS):
+        others.insert(0, (node.op, node.right))
+        node = node.left
+    return node, others
+
+
+def _times(first: ast.expr, others: _Factors) -> ast.expr:
+    for op, factor in others:
+        first = ast.BinOp(first, op, factor)
+    return first
 
 
 def _turned(here: Here) -> Iterator[ProgramEdit]:
@@ -121,7 +167,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         for k in range(len(plain) - 1):
             swapped = [*plain]
             swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
-            cost = 1.05 if name in _ORDERED else 1.15
+            cost = 1.02 if name == "cross" else 1.05 if name in _ORDERED else 1.15
             yield here.within(node, "args", swapped, "order", cost)
         if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in ANGLES:
             yield here.instead(plain[0], "extra factor", 1.25)
@@ -196,6 +242,9 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node.value)
+    if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
+        yield from _of_key(here, node.slice, scope)
+        return
     keys = keys_of(node)
     yield from of_keys(here, node, 1.1)
     for k, (holder, field, key) in enumerate(keys):
@@ -210,6 +259,14 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _of_key(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit]:
+    """Another key of a dictionary: ``arm["r"]`` for ``arm["l"]``."""
+    own, cost = str(key.value), 1.05 if len(scope.keys) <= _FEW else 1.15
+    for other, shape in scope.keys.items():
+        if other != own and shape == scope.keys.get(own):
+            yield here.within(key, "value", other, "name", cost)
 
 
 def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:
@@ -264,10 +321,24 @@ def _alike(one: str, other: str) -> bool:
     return one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
 
 
-def of_constant(here: Here, index: bool) -> Iterator[ProgramEdit]:
+def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """Another attribute of the same object: ``arm.r`` for ``arm.l``."""
+    node = here.node
+    shape = observed.shape(node)
+    if shape is None or not isinstance(node.value, ast.Name):
+        return
+    for other, known in scope.attributes.items():
+        if other != node.attr and known == shape:
+            cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
+            yield here.within(node, "attr", other, "name", cost)
+
+
+def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         return
+    if isinstance(here.parent, ast.Call) and called(here.parent) not in _SIZES and value:
+        yield here.within(here.node, "value", 0, "number", 1.12)
     if index:
         if isinstance(here.parent, ast.Slice):
             for step in (1, -1):
@@ -310,6 +381,24 @@ def of_comparison(here: Here) -> Iterator[ProgramEdit]:
         opposite = {ast.Eq: ast.NotEq, ast.NotEq: ast.Eq, ast.Lt: ast.Gt, ast.Gt: ast.Lt}
         new = opposite[type(node.ops[0])]()
         yield here.within(node, "ops", [new], "condition", 1.2)
+    if isinstance(node.ops[0], ast.Eq | ast.LtE | ast.GtE):
+        for new in (ast.Eq(), ast.LtE(), ast.GtE()):
+            if type(new) is not type(node.ops[0]):
+                yield here.within(node, "ops", [new], "condition", 1.12)
+
+
+def of_comparisons(here: Here) -> Iterator[ProgramEdit]:
+    """All comparisons of a condition otherwise, or ``and`` for ``or``."""
+    node = here.node
+    other = ast.Or() if isinstance(node.op, ast.And) else ast.And()
+    yield here.within(node, "op", other, "condition", 1.15)
+    own = [one for one in node.values if isinstance(one, ast.Compare) and len(one.ops) == 1]
+    kinds = {type(one.ops[0]) for one in own}
+    if len(own) == len(node.values) and len(kinds) == 1:
+        for new in (ast.Eq(), ast.LtE(), ast.GtE(), ast.Lt(), ast.Gt()):
+            if type(new) not in kinds:
+                values = [ast.Compare(one.left, [new], one.comparators) for one in own]
+                yield here.within(node, "values", values, "condition", 1.08)
 
 
 # -------- Small trees

@@ -7,18 +7,21 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.program.additions import Scope, as_a_term
-from kinlab.doctor.program.data import of_data
-from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.operators import (
+from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.program.edits import exchanges
+from kinlab.doctor.program.edits.additions import Scope, as_a_term
+from kinlab.doctor.program.edits.blocks import of_blocks
+from kinlab.doctor.program.edits.data import of_data
+from kinlab.doctor.program.edits.operators import (
     keys_of,
     negated,
+    of_attribute,
     of_call,
     of_comparison,
+    of_comparisons,
     of_constant,
     of_keys,
     of_name,
@@ -30,6 +33,7 @@ from kinlab.doctor.program.operators import (
     value_of,
     whole_constant,
 )
+from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import FieldChange, Trial
 
@@ -46,7 +50,7 @@ def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
                     found += _expression(here, scope, observed)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
-        found += _orders(part, tree)
+        found += of_blocks(part, tree, scope, observed)
     found += of_data(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
@@ -91,14 +95,18 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
                 for name in ("inv", "pinv"):
                     call = ast.Call(ast.Attribute(linear, name, ast.Load()), [node.value], [])
                     yield here.instead(call, "inverse", 1.12)
+        else:
+            yield from of_attribute(here, scope, observed)
     elif isinstance(node, ast.Constant):
-        yield from of_constant(here, index)
+        yield from of_constant(here, index, scope)
     elif isinstance(node, ast.List | ast.Tuple):
         yield from of_sequence(here)
     elif isinstance(node, ast.IfExp):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):
         yield from of_comparison(here)
+    elif isinstance(node, ast.BoolOp):
+        yield from of_comparisons(here)
     counts = whole and isinstance(node, ast.Name | ast.BinOp)
     if index or counts:
         if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not shifted(node):
@@ -122,15 +130,18 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         target = node.targets[0]
         if isinstance(target, ast.Name | ast.Subscript):
             yield here.instead(ast.AugAssign(target, ast.Add(), node.value), "sum", 1.15)
-        if isinstance(target, ast.Tuple) and len(target.elts) == 2:
-            swapped = ast.Tuple([target.elts[1], target.elts[0]], ast.Store())
-            yield here.within(node.targets, 0, swapped, "order", 1.2)
+        if isinstance(target, ast.Tuple):
+            for k in range(len(target.elts) - 1):
+                swapped = [*target.elts]
+                swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
+                yield here.within(target, "elts", swapped, "order", 1.07)
         if isinstance(target, ast.Subscript):
             yield from _target(here, target)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
         yield from _target(here, node.target)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
+        yield from exchanges.of_statement(here, scope, observed)
     if isinstance(node, ast.If):
         if node.orelse:
             swap = (FieldChange(node, "body", node.orelse), FieldChange(node, "orelse", node.body))
@@ -148,17 +159,17 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
 
 
 def _names(tree: ast.AST) -> list[ast.Name]:
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
+    return [node for node in nodes(tree) if isinstance(node, ast.Name)]
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
     value = here.node.value
-    used = [n.id for n in ast.walk(value) if isinstance(n, ast.Name)] if value else []
+    used = [n.id for n in nodes(value) if isinstance(n, ast.Name)] if value else []
     for counter in scope.counters:
         if used.count(counter) > 1:
             for step in (1, -1):
-                moved = _Moved(counter, step).visit(copy.deepcopy(value))
+                moved = _Moved(counter, step).visit(copied(value))
                 yield here.within(here.node, "value", moved, "index", 1.13)
 
 
@@ -193,40 +204,3 @@ def _target(here: Here, target: ast.Subscript) -> Iterator[ProgramEdit]:
             for step in (1, -1):
                 other = number(value_of(key) + step) if whole_constant(key) else plus(key, step)
                 yield here.within(holder, field, other, "index", 1.15)
-
-
-def _orders(part: int, tree: ast.FunctionDef) -> Iterator[ProgramEdit]:
-    """Two statements in the other order, where one uses what the other sets."""
-    for node in ast.walk(tree):
-        for name in ("body", "orelse"):
-            block = getattr(node, name, None)
-            if not isinstance(block, list):
-                continue
-            for i in range(len(block)):
-                for j in range(i + 1, min(i + 6, len(block))):
-                    moved = block[i]
-                    if isinstance(block[j], ast.Return):
-                        continue
-                    if not (_sets(moved) & _uses(block[j]) or _uses(moved) & _sets(block[j])):
-                        continue
-                    later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
-                    change = FieldChange(node, name, later)
-                    yield ProgramEdit(part, (change,), "order of lines", 1.15, moved)
-                    if j > i + 1:
-                        early = [*block[:i], block[j], *block[i:j], *block[j + 1 :]]
-                        change = FieldChange(node, name, early)
-                        yield ProgramEdit(part, (change,), "order of lines", 1.16, block[j])
-
-
-def _sets(node: ast.AST) -> set[str]:
-    return {
-        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
-    } | (
-        {node.target.id}
-        if isinstance(node, ast.AugAssign) and hasattr(node.target, "id")
-        else set()
-    )
-
-
-def _uses(node: ast.AST) -> set[str]:
-    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

@@ -1,0 +1,124 @@
+"""Whether a program is right to the digits that its numbers are written with."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.compare import error_sizes
+from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.trial import quietly
+from kinlab.doctor.text.meanings import stands_for
+from kinlab.doctor.text.written import literal
+from kinlab.host.language import _
+from kinlab.tolerances import TOLERANCES
+
+_WORK = 600_000
+"""Expressions that may be evaluated."""
+_FEWEST = 3
+"""Digits from which on a number may be another one rounded."""
+_MOST = 7
+"""Digits from which on it is not."""
+_PARTS = 1000
+"""A number is moved by one part in so many to see what it does."""
+_ENDLESS = (1 / 3, 2 / 3, 1 / 6, 1 / 12, math.pi, math.pi / 2, math.sqrt(2), math.sqrt(0.5))
+"""Numbers that nobody can type in full."""
+_TOLD = 3
+"""Numbers that are told."""
+_TURNS = 4
+"""Steps in which the numbers are solved for."""
+_OVER = 3
+"""Equations asked for each number that is solved for."""
+
+
+def nearly(case_hand: Array, wanted: Array) -> bool:
+    """Whether answers differ by so little that rounded numbers may be all of it."""
+    if case_hand.shape != wanted.shape or not np.isfinite(case_hand).all():
+        return False
+    gap = np.abs(case_hand - wanted).reshape(len(wanted), -1).max(axis=1, initial=0.0)
+    return bool(np.max(gap / error_sizes(wanted)) <= TOLERANCES.nearly_agrees)
+
+
+def to_the_digits(search: LineSearch) -> tuple[str, ...]:
+    """What rounded numbers of a program stand for, where they are all that is wrong, in words.
+
+    Each number may move by half of its last digit; with all of them so the program must be right
+    at every state.
+    """
+    places = [place for place in numbers(search.trial, search.observed) if _typed(place)]
+    size = int(np.prod(search.wanted.shape[1:], initial=1))
+    count = min(len(search.wanted), -(-_OVER * len(places) // size) + 1)
+    run = max(search.observed.work.values()) // len(search.watched)
+    if not places or len(places) * count * run > _WORK:
+        return ()
+    with quietly():
+        return _solved(search, places, range(count))
+
+
+def _typed(place: NumberPlace) -> bool:
+    """Whether a number may be another one rounded."""
+    digits = literal(f"{abs(place.value):.15g}").digits
+    return isinstance(place.value, float) and _FEWEST <= digits < _MOST
+
+
+def _stands(value: float, meant: float) -> bool:
+    """Whether one number is another to its digits, or was multiplied by one that is: ``0.333``."""
+    one = literal(f"{abs(value):.15g}")
+    if abs(meant - value) <= one.half * (1 + TOLERANCES.same_relation):
+        return True
+    ratios = (exact / round(exact, digits) for exact in _ENDLESS for digits in range(3, _MOST))
+    return any(abs(meant / value - x) <= TOLERANCES.same_relation * abs(x - 1) for x in ratios)
+
+
+def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tuple[str, ...]:
+    units = [abs(place.value) / _PARTS for place in places]
+    own = search.values(which)
+    if own is None:
+        return ()
+    columns: list[Array] = []
+    for place, unit in zip(places, units, strict=True):
+        with changed(search.trial, (place.edit(place.value + unit),)):
+            there = search.values(which)
+        if there is None:
+            return ()
+        columns.append((there - own).ravel())
+    matrix, wanted = np.array(columns).T, search.wanted[list(which)].ravel()
+    moved, now = np.zeros(len(places)), own.ravel()
+    for _turn in range(_TURNS):
+        step, *_rest = np.linalg.lstsq(matrix, wanted - now, rcond=1e-9)
+        moved = moved + step
+        meant = [
+            place.value + unit * x
+            for place, unit, x in zip(places, units, moved.tolist(), strict=True)
+        ]
+        edits = tuple(place.edit(value) for place, value in zip(places, meant, strict=True))
+        with changed(search.trial, edits):
+            there = search.values(which)
+            if there is not None and _right(search, there, which):
+                every = search.values(range(len(search.wanted)))
+                good = every is not None and _right(search, every, range(len(search.wanted)))
+                return _told(places, meant, matrix) if good else ()
+        if there is None:
+            return ()
+        now = there.ravel()
+    return ()
+
+
+def _right(search: LineSearch, values: Array, which: range) -> bool:
+    gap = np.abs(values - search.wanted[list(which)]).reshape(len(values), -1).max(axis=1)
+    return bool(np.max(gap / search.sizes[list(which)]) <= TOLERANCES.formula_agrees)
+
+
+def _told(places: list[NumberPlace], meant: list[float], matrix: Array) -> tuple[str, ...]:
+    pairs = [(float(place.value), value) for place, value in zip(places, meant, strict=True)]
+    if not all(_stands(*pair) for pair in pairs):
+        return ()
+    far = sorted(pairs, key=lambda pair: -abs(pair[1] / pair[0] - 1))
+    off = [p for p in far if abs(p[1] - p[0]) > TOLERANCES.same_relation * abs(p[0])][:_TOLD]
+    if not off or np.linalg.matrix_rank(matrix) < len(places):
+        return (_("the program's numbers are right to the digits that they are written with"),)
+    told = (stands_for(f"{abs(old):.15g}", f"{abs(new):.7g}") for old, new in off)
+    return tuple(dict.fromkeys(told))

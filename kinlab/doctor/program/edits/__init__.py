@@ -1,0 +1,16 @@
+"""What could stand in a program instead: every edit that undoes one kind of slip.
+
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
+``blocks``        Statements in other places: earlier or later, in a loop or behind it, one that is
+                  missing
+``data``          The numbers of a program: those in its text, and those in the data that it uses
+``every``         What could stand in a place of a program instead
+``exchanges``     What a slip moves together: two names for one another, one name throughout a
+                  statement
+``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
+                  numbers
+================  =================================================================================
+"""

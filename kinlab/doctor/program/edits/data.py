@@ -1,0 +1,254 @@
+"""The numbers of a program: those in its text, and those in the data that it uses."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit, places
+from kinlab.doctor.program.trial import FieldChange, Trial, is_data
+
+_RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
+_TABLE = 60
+"""Numbers of an array of which any may be wrong."""
+_ROWS = 8
+"""Rows of a table, and numbers of a row, of which any two may have been exchanged."""
+_NAMES = 12
+"""Names of numbers of which any two may have been exchanged."""
+
+
+def of_data(trial: Trial) -> Iterator[ProgramEdit]:
+    """Every number of the data with another sign, doubled, halved, or taken for degrees."""
+    for leaf in _leaves(trial):
+        if leaf.value:
+            yield leaf.edit(-leaf.value, "sign", 1.05)
+            yield leaf.edit(2 * leaf.value, "factor", 1.2)
+            yield leaf.edit(leaf.value / 2, "factor", 1.2)
+            yield leaf.edit(leaf.value * pi / 180, "degrees", 1.15)
+        if leaf.value in _RIGHT_ANGLES or abs(leaf.value) in (pi, 2 * pi):
+            for other in _RIGHT_ANGLES:
+                if other != leaf.value:
+                    yield leaf.edit(other, "number", 1.12)
+    for name in trial.program.data:
+        value = trial.space[name]
+        for new, kind in _whole(value):
+            yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
+        yield from _exchanged(name, value, ())
+    for held in trial.bound:
+        yield from _exchanged("self", held, ())
+    yield from _names_exchanged(trial)
+
+
+def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
+    """Two names that were given each other's numbers: ``m2, l2 = 0.4, 1.5``."""
+    plain = [n for n in trial.program.data if type(trial.space[n]) in (int, float)]
+    for one, other in combinations(plain[:_NAMES], 2):
+        first, last = trial.space[one], trial.space[other]
+        if first != last:
+            changes = (FieldChange(trial.space, one, last), FieldChange(trial.space, other, first))
+            told = (f"{one} = {first:.6g}, {other} = {last:.6g}",
+                    f"{one} = {last:.6g}, {other} = {first:.6g}")  # fmt: skip
+            yield ProgramEdit(DATA, changes, "entries swapped", 1.17, one, exchanged=told)
+
+
+def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[ProgramEdit]:
+    """Two numbers of a row, two rows, or two columns of a table for one another."""
+    for key, one in _members(value):
+        yield from _exchanged(name, one, (*place, key))
+    if not isinstance(value, list | np.ndarray) or not 1 < len(value) <= _ROWS:
+        return
+    if all(_is_plain(one) for one in value):
+        for i, j in combinations(range(len(value)), 2):
+            if value[i] != value[j]:
+                both = (FieldChange(value, i, value[j]), FieldChange(value, j, value[i]))
+                told = (_row(value), _row(_swapped(value, i, j)))
+                yield _swap(both, "entries swapped", name, place, told)
+        return
+    rows = [one for one in value if isinstance(one, list | tuple | np.ndarray)]
+    flat = all(_is_plain(x) for one in rows for x in one)
+    if len(rows) < len(value) or not flat or len({len(one) for one in rows}) > 1:
+        for k, one in enumerate(rows if len(rows) == len(value) else ()):
+            yield from _exchanged(name, one, (*place, k))
+        return
+    count = range(len(rows[0]))
+    if len(count) <= _ROWS:
+        for i, j in combinations(count, 2):
+            off = [k for k, one in enumerate(rows) if one[i] != one[j]]
+            for k in off:
+                told = (_row(rows[k]), _row(_swapped(rows[k], i, j)))
+                yield _swap(_of_row(value, k, i, j), "entries swapped", name, (*place, k), told)
+            if len(off) > 1:
+                changes = tuple(one for k in off for one in _of_row(value, k, i, j))
+                yield _swap(changes, "columns swapped", name, place, (f"[:, {i}]", f"[:, {j}]"))
+    for i, j in combinations(range(len(rows)), 2):
+        if not np.array_equal(rows[i], rows[j]):
+            changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
+            yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
+
+
+def _members(value: Any) -> list[tuple[Any, Any]]:
+    """What a dictionary or an object holds, by key or by name; of a list the objects in it."""
+    if isinstance(value, dict):
+        return [*value.items()]
+    if isinstance(value, list):
+        return [(k, x) for k, x in enumerate(value) if isinstance(x, dict) or _is_object(x)]
+    if not _is_object(value):
+        return []
+    return [(f".{k}", x) for k, x in vars(value).items() if not k.startswith("__")]
+
+
+def _is_object(value: Any) -> bool:
+    plain = isinstance(value, np.ndarray | list | tuple | str) or callable(value)
+    return hasattr(value, "__dict__") and not (plain and not isinstance(value, type))
+
+
+def _swap(
+    changes: tuple[FieldChange, ...],
+    kind: str,
+    name: str,
+    place: tuple[Any, ...],
+    told: tuple[str, str],
+) -> ProgramEdit:
+    return ProgramEdit(DATA, changes, kind, 1.13, name, place, exchanged=told)
+
+
+def _of_row(table: Any, k: int, i: int, j: int) -> tuple[FieldChange, ...]:
+    return _row_put(table, k, _swapped(table[k], i, j))
+
+
+def _row_put(table: Any, k: int, row: Any) -> tuple[FieldChange, ...]:
+    """A row put into a table; of an array number by number: its rows are no values of their own."""
+    if isinstance(table, np.ndarray):
+        return tuple(FieldChange(table, (k, i), float(x)) for i, x in enumerate(row))
+    return (FieldChange(table, k, row),)
+
+
+def _swapped(row: Any, i: int, j: int) -> Any:
+    order = [*range(len(row))]
+    order[i], order[j] = j, i
+    return row[order] if isinstance(row, np.ndarray) else type(row)(row[k] for k in order)
+
+
+def _row(row: Any) -> str:
+    return ", ".join(f"{x:.6g}" if _is_plain(x) else "..." for x in row)
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, int | float | np.number) and not isinstance(value, bool)
+
+
+def _whole(value: Any) -> Iterator[tuple[Any, str]]:
+    """All of a table otherwise."""
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size:
+        yield -value, "sign"
+        yield np.radians(value), "degrees"
+        if value.ndim == 2:
+            yield value.T, "transposed"
+    elif isinstance(value, list | tuple) and all(type(one) in (int, float) for one in value):
+        yield type(value)(one * pi / 180 for one in value), "degrees"
+
+
+@dataclass(frozen=True, eq=False)
+class NumberPlace:
+    """A number in the text of a program, or in its data.
+
+    Attributes:
+        value: what it is.
+        part: of the program; :data:`DATA` for the data.
+        holder, field: where it is kept.
+        node: of the text; of data the name.
+        place: the keys down to it.
+        inner: of these, those within a tuple, which is made anew as a whole.
+    """
+
+    value: float
+    part: int
+    holder: Any
+    field: Any
+    node: Any
+    place: tuple[Any, ...] = ()
+    inner: tuple[int, ...] = ()
+
+    def edit(self, value: float, kind: str = "number", cost: float = 1.15) -> ProgramEdit:
+        """Another number there."""
+        change = FieldChange(self.holder, self.field, value)
+        if self.inner:
+            change = replace(change, new=_rebuilt(change.now, self.inner, value))
+        both = (float(self.value), float(value))
+        return ProgramEdit(self.part, (change,), kind, cost, self.node, self.place, both)
+
+
+def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
+    """Numbers that are no index."""
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            node = here.node
+            if not isinstance(node, ast.Constant) or observed.of(node) is None:
+                continue
+            counts = type(node.value) is int and (
+                isinstance(here.parent, ast.BinOp) or _measured(here.parent)
+            )
+            if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
+                yield NumberPlace(node.value, part, node, "value", node)
+    yield from _leaves(trial)
+
+
+def _measured(holder: ast.AST) -> bool:
+    """A list that holds numbers with a point: a 0 in it is one of them, and no index."""
+    return isinstance(holder, ast.List | ast.Tuple) and any(
+        isinstance(one, ast.Constant) and isinstance(one.value, float) for one in holder.elts
+    )
+
+
+def _leaves(trial: Trial) -> Iterator[NumberPlace]:
+    for name in trial.program.data:
+        yield from _within(trial.space, name, trial.space[name], name, (), ())
+    for held in trial.bound:
+        yield from _below(held, "self", ())
+
+
+def _within(
+    holder: Any, key: Any, value: Any, name: str, place: tuple[Any, ...], inner: tuple[int, ...]
+) -> Iterator[NumberPlace]:
+    if isinstance(value, float | int) and not isinstance(value, bool):
+        yield NumberPlace(value, DATA, holder, key, name, place, inner)
+    elif isinstance(value, tuple):
+        for k, one in enumerate(value):
+            if is_data(one):
+                yield from _below(one, name, (*place, k))
+            else:
+                yield from _within(holder, key, one, name, (*place, k), (*inner, k))
+    elif not inner:
+        yield from _below(value, name, place)
+
+
+def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[NumberPlace]:
+    """The numbers in a list, a dictionary, an array, an object."""
+    if isinstance(value, dict | list):
+        for k, one in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from _within(value, k, one, name, (*place, k), ())
+    elif isinstance(value, np.ndarray):
+        if value.dtype.kind == "f" and value.size <= _TABLE:
+            for index in np.ndindex(value.shape):
+                entry = (*place, *index)
+                yield NumberPlace(float(value[index]), DATA, value, index, name, entry)
+    elif hasattr(value, "__dict__"):
+        for k, one in vars(value).items():
+            if not k.startswith("__") and not callable(one):
+                yield from _within(value, k, one, name, (*place, f".{k}"), ())
+
+
+def _rebuilt(old: Any, path: tuple[int, ...], new: float) -> Any:
+    """A tuple with another number in it."""
+    if not path:
+        return new
+    parts = [*old]
+    parts[path[0]] = _rebuilt(parts[path[0]], path[1:], new)
+    return tuple(parts)

@@ -1,0 +1,87 @@
+"""What a slip moves together: two names for one another, one name throughout a statement."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from itertools import combinations
+
+from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.program.edits.additions import ANGLES, Scope
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import Here, ProgramEdit, called
+
+_MOST = 6
+"""Names of one statement of which any two may be exchanged."""
+
+
+def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """All uses of a name in what a statement computes: another, or exchanged with those of one."""
+    value = here.node.value
+    if value is None:
+        return
+    uses: dict[str, list[ast.expr]] = {}
+    for node in nodes(value):
+        if isinstance(node, ast.Name | ast.Subscript) and _plain(node):
+            uses.setdefault(ast.unparse(node), []).append(node)
+    shapes: dict[str, Shape | None] = {}
+    for text, found in uses.items():
+        shapes[text] = observed.shape(found[0])
+    names = [text for text in uses if shapes[text] is not None and text not in scope.counters]
+    for one, other in combinations(names[:_MOST], 2):
+        if shapes[one] == shapes[other] and one[0] == other[0]:
+            both = _Renamed({one: uses[other][0], other: uses[one][0]})
+            cost = 1.1 + 0.01 * (len(uses[one]) + len(uses[other]))
+            yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
+    for text in names:
+        if len(uses[text]) > 1:
+            for other, node in scope.simple(shapes[text] or ()):
+                if other != text and other[0] == text[0] and other not in uses:
+                    new = _Renamed({text: node}).of(value)
+                    yield here.within(here.node, "value", new, "name", 1.14)
+    turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
+    count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
+    if turns and count > 1:
+        yield here.within(here.node, "value", _Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def _plain(node: ast.Name | ast.Subscript) -> bool:
+    if isinstance(node, ast.Name):
+        return isinstance(node.ctx, ast.Load)
+    return isinstance(node.value, ast.Name) and isinstance(node.slice, ast.Constant)
+
+
+class _Renamed(ast.NodeTransformer):
+    """Other expressions for names and entries, by what they are as text."""
+
+    def __init__(self, others: dict[str, ast.expr]) -> None:
+        self.others = others
+
+    def of(self, value: ast.expr) -> ast.expr:
+        """A copy of an expression with the others in it."""
+        new: ast.expr = self.visit(copied(value))
+        return new
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return copied(self.others.get(node.id, node))
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        other = self.others.get(ast.unparse(node))
+        if other is not None:
+            return copied(other)
+        self.generic_visit(node)
+        return node
+
+
+class _Turned(ast.NodeTransformer):
+    """Sine for cosine and cosine for sine."""
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        other = {"sin": "cos", "cos": "sin"}.get(called(node))
+        if other is not None:
+            if isinstance(node.func, ast.Attribute):
+                node.func.attr = other
+            else:
+                node.func = ast.Name(other, ast.Load())
+        return node

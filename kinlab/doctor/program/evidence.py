@@ -1,0 +1,227 @@
+"""What speaks against an edit: that what it changes is already what a textbook has.
+
+A function that returns the mass matrix at every call has no slip in it, nor has a statement whose
+value is the angular velocity of a link: what makes the program right by spoiling it is a
+coincidence of the numbers.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Sequence
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
+
+_SOUND = 0.2
+"""What an edit costs more in a function whose answers are all right."""
+_TRUSTED = 0.1
+"""What it costs more in a function of which a right value is made."""
+_COINCIDENT = 0.04
+"""What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
+_SPOILED = 0.15
+"""What an edit costs more that spoils what is right."""
+_WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
+"""Things of which an arm has one."""
+_STEPS = ("T", "T0", "R", "R0", "frame_inertia")
+"""Things of which it has one for each joint, which a function of the joint's number returns."""
+_OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
+"""The arm's own numbers, which do not vary: any value may meet one."""
+_SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
+"""Kinds of edit that leave no right value right; another index makes another thing."""
+
+
+class Grounds:
+    """What is right in a program before anything is changed.
+
+    Args:
+        trial: the program.
+        observed: what its expressions were at the states that it was watched at.
+        case: the question.
+        watched: which of its states these are.
+    """
+
+    def __init__(
+        self, trial: Trial, observed: Observed, case: Case, watched: Sequence[int]
+    ) -> None:
+        self.trial = trial
+        self.known: list[Glossary] = []
+        self.right: set[int] = set()
+        self.values: set[float] = set()
+        self.sound: set[int] = set()
+        self.trusted: set[int] = set()
+        self._of_data: dict[str, float] = {}
+        if table_of(case.robot) is None:
+            return
+        stacks = case.arguments.items()
+        self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
+        for part, tree in enumerate(trial.trees):
+            self._look(part, tree, observed)
+            for node in ast.walk(tree):
+                seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
+                if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
+                    own = float(seen.values[0])
+                    self.values |= {own, 1 / own} if own else set()
+        self._below()
+
+    def against(self, edit: ProgramEdit) -> float:
+        """What an edit costs more than it would where nothing is known to be right."""
+        if edit.part in self.sound:
+            return _SOUND
+        if edit.part == DATA:
+            name = str(edit.node)
+            if name not in self._of_data:
+                self._of_data[name] = self._against_data(name)
+            return self._of_data[name]
+        if edit.kind in _SPOILING and id(edit.node) in self.right:
+            return _SPOILED
+        if self.coincident(edit):
+            return _COINCIDENT
+        return _TRUSTED if edit.part in self.trusted else 0.0
+
+    def _against_data(self, name: str) -> float:
+        using = [k for k in self.trial.above[DATA] if self._uses(k, name)]
+        if using and all(k in self.sound for k in using):
+            return _SOUND
+        return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
+
+    def coincident(self, edit: ProgramEdit) -> bool:
+        """Whether an edit multiplies by a number that a name of the program has as its value."""
+        return edit.kind == "factor" and _factor(edit) in self.values
+
+    def count(self, observed: Observed) -> int:
+        """How many statements give what a textbook has."""
+        return sum(
+            self._of(node.value, observed) is not None
+            for tree in self.trial.trees
+            for node in nodes(tree)
+            if isinstance(node, ast.Assign | ast.Return) and node.value is not None
+        )
+
+    def _uses(self, part: int, name: str) -> bool:
+        tree = self.trial.trees[part]
+        return any(isinstance(node, ast.Name) and node.id == name for node in nodes(tree))
+
+    def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
+        """Statements that give what a textbook has, and whether the part returns it."""
+        returned: list[bool] = []
+        for node in nodes(tree):
+            if not isinstance(node, ast.Assign | ast.Return) or node.value is None:
+                continue
+            if isinstance(node.value, ast.Tuple):
+                for one in node.value.elts:
+                    self._right_alone(one, observed)
+            senses = self._of(node.value, observed)
+            good = senses is not None
+            if good and not isinstance(node.value, ast.Name):
+                self.right |= {id(inner) for inner in nodes(node)}
+            near = self._is_whole(node.value, observed)
+            if near:
+                self.trusted |= {k for k in range(1, len(self.trial.trees)) if self._calls(node, k)}
+            if isinstance(node, ast.Return) and observed.of(node.value) is not None:
+                told = senses or []
+                numbers = {one.number for one in told}
+                apart = len(numbers) == len(told) > 1 and None not in numbers
+                steps = good and apart and all(one.what in _STEPS for one in told)
+                returned.append(near or steps)
+        if part and returned and all(returned):
+            self.sound.add(part)
+
+    def _right_alone(self, node: ast.expr, observed: Observed) -> None:
+        if self._of(node, observed) is not None:
+            self.right |= {id(inner) for inner in ast.walk(node)}
+
+    def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
+        """Whether a value is nearly one of the things that an arm has one of: also a little beside
+        the state, where differences are taken."""
+        seen = observed.of(node)
+        if seen is None or not seen.shape or len(seen.values) < seen.count:
+            return False
+        return all(self._near(value) for value in seen.values)
+
+    def _near(self, value: Array) -> bool:
+        close = TOLERANCES.nearly_agrees * float(np.max(np.abs(value), initial=0.0))
+        for known in self.known:
+            rows, things = known.things.get(value.shape, ((), value))
+            for (_rank, sense), thing in zip(rows, things, strict=False):
+                if sense.what in _WHOLE and close and np.max(np.abs(thing - value)) <= close:
+                    return True
+        return False
+
+    def _of(self, node: ast.expr, observed: Observed) -> list[Sense] | None:
+        """What an expression was at each of its passes, the same at all the states.
+
+        None where it was something unknown at one of them, or nothing but zeros and ones.
+        """
+        seen, count = observed.of(node), len(self.known)
+        if seen is None or seen.shape is None or not count or seen.count % count:
+            return None
+        if len(seen.values) < seen.count:
+            return None
+        passes = seen.count // count
+        found: list[Sense] = []
+        for k in range(passes):
+            values = [seen.values[k + passes * j] for j in range(count)]
+            if not all(np.all((x == 0) | (np.abs(x) == 1)) for x in values):
+                sense = self._thing(values)
+                if sense is None:
+                    return None
+                found.append(sense)
+        return found or None
+
+    def _thing(self, values: list[Array]) -> Sense | None:
+        """A thing of the arm's that a value is at all the states: the first of several."""
+        found = self._row(values)
+        if found is None and self.known[0].plane and values[0].shape in ((), (2,)):
+            lifted = [np.append(x, 0.0) if x.shape else np.array([0.0, 0.0, x]) for x in values]
+            found = self._row(lifted)
+        return found
+
+    def _row(self, values: list[Array]) -> Sense | None:
+        same: Array | None = None
+        rows: Sequence[Row] = ()
+        for known, value in zip(self.known, values, strict=True):
+            rows, things = known.things.get(value.shape, ((), value))
+            if not rows:
+                return None
+            gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
+            here = gap <= TOLERANCES.same_relation * float(np.max(np.abs(value)))
+            same = here if same is None else same & here
+        for k in np.flatnonzero(same) if same is not None else ():
+            if rows[int(k)][1].what not in _OWN:
+                return rows[int(k)][1]
+        return None
+
+    def _below(self) -> None:
+        """Parts that only sound ones use are sound too; what a trusted one uses is trusted."""
+        trees = self.trial.trees
+        every = range(1, len(trees))
+        for _round in trees:
+            for k in every:
+                callers = [j for j in range(len(trees)) if j != k and self._calls(trees[j], k)]
+                if callers and all(j in self.sound for j in callers):
+                    self.sound.add(k)
+                if any(j in self.sound | self.trusted for j in callers):
+                    self.trusted.add(k)
+
+    def _calls(self, tree: ast.AST, part: int) -> bool:
+        name = self.trial.program.parts[part].name
+        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in nodes(tree))
+
+
+def _factor(edit: ProgramEdit) -> float:
+    """The number by which an edit multiplies; 0 where it does something else."""
+    new, old = edit.changes[0].new, 1.0
+    if isinstance(new, ast.BinOp) and isinstance(new.left, ast.Constant):
+        new = new.left.value
+    elif isinstance(edit.node, ast.Constant) and isinstance(edit.node.value, int | float):
+        old = float(edit.node.value)
+    return float(new) / old if isinstance(new, int | float) and old else 0.0

@@ -1,0 +1,12 @@
+"""Two or three slips in one program.
+
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``effects``       What tried edits do to a program's answer, number by number: which of them may go
+                  together
+``repairs``       Two or three edits that together make a program right
+``rest``          A wrong program asked where parts of its answer are silent: at rest, with one
+                  motion alone
+================  =================================================================================
+"""

@@ -1,0 +1,104 @@
+"""A wrong program asked where parts of its answer are silent: at rest, with one motion alone.
+
+Two slips that both change an answer in motion may show one at a time there: gravity alone, the
+terms in the accelerations alone.
+"""
+
+from __future__ import annotations
+
+import copy
+from dataclasses import replace
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.derivations.parts import MOVING
+from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.several.effects import Effects
+from kinlab.doctor.program.trial import NoProgramError
+from kinlab.errors import KinlabError
+from kinlab.tolerances import TOLERANCES
+
+
+class AtRest:
+    """Where a search is asked once more, at states of one argument alone.
+
+    Args:
+        search: whose program is wrong.
+    """
+
+    def __init__(self, search: LineSearch) -> None:
+        self.search = copy.copy(search)
+        self.own: Array | None = None
+        case = search.case
+        stacks = _states(case.arguments)
+        if case.quantity.read is not None or not stacks:
+            return
+        try:
+            with np.errstate(all="ignore"):
+                wanted = np.asarray(replace(case, arguments=stacks).answer(()), dtype=float)
+        except (KinlabError, np.linalg.LinAlgError, ValueError):
+            return
+        self.search.case = replace(case, arguments=stacks)
+        self.search.wanted, self.search.first = wanted, list(range(len(wanted)))
+        self.differences = any(name in MOVING for name in stacks)
+        self.goal = self._parts(wanted)
+        size = np.abs(self.goal).max(axis=tuple(range(1, wanted.ndim)), keepdims=True)
+        self.scale = np.maximum(size, max(float(np.max(size)) * TOLERANCES.formula_agrees, 1e-300))
+        if np.isfinite(wanted).all() and (values := self._values()) is not None:
+            self.own = values
+
+    def _parts(self, values: Array) -> Array:
+        """What there is at rest, and what each motion adds; or what there is at each state."""
+        parts = np.array(values)
+        if self.differences:
+            parts[1:] -= parts[0]
+        return parts
+
+    def _values(self) -> Array | None:
+        values = self.search.values(self.search.first)
+        if values is None or not np.isfinite(values).all():
+            return None
+        parts: Array = self._parts(values) / self.scale
+        return parts
+
+    def effects(self, known: Effects, most: int) -> Effects | None:
+        """The effects of the likeliest edits there, as many as so much work allows."""
+        if self.own is None:
+            return None
+        alike: list[list[ProgramEdit]] = []
+        rows: list[Array] = []
+        for edits in known.alike:
+            most -= self.search.cost_of(edits[0])
+            if most < 0:
+                break
+            try:
+                with changed(self.search.trial, (edits[0],)):
+                    values = self._values()
+            except NoProgramError:
+                continue
+            if values is not None:
+                alike.append(edits)
+                rows.append((values - self.own).ravel())
+        goal = (self.goal / self.scale - self.own).ravel()
+        own = self.own.ravel()
+        return Effects(
+            alike, np.array(rows).reshape(len(rows), own.size), own, goal, known.near, known.likely
+        )
+
+
+def _states(arguments: dict[str, Array]) -> dict[str, Array]:
+    """The first state at rest, and with each of its motions alone; without motions other poses."""
+    moving = [name for name in arguments if name in MOVING]
+    here = {name: stack[:1] for name, stack in arguments.items()}
+    if moving:
+        still = {name: np.zeros_like(x) if name in moving else x for name, x in here.items()}
+        blocks = [still, *({**still, name: here[name]} for name in moving)]
+        return {name: np.concatenate([block[name] for block in blocks]) for name in here}
+    if [*arguments] != ["q"] or here["q"].ndim != 2:
+        return {}
+    q = here["q"]
+    one = np.zeros_like(q)
+    one[:, 0] = q[:, 0]
+    return {"q": np.concatenate([np.zeros_like(q), one])}
