@@ -49,6 +49,8 @@ from kinlab.tolerances import TOLERANCES
 
 _NAMED = 8
 """Causes that are kept."""
+_SLIPS = 2
+"""Slips in a function's values above which one number of the robot that is another is likelier."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
 _FETCHED = 1.35
@@ -183,7 +185,8 @@ def _explained(
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
             causes += found
-    listed = all({*c.kinds} == {"coefficient"} for c in causes)
+    # one number of the robot that is another may look like a slip in every term it stands in
+    listed = all({*c.kinds} == {"coefficient"} or len(c.kinds) > _SLIPS for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
         causes = [*singly(case, changed)] or rough or causes

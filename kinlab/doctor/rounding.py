@@ -97,7 +97,7 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10."""
     g = np.array(case.robot.model.gravity.linear)
     size = float(np.linalg.norm(g))
-    if not size or case.hand.shape != engine.shape:
+    if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
     none = replace(case, robot=with_gravity(case.robot, 0 * g)).answer(())
     weight, rest = engine - none, case.hand - none

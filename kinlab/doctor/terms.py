@@ -16,7 +16,7 @@ from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.numbers_off import as_meant, beside_rounded
+from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -224,15 +224,35 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
 
 def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     form = _("{entry}: {slip} ({kind})")
-    told = _("; ").join(
+    slips = [
         form.format(entry=shown_entry(written.entry), slip=c.sentence(written.told), kind=_(c.kind))
         for c in found.changes
-    )
+    ]
+    repaired = replace(written, text=found.text)
+    told = _("; ").join((*slips, *rounded_in(repaired, here)))
     kinds = tuple(c.kind for c in found.changes)
-    values = replace(written, text=found.text).values(here)
+    values = repaired.values(here)
     text = written.restored(found.text)
     typed = written.typing.corrected(text) if written.typing is not None else ""
     return Slip(written.entry, kinds, told, text, found.cost, values, True, typed=typed)
+
+
+def turned(written: Written) -> Slip:
+    """The sign of a whole text, which needs no derivation: of an arm with many joints, too."""
+    plain, body = written.text.strip(), written.text.strip().removeprefix("-")
+    new = (body if body != plain else f"-{plain}") if _ONE_TERM.fullmatch(body) else f"-({plain})"
+    pieces = {"old": written.told(plain), "new": written.told(new)}
+    told = _("{old} should be {new}").format(**pieces)
+    said = _("{entry}: {slip} ({kind})").format(
+        entry=shown_entry(written.entry), slip=told, kind=_("sign")
+    )
+    text = written.restored(new)
+    typed = written.typing.corrected(text) if written.typing is not None else ""
+    return Slip(written.entry, ("sign",), said, text, 1.0, np.empty(0), True, typed=typed)
+
+
+_ONE_TERM = re.compile(r"[^-+]*(?:\([^()]*\)[^-+]*)*")
+"""A product without a sign in front, whatever stands between its parentheses."""
 
 
 def in_function(

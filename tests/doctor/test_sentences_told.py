@@ -48,3 +48,24 @@ def test_a_link_left_out_of_the_kinetic_energy_is_not_told_of_gravity():
     said = told("planar2r", "T", "m1*l1^2*qd1^2/2")
     assert "leaves link 2 out" in said
     assert "gravity" not in said
+
+
+def test_another_mass_is_not_told_as_a_slip_in_every_term_it_stands_in():
+    """A default is no line: m2 = 1 looks like a factor that is left out, and m1 + m2 like 2 m2."""
+
+    def torques(q, m1=2.0, m2=1.0):
+        second = m2 * 9.81 * L2 * np.cos(q[0] + q[1])
+        return np.array([(m1 + m2) * 9.81 * L1 * np.cos(q[0]) + second, second])
+
+    said = told("planar2r", "gravity_torques", torques)
+    assert "m1*g*l1*cos(q1) (index)" not in said
+    assert "1.5" in said
+
+
+def test_the_sign_of_a_text_is_told_where_nothing_is_derived():
+    """Gravity on an arm with four joints; beside it no rotation was left out in every line."""
+    for typed, right in (("(m3 + m4)*g", "-(m3 + m4)*g"), ("m3*g + m4*g", "-(m3*g + m4*g)")):
+        said = told("scara", "g3", typed)
+        assert f"g3: {typed} should be {right} (sign)" in said
+        assert f"correct: g3 = {right}" in said
+        assert "or:" not in said
