@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case, label_of
 from kinlab.doctor.examine import examine, prepare
@@ -163,8 +163,17 @@ def _read_better(
     return _also_said(second, notes)
 
 
-def require_sound(file: FormulaFile, robot: Robot) -> None:
+def twice(entry: str, other: str) -> str:
+    """What is told of two entries for one place: tau2 and a second line of [tau1, tau2]."""
+    one, two = shown_entry(entry), shown_entry(other)
+    return f"{one} is given twice{'' if one == two else f', also as {two}'}; keep one"
+
+
+def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
     """Refuses what :func:`examine_formulas` would refuse, without judging anything.
+
+    Returns:
+        The entries by the place that they claim: ``{"fk[0,3]": "x"}``.
 
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
@@ -173,6 +182,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
     wanted, titles = _claims(file, robot)
     for plain, formulas in wanted.items():
         _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
+    return titles
 
 
 def _claims(
@@ -190,6 +200,8 @@ def _claims(
         if any(isinstance(k, slice) for k in index):
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
         label = label_of(plain, index)
+        if label in titles:
+            raise ExpressionError(f"{file.path}: {twice(entry, titles[label])}")
         node = in_robot_names(text, file, robot, entry)
         wanted.setdefault(plain, {})[label] = written_as(entry, node, file, robot)
         titles[label] = entry

@@ -22,7 +22,7 @@ from kinlab.check.unread import Unread
 from kinlab.doctor.changes import label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas, require_sound, robot_of
+from kinlab.doctor.file import examine_formulas, require_sound, robot_of, twice
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import quantity_of
@@ -154,6 +154,7 @@ def _of_sound(
         lost = Unread(path, problem)
     bad = []
     left = document
+    claimed: dict[str, str] = {}
     for entry in entries_of(document):
         try:
             one = formula_file(alone(document, entry), path)
@@ -161,7 +162,12 @@ def _of_sound(
                 robot = robot_of(one)
             except KinlabError as missing:
                 return [], [Unread(path, missing)]
-            require_sound(one, robot)
+            places = require_sound(one, robot)
+            again = [label for label in places if label in claimed]
+            if again:
+                said = twice(places[again[0]], claimed[again[0]])
+                raise ExpressionError(f"{path}: {said}")
+            claimed |= places
         except KinlabError as problem:
             bad.append(Unread(f"{path}: {entry}", problem))
             left = with_entries(left, set(entries_of(left)) - {entry})

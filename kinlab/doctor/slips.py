@@ -85,7 +85,9 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
     if derived is None:
-        return []
+        slip = terms.turned(text) if text is not None else None
+        error = entry.error(-entry.hand, entry.engine)
+        return [slip.with_error(error)] if slip and error <= TOLERANCES.formula_agrees else []
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
     arguments = case.quantity.arguments
     if text is not None:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import numbers
 from kinlab.doctor.program.observed import Observed
@@ -83,7 +84,7 @@ def _among(value: float, known: Array) -> bool:
 
 def _alone(tree: ast.AST) -> Iterator[ast.AST]:
     """The numbers that names are set to as they are, or that stand in lists."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
         while waiting:
             one = waiting.pop()
