@@ -128,6 +128,7 @@ _SAID = {
     **KINDS,
     "unread": N_("could not be read"),
     "missing entries": N_("entries are missing"),
+    "no value": N_("it gives zero everywhere, or no number"),
 }
 
 
