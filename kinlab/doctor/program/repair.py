@@ -104,6 +104,7 @@ class LineSearch:
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
         self._few = self._at(self.first)
+        self._near = max(TOLERANCES.tried_further, allowed) * self.scale
         self._prepare()
 
     def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
@@ -314,9 +315,8 @@ class LineSearch:
 
     def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - (self.wanted[self.first] if wanted is None else wanted[self.first]))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
-        return near.all(axis=0).ravel()
+        gap = np.abs(values - (self._few[1] if wanted is None else wanted[self.first]))
+        return (gap <= self._near).all(axis=0).ravel()
 
     def verdict(
         self, several: tuple[ProgramEdit, ...], values: Array | None = None
