@@ -7,11 +7,14 @@ other convention), the arguments (degrees), the engine's question (another frame
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+import numpy as np
+
 from kinlab.arrays import Array
+from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
@@ -105,3 +108,60 @@ def table_of(mechanism: Any) -> DHTable | None:
     """The DH table of an arm that has one; a linkage has none."""
     table: DHTable | None = getattr(mechanism, "table", None)
     return table
+
+
+# -------- The single entries of an answer, with the index they have in the whole quantity
+
+
+@dataclass(frozen=True, eq=False)
+class AnswerEntry:
+    """One number of an answer over all states.
+
+    Attributes:
+        label: ``"inverse_dynamics[0]"``.
+        index: place in the whole quantity. local: place in the hand formula's answer.
+        hand, engine: (N,).
+        scale: what errors are relative to: the size of the whole answer, (N,).
+    """
+
+    label: str
+    index: tuple[int, ...]
+    local: tuple[int, ...]
+    hand: Array
+    engine: Array
+    scale: Array
+
+    @property
+    def agrees(self) -> bool:
+        """Whether this entry is right, to rounding."""
+        return self.error(self.hand, self.engine) <= TOLERANCES.formula_agrees
+
+    def error(self, one: Array, two: Array) -> float:
+        """Largest difference relative to the size of the answer."""
+        gap = np.abs(one - two)
+        return float(np.max(np.where(np.isfinite(gap), gap, np.inf) / self.scale))
+
+
+def entries(case: Case, engine: Array) -> Iterator[AnswerEntry]:
+    """Each entry of the case's answer."""
+    name = case.quantity.name
+    whole = case.engine(case.robot, {k: v[:1] for k, v in case.arguments.items()}).shape[1:]
+    places = np.empty(whole, dtype=object)
+    for index in np.ndindex(whole):
+        places[index] = index
+    chosen: Any = places[case.index] if case.index else places
+    scale = error_sizes(engine)
+    if engine.ndim == 1:
+        index = chosen if isinstance(chosen, tuple) else ()
+        yield AnswerEntry(label_of(name, index), index, (), case.hand, engine, scale)
+        return
+    for local in np.ndindex(engine.shape[1:]):
+        at = (slice(None), *local)
+        index = chosen[local]
+        yield AnswerEntry(label_of(name, index), index, local, case.hand[at], engine[at], scale)
+
+
+def label_of(name: str, index: Iterable[Any]) -> str:
+    """``mass_matrix[0,1]``; the name alone where the index is empty."""
+    places = ",".join(map(str, index))
+    return f"{name}[{places}]" if places else name

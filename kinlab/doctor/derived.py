@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -225,7 +225,13 @@ class Derivation:
 
     def tree(self, poly: Poly) -> Node:
         """One entry as a sum of terms."""
-        return tree.from_sympy(self.arm.expression(poly))
+        if poly not in self._trees:
+            self._trees[poly] = tree.from_sympy(self.arm.expression(poly))
+        return self._trees[poly]
+
+    @cached_property
+    def _trees(self) -> dict[Poly, Node]:
+        return {}
 
     def collected(self, poly: Poly) -> Node:
         """One entry by speeds and accelerations: (m2*l2**2 + m2*l1*l2*cos(q2))*qdd2 + ..."""

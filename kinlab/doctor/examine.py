@@ -12,16 +12,17 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors, some_rows
+from kinlab.check.compare import relative_errors, rows_alone
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import verdicts
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, entries
 from kinlab.doctor.confusions.known import readings
 from kinlab.doctor.confusions.tried import in_pairs, singly, the_formula
 from kinlab.doctor.derivations.joined import (
     Found,
     Ready,
+    likeliest,
     one_for_each_kind,
     ready,
     several_taken_otherwise,
@@ -40,7 +41,6 @@ from kinlab.doctor.numbers import other_numbers
 from kinlab.doctor.program.words import WrongLines, meant
 from kinlab.doctor.slips import LIST, RIVALS, reading_and_slips, slips_in
 from kinlab.doctor.solutions.verdict import judged
-from kinlab.doctor.terms import entries
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import OptionError
@@ -49,6 +49,8 @@ from kinlab.tolerances import TOLERANCES
 
 _NAMED = 8
 """Causes that are kept."""
+_SLIPS = 2
+"""Slips in a function's values above which one number of the robot that is another is likelier."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
 _FETCHED = 1.35
@@ -96,8 +98,9 @@ def examine(
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
-    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
-        partial = (meant,)
+    if not same and (alone := rows_alone(values.shape, engine.shape, quantity)):
+        said = _("to compare these rows alone, ask for {first} (the first) or {last} (the last)")
+        partial = (said.format(first=alone[0], last=alone[1]),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
@@ -142,8 +145,8 @@ def _explained(
     if written and off and silent is None:
         causes, partial = slips_in(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    plain = signs and _bare_signs(engine)
-    read = same and not written and (silent is not None or not plain)
+    bare = signs and _bare_signs(engine)
+    read = same and not written and (silent is not None or not bare)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
     if program is not None and program.digits is not None:
@@ -153,13 +156,19 @@ def _explained(
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
-    if edited and silent is not None:
-        return edited[:1], (), None, None
+    if program and edited and (silent or program.written_out or len(edited[0].kinds) > 1):
+        return edited[:1], (), None, None  # with nothing more to be said of what that means
     if not visible:
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
-        every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
+        if edited:  # what that may well mean
+            likely = [reading for reading in tried if reading.cost <= _FETCHED]
+            every = [*singly(loose, likely)]
+            known = [c.cost for c in every if c.error_after <= TOLERANCES.formula_agrees]
+            every += map(_as_steps, likeliest(loose, ways, min([_FETCHED, *known])))
+        else:
+            every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -171,13 +180,14 @@ def _explained(
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
-            known = [cause for cause in read_so if cause.cost <= _FETCHED]
-            return meant(edited, known), (), None, None
+            plain = [cause for cause in read_so if cause.cost <= _FETCHED]
+            return meant(edited, plain), (), None, None
         causes = _outranked(causes, exact)
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
             causes += found
-    listed = all({*c.kinds} == {"coefficient"} for c in causes)
+    # one number of the robot that is another may look like a slip in every term it stands in
+    listed = all({*c.kinds} == {"coefficient"} or len(c.kinds) > _SLIPS for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
         causes = [*singly(case, changed)] or rough or causes

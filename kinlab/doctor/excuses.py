@@ -12,11 +12,11 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
-from kinlab.doctor.changes import Arguments, Case, table_of
+from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.slips import of_entry, slip_cause
-from kinlab.doctor.terms import AnswerEntry, Slip, entries
+from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import Excuse
@@ -54,6 +54,8 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
             settled[place] = entry.engine
     if right and remarks:
         return case, Excuse("rounded", tuple(dict.fromkeys(remarks)))
+    if not right and (weighed := rounding.gravity_rounded(case, engine, False)) is not None:
+        return case, Excuse("rounded", weighed)  # 5.88 for m2*g*l2: it was worked out with 9.8
     return replace(case, hand=settled), None
 
 

@@ -199,10 +199,13 @@ def state_by_state(function: Function) -> Function:
         FormulaError: (when called) the function raised, or answered with changing shapes.
     """
 
+    known: dict[int, Any] = {}
+
     def stacked(numbers: Any, *stacks: Any) -> Any:
         del numbers
         answers = []
-        sides = _sides(function, len(stacks))
+        count = len(stacks)
+        sides = known[count] if count in known else known.setdefault(count, _sides(function, count))
         for k, state in enumerate(zip(*stacks, strict=True)):
             try:
                 rows = [

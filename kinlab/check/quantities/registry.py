@@ -46,22 +46,34 @@ def quantity(name: str) -> Quantity:
     Raises:
         NameUnknownError: no such quantity, or an index that cannot be read.
     """
+    split_name(name)  # refuses what cannot be read
+    return _quantity(name)
+
+
+def split_name(name: str) -> tuple[str, tuple[int | slice, ...]]:
+    """``"fk[:3,3]"`` as ``("fk", (slice(None, 3), 3))``.
+
+    Raises:
+        NameUnknownError: no such quantity, or an index that cannot be read.
+    """
     if not isinstance(name, str):
         raise NameUnknownError(f"quantity {shown(name)} is unknown; give a name, as text")
-    return _quantity(name)
+    known = quantities()
+    if name in known:
+        return name, ()
+    indexed = _INDEXED.fullmatch(name.strip())
+    plain = indexed.group(1) if indexed else name
+    if indexed is None or plain not in known:
+        raise NameUnknownError(f"quantity {name!r} is unknown; {near(plain, known)}")
+    return plain, tuple(_entry(text.strip(), name) for text in indexed.group(2).split(","))
 
 
 @cache
 def _quantity(name: str) -> Quantity:
-    known = quantities()
-    if name in known:
-        return known[name]
-    indexed = _INDEXED.fullmatch(name.strip())
-    if indexed is None or indexed.group(1) not in known:
-        plain = indexed.group(1) if indexed else name
-        raise NameUnknownError(f"quantity {name!r} is unknown; {near(plain, known)}")
-    whole = known[indexed.group(1)]
-    index = tuple(_entry(text.strip(), name) for text in indexed.group(2).split(","))
+    plain, index = split_name(name)
+    whole = quantities()[plain]
+    if not index:
+        return whole
 
     def engine(mechanism: Any, *stacks: Any) -> Any:
         answer = whole.engine(mechanism, *stacks)

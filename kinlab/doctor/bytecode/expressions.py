@@ -199,7 +199,10 @@ def literal(value: object, span: Span | None) -> ast.expr:
         return at(ast.Set([literal(v, span) for v in value]), span)
     if isinstance(value, slice):  # 3.14
         return at(limits(*(literal(v, span) for v in (value.start, value.stop, value.step))), span)
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and repr(value)[0] == "-":
+    negative = isinstance(value, (int, float)) and repr(value)[0] == "-"
+    turned = isinstance(value, complex) and repr(value)[:4] == "(-0-"  # what -1j comes to
+    if negative or turned:
+        assert isinstance(value, (int, float, complex))
         return at(ast.UnaryOp(ast.USub(), at(ast.Constant(-value), span)), span)
     return at(ast.Constant(value), span)  # type: ignore[arg-type]
 

@@ -35,6 +35,7 @@ from kinlab.doctor.bytecode.instructions import (
     unchain,
 )
 from kinlab.doctor.bytecode.steps import do
+from kinlab.doctor.bytecode.syntax import nodes
 
 BRANCHES = {"TEST", "AND", "OR"}
 GROWING = {"LIST_APPEND", "SET_ADD", "MAP_ADD"}
@@ -57,15 +58,10 @@ def definition(made: Made, name: str) -> ast.FunctionDef:
     head += [ast.Nonlocal(outer)] if outer else []
     if (text := docstring(code)) is not None:
         head.insert(0, ast.Expr(ast.Constant(text)))
-    tree = ast.FunctionDef(
-        name,
-        _arguments(made),
-        head + (body or [ast.Pass()]),
-        made.decorators,
-        made.notes.get("return"),
-    )
+    body, notes = head + (body or [ast.Pass()]), made.notes
+    tree = ast.FunctionDef(name, _arguments(made), body, made.decorators, notes.get("return"))
     line = code.co_firstlineno
-    last = max((span_of(n) or (line, line))[1] for n in ast.walk(tree))
+    last = max((span_of(n) or (line, line))[1] for n in nodes(tree))
     at(tree, (line, max(line, last), 0, 0))
     place(tree)
     return tree
@@ -78,16 +74,10 @@ def _arguments(made: Made) -> ast.arguments:
     rest = args[plain + only :]
     star = rest.pop(0) if code.co_flags & inspect.CO_VARARGS else None
     twice = rest.pop(0) if code.co_flags & inspect.CO_VARKEYWORDS else None
-    keywords = args[plain : plain + only]
-    return ast.arguments(
-        args[: code.co_posonlyargcount],
-        args[code.co_posonlyargcount : plain],
-        star,
-        keywords,
-        [made.keywords.get(arg.arg) for arg in keywords],
-        twice,
-        made.defaults,
-    )
+    first, keywords = code.co_posonlyargcount, args[plain : plain + only]
+    given = [made.keywords.get(arg.arg) for arg in keywords]
+    both = args[:first], args[first:plain]
+    return ast.arguments(*both, star, keywords, given, twice, made.defaults)
 
 
 class Reader:
@@ -440,7 +430,7 @@ def _asserts(raised: ast.expr | None) -> bool:
 
 def _turn(node: ast.expr) -> int:
     """When an expression is done, among the others of its statement."""
-    return max(getattr(part, "turn", -1) for part in ast.walk(node))
+    return max(getattr(part, "turn", -1) for part in nodes(node))
 
 
 def _stamp(lines: list[ast.stmt], step: CodeStep) -> None:

@@ -17,9 +17,10 @@ import math
 import warnings
 from types import CodeType, FunctionType
 
-from kinlab.doctor.bytecode.expressions import Made
+from kinlab.doctor.bytecode.expressions import Made, literal
 from kinlab.doctor.bytecode.instructions import UnreadError, alike
 from kinlab.doctor.bytecode.reading import definition
+from kinlab.doctor.bytecode.syntax import nodes
 
 
 def recovered(function: FunctionType) -> ast.FunctionDef | None:
@@ -53,24 +54,19 @@ def recovered(function: FunctionType) -> ast.FunctionDef | None:
 
 def _literals(values: tuple[object, ...]) -> list[ast.expr] | None:
     """The values as literals, or None if one is not."""
-    nodes: list[ast.expr] = []
-    for value in values:
-        plain = isinstance(value, (bool, int, float, str, type(None), tuple))
-        if not plain or (isinstance(value, float) and not math.isfinite(value)):
-            return None
-        if isinstance(value, tuple):
-            inner = _literals(value)
-            if inner is None:
-                return None
-            nodes.append(ast.Tuple(inner, ast.Load()))
-        else:
-            nodes.append(ast.parse(repr(value), mode="eval").body)
-    return nodes
+    return [literal(value, None) for value in values] if all(map(_plain, values)) else None
+
+
+def _plain(value: object) -> bool:
+    if isinstance(value, tuple):
+        return all(map(_plain, value))
+    known = isinstance(value, (bool, int, float, str, type(None)))
+    return known and not (isinstance(value, float) and not math.isfinite(value))
 
 
 def _compiled(tree: ast.FunctionDef, code: CodeType) -> CodeType | None:
     """The tree's own byte code, in surroundings that have the variables it takes from outside."""
-    calls = [n for n in ast.walk(tree) if isinstance(n, ast.Call) and hasattr(n, "of_import")]
+    calls = [n for n in nodes(tree) if isinstance(n, ast.Call) and hasattr(n, "of_import")]
     named = [n.func.value for n in calls if isinstance(n.func, ast.Attribute)]
     modules = sorted({n.id for n in named if isinstance(n, ast.Name)})
     body: list[ast.stmt] = [tree]

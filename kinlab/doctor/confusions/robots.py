@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -17,16 +17,16 @@ from kinlab.host.language import N_, _
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
-from kinlab.model.urdf_write import placements
+from kinlab.model.urdf_engine import build, document
+from kinlab.model.urdf_write import placements, records
 
 _DIRECTIONS = {
-    "+x": (1, 0, 0),
-    "-x": (-1, 0, 0),
-    "+y": (0, 1, 0),
-    "-y": (0, -1, 0),
-    "+z": (0, 0, 1),
-    "-z": (0, 0, -1),
+    f"{s}{x}": row
+    for x, e in zip("xyz", np.eye(3), strict=True)
+    for s, row in (("+", e), ("-", -e))
 }
+
+TableChange = Callable[[DHTable], DHTable]
 
 _READ_AS = {
     Convention.STANDARD: N_("reads the standard table as modified"),
@@ -45,40 +45,27 @@ def table_readings(robot: Robot) -> Iterator[Confusion]:
     if table is None:
         return
     other = Convention.STANDARD if table.convention is Convention.MODIFIED else Convention.MODIFIED
-    yield _table(
-        "convention",
-        _(_READ_AS[Convention(str(table.convention))]),
-        lambda t: replace(t, convention=other),
-        cost=1.05,
-    )
+    said = _(_READ_AS[Convention(str(table.convention))])
+    yield _table("convention", said, lambda t: replace(t, convention=other), 1.05)
     for which in ("base", "tool"):
         if not np.array_equal(getattr(table, which), np.eye(4)):
-            yield _table(which, _(_LEFT_OUT[which]), _setting(which, np.eye(4)))
-            inverse = np.linalg.inv(np.asarray(getattr(table, which)))
-            yield _table(which, _(_INVERTED[which]), _setting(which, inverse), cost=1.5)
+            out: dict[str, Any] = {which: np.eye(4)}
+            turned: dict[str, Any] = {which: np.linalg.inv(np.asarray(getattr(table, which)))}
+            yield _table(which, _(_LEFT_OUT[which]), partial(replace, **out))
+            yield _table(which, _(_INVERTED[which]), partial(replace, **turned), 1.5)
     yield from _column_readings(table)
     for i, link in enumerate(table.links):
-        yield _table(
-            "turning sense",
-            _("turns joint {joint} the other way").format(joint=i + 1),
-            _linked(i, flip=not link.flip),
-            cost=1.3,
-            place=f"joint {i + 1}",
-        )
+        said = _("turns joint {joint} the other way").format(joint=i + 1)
+        flipped = _linked(i, flip=not link.flip)
+        yield _table("turning sense", said, flipped, 1.3, f"joint {i + 1}")
         for column in ("theta", "d", "a", "alpha"):
             yield from _entry_readings(i, link, column)
         if table.convention is Convention.STANDARD and np.any(link.com) and (link.a or link.alpha):
-            com, tensor = _from_the_joint(link)
-            yield _inertial(
-                "centre's frame",
-                _(
-                    "measures the centre of mass of link {number} in the frame at its joint, not "
-                    "at its far end"
-                ).format(number=i + 1),
-                i,
-                _placed(com, tensor),
-                cost=1.15,
-            )
+            said = _(
+                "measures the centre of mass of link {number} in the frame at its joint, not at "
+                "its far end"
+            ).format(number=i + 1)
+            yield _inertial("centre's frame", said, i, _placed(link), 1.15)
 
 
 def _column_readings(table: DHTable) -> Iterator[Confusion]:
@@ -90,19 +77,24 @@ def _column_readings(table: DHTable) -> Iterator[Confusion]:
         if len(changed) > 1:
             yield _table("offset", words, _emptied(column))
     if any(link.alpha for link in table.links):
-        yield _table(
-            "alpha sign",
-            _("has every alpha with the opposite sign"),
-            lambda t: replace(t, links=[replace(k, alpha=-k.alpha) for k in t.links]),
-            cost=1.2,
-        )
+        said = _("has every alpha with the opposite sign")
+        yield _table("alpha sign", said, _each(lambda i, k: replace(k, alpha=-k.alpha)), 1.2)
     for shift, words in (
         (1, _("takes a and alpha of the row before")),
         (-1, _("takes a and alpha of the row behind")),
     ):
-        a = np.roll([link.a for link in table.links], shift)
-        alpha = np.roll([link.alpha for link in table.links], shift)
-        yield _table("row shift", words, _shifted(a, alpha), cost=1.4)
+        rows = [table.links[(i - shift) % len(table.links)] for i in range(len(table.links))]
+        taken = [(row.a, row.alpha) for row in rows]
+        yield _table("row shift", words, _a_and_alpha(taken), 1.4)
+
+
+def _emptied(column: str) -> TableChange:
+    none: dict[str, Any] = {column: 0.0}
+    return _each(lambda i, link: replace(link, **none))
+
+
+def _a_and_alpha(taken: list[tuple[float, float]]) -> TableChange:
+    return _each(lambda i, link: replace(link, a=taken[i][0], alpha=taken[i][1]))
 
 
 def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
@@ -112,15 +104,9 @@ def _entry_readings(i: int, link: DHLink, column: str) -> Iterator[Confusion]:
     kind = "offset" if column in ("theta", "d") else "table entry"
     forgets = _("leaves {column} of link {number} out").format(column=column, number=i + 1)
     yield _table(kind, forgets, _linked(i, **{column: 0.0}), cost=1.2, place=place)
-    yield _table(
-        f"{column} sign",
-        _("has {column} of link {number} with the opposite sign").format(
-            column=column, number=i + 1
-        ),
-        _linked(i, **{column: -value}),
-        cost=1.3,
-        place=place,
-    )
+    turned = _("has {column} of link {number} with the opposite sign")
+    turned = turned.format(column=column, number=i + 1)
+    yield _table(f"{column} sign", turned, _linked(i, **{column: -value}), 1.3, place)
 
 
 def gravity_readings(robot: Robot) -> Iterator[Confusion]:
@@ -132,17 +118,13 @@ def gravity_readings(robot: Robot) -> Iterator[Confusion]:
     yield _model("gravity sign", _("has gravity with the opposite sign"), _gravity(-gravity))
     yield _model("gravity left out", _("leaves gravity out"), _gravity(0 * gravity))
     for name, direction in _DIRECTIONS.items():
-        turned = size * np.array(direction, dtype=float)
+        turned = size * direction
         if not (np.allclose(turned, gravity) or np.allclose(turned, -gravity)):
-            yield _model(
-                "gravity axis",
-                _("has gravity along {axis}").format(axis=name),
-                _gravity(turned),
-                cost=1.1,
-            )
+            said = _("has gravity along {axis}").format(axis=name)
+            yield _model("gravity axis", said, _gravity(turned), 1.1)
     base = np.eye(3) if robot.table is None else np.asarray(robot.table.base)[:3, :3]
     for name, direction in _DIRECTIONS.items():
-        turned = size * base @ np.array(direction, dtype=float)
+        turned = size * base @ direction
         if np.max(np.abs(turned)) < size and not np.allclose(abs(turned @ gravity), size**2):
             said = _("has gravity along {axis} of the base frame").format(axis=name)
             yield _model("gravity axis", said, _gravity(turned), cost=1.12)
@@ -152,24 +134,16 @@ def inertia_readings(robot: Robot) -> Iterator[Confusion]:
     """Masses, centres, tensors and rotors: each link alone, and all together."""
     model = robot.model
     if np.any(model.armature):
-        yield _model(
-            "rotor inertia",
-            _("leaves out the rotors' inertia (armature) of all joints"),
-            _armature(None),
-        )
-        for i in np.flatnonzero(model.armature).tolist():
-            if np.count_nonzero(model.armature) > 1:
-                yield _model(
-                    "rotor inertia",
-                    _("leaves out the rotor's inertia (armature) of joint {joint}").format(
-                        joint=i + 1
-                    ),
-                    _armature(i),
-                    cost=1.2,
-                    place=f"joint {i + 1}",
-                )
+        said = _("leaves out the rotors' inertia (armature) of all joints")
+        yield _model("rotor inertia", said, _armature(slice(None)))
+        rotors = np.flatnonzero(model.armature).tolist()
+        for i in rotors if len(rotors) > 1 else ():
+            said = _("leaves out the rotor's inertia (armature) of joint {joint}")
+            said = said.format(joint=i + 1)
+            yield _model("rotor inertia", said, _armature(i), 1.2, f"joint {i + 1}")
     yield from _at_far_end(robot)
-    for kind, words, change, cost in _BODY_CHANGES:
+    for kind, words, times, cost in _BODY_CHANGES:
+        change = _taken(times)
         touched = [i for i in range(robot.n) if _changes(model.inertias[i + 1], change)]
         if len(touched) > 1:
             yield _inertial(kind, _(words).format(link=_("every link")), None, change, cost)
@@ -193,11 +167,8 @@ def _at_far_end(robot: Robot) -> Iterator[Confusion]:
 
         return apply
 
-    moved = [
-        i
-        for i in range(robot.n)
-        if not np.allclose(ends[i], model.inertias[i + 1].lever, atol=1e-12)
-    ]
+    levers = [body.lever for body in model.inertias[1:]]
+    moved = [i for i in range(robot.n) if not np.allclose(ends[i], levers[i], atol=1e-12)]
     said = _("puts the centre of mass of {link} at its far end (its length for its centre's)")
     if len(moved) > 1:
         told = said.format(link=_("every link"))
@@ -207,59 +178,15 @@ def _at_far_end(robot: Robot) -> Iterator[Confusion]:
         yield _model("centre", told, change([i]), 1.25, f"link {i + 1}")
 
 
-def _about_joint(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, old.inertia + steiner(old.mass, old.lever)
+Body = tuple[float, Array, Array]
+"""Mass, centre and tensor."""
+BodyChange = Callable[[Any], Body]
 
-
-def _about_centre(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, old.inertia - steiner(old.mass, old.lever)
-
-
-def _no_tensor(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, np.zeros((3, 3))
-
-
-def _products(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, 2 * np.diag(np.diag(old.inertia)) - old.inertia
-
-
-def _no_products(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever, np.diag(np.diag(old.inertia))
-
-
-def _at_joint(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, np.zeros(3), old.inertia
-
-
-def _mirrored(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, -old.lever, old.inertia
-
-
-def _no_mass(old: Any) -> tuple[float, Array, Array]:
-    return 0.0, old.lever, old.inertia
-
-
-def _without_mass(old: Any) -> tuple[float, Array, Array]:
-    return 0.0, old.lever, np.zeros((3, 3))
-
-
-def _double_mass(old: Any) -> tuple[float, Array, Array]:
-    return 2 * old.mass, old.lever, old.inertia
-
-
-def _half_centre(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, old.lever / 2, old.inertia
-
-
-def _double_centre(old: Any) -> tuple[float, Array, Array]:
-    return old.mass, 2 * old.lever, old.inertia
-
-
-_BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]], float], ...] = (
+_BODY_CHANGES: tuple[tuple[str, str, tuple[float, ...], float], ...] = (
     (
         "inertia point",
         N_("counts m c² of {link} twice: takes its inertia about the joint and adds m c² again"),
-        _about_joint,
+        (1, 1, 1, 1, 1),
         1.0,
     ),
     (
@@ -268,28 +195,52 @@ _BODY_CHANGES: tuple[tuple[str, str, Callable[[Any], tuple[float, Array, Array]]
             "leaves m c² out for {link}: the inertia about the centre stands for that about the "
             "joint"
         ),
-        _about_centre,
+        (1, 1, 1, 1, -1),
         1.0,
     ),
-    ("inertia left out", N_("leaves the inertia tensor of {link} out"), _no_tensor, 1.1),
+    ("inertia left out", N_("leaves the inertia tensor of {link} out"), (1, 1, 0, 0, 0), 1.1),
     (
         "products of inertia",
         N_("has the products of inertia of {link} with the opposite sign"),
-        _products,
+        (1, 1, 1, -1, 0),
         1.1,
     ),
-    ("products of inertia", N_("leaves the products of inertia of {link} out"), _no_products, 1.2),
-    ("centre", N_("puts the centre of mass of {link} at the joint"), _at_joint, 1.2),
-    ("centre", N_("measures the centre of mass of {link} to the other side"), _mirrored, 1.2),
-    ("centre", N_("has the centre of mass of {link} at half its distance"), _half_centre, 1.3),
-    ("centre", N_("has the centre of mass of {link} at twice its distance"), _double_centre, 1.3),
-    ("mass left out", N_("leaves the mass of {link} out"), _no_mass, 1.2),
-    ("link left out", N_("leaves {link} out of the dynamics"), _without_mass, 1.3),
-    ("mass", N_("counts the mass of {link} twice"), _double_mass, 1.4),
+    (
+        "products of inertia",
+        N_("leaves the products of inertia of {link} out"),
+        (1, 1, 1, 0, 0),
+        1.2,
+    ),
+    ("centre", N_("puts the centre of mass of {link} at the joint"), (1, 0, 1, 1, 0), 1.2),
+    (
+        "centre",
+        N_("measures the centre of mass of {link} to the other side"),
+        (1, -1, 1, 1, 0),
+        1.2,
+    ),
+    ("centre", N_("has the centre of mass of {link} at half its distance"), (1, 0.5, 1, 1, 0), 1.3),
+    ("centre", N_("has the centre of mass of {link} at twice its distance"), (1, 2, 1, 1, 0), 1.3),
+    ("mass left out", N_("leaves the mass of {link} out"), (0, 1, 1, 1, 0), 1.2),
+    ("link left out", N_("leaves {link} out of the dynamics"), (0, 1, 0, 0, 0), 1.3),
+    ("mass", N_("counts the mass of {link} twice"), (2, 1, 1, 1, 0), 1.4),
 )
+"""Kind, sentence, how many times a link's mass, centre, moments and products of inertia and m c²
+are taken, and cost."""
 
 
-def _changes(old: Any, change: Callable[[Any], tuple[float, Array, Array]]) -> bool:
+def _taken(times: tuple[float, ...]) -> BodyChange:
+    mass, centre, moments, products, about_joint = times
+
+    def change(old: Any) -> Body:
+        straight = np.diag(np.diag(old.inertia))
+        tensor = moments * straight + products * (old.inertia - straight)
+        tensor = tensor + about_joint * steiner(old.mass, old.lever)
+        return mass * old.mass, centre * old.lever, tensor
+
+    return change
+
+
+def _changes(old: Any, change: BodyChange) -> bool:
     mass, lever, tensor = change(old)
     return not (
         mass == old.mass
@@ -313,34 +264,27 @@ def _table(
     return Confusion(kind, sentence, "robot", apply, cost, place)
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=1024)
 def _built(table: DHTable) -> Robot:
-    """The robot of a changed table: entries of one file and pairs of readings ask for it again."""
-    return Robot.from_dh(table)
+    """The robot of a changed table: entries of one file and pairs of readings ask for it again.
+
+    As :meth:`Robot.from_dh` has it, but without its picture, which takes half of the time.
+    """
+    from lxml import etree
+
+    tree, names = records(table), list(table.joint_names)
+    text = etree.tostring(document(tree, names), encoding="unicode")
+    model = build(text, tree, names, f"table {table.name!r}")
+    tool = int(model.getFrameId(table.tool_name, pin.FrameType.BODY))
+    return Robot(table.name, model, tool, "", table, None, table.source)
 
 
-def _setting(which: str, value: Array) -> Callable[[DHTable], DHTable]:
-    def change(table: DHTable) -> DHTable:
-        settings: dict[str, Any] = {which: value}
-        return replace(table, **settings)
-
-    return change
+def _each(change: Callable[[int, DHLink], DHLink]) -> TableChange:
+    return lambda t: replace(t, links=[change(i, link) for i, link in enumerate(t.links)])
 
 
-def _emptied(column: str) -> Callable[[DHTable], DHTable]:
-    def change(table: DHTable) -> DHTable:
-        zero: dict[str, Any] = {column: 0.0}
-        return replace(table, links=[replace(link, **zero) for link in table.links])
-
-    return change
-
-
-def _shifted(a: Array, alpha: Array) -> Callable[[DHTable], DHTable]:
-    def change(table: DHTable) -> DHTable:
-        rows = zip(table.links, a, alpha, strict=True)
-        return replace(table, links=[replace(link, a=x, alpha=y) for link, x, y in rows])
-
-    return change
+def _linked(i: int, **columns: Any) -> TableChange:
+    return _each(lambda k, link: replace(link, **columns) if k == i else link)
 
 
 def _body(mass: float, lever: Array, tensor: Array) -> Any:
@@ -348,9 +292,6 @@ def _body(mass: float, lever: Array, tensor: Array) -> Any:
     body = pin.Inertia.Zero()
     body.mass, body.lever, body.inertia = mass, lever, tensor
     return body
-
-
-Body = tuple[float, Array, Array]
 
 
 def bodies_in_links(table: DHTable) -> list[Body]:
@@ -371,38 +312,29 @@ def with_body(robot: Robot, link: int, mass: float, com: Array, tensor: Array) -
     def change(model: Any) -> None:
         model.inertias[link + 1] = body
 
-    changed: Robot = _model("body", "", change).apply(robot)
-    return changed
+    return _with_model(robot, change)
 
 
-def _placed(com: Array, tensor: Array) -> Callable[[Any], tuple[float, Array, Array]]:
-    return lambda old: (old.mass, com, tensor)
-
-
-def _linked(i: int, **columns: Any) -> Callable[[DHTable], DHTable]:
-    def change(table: DHTable) -> DHTable:
-        links = list(table.links)
-        links[i] = replace(links[i], **columns)
-        return replace(table, links=links)
-
-    return change
+def _placed(link: DHLink) -> BodyChange:
+    """Centre and tensor as if given in the frame at the joint (no Tail in front)."""
+    return lambda old: (old.mass, np.array(link.com), np.array(link.inertia))
 
 
 def with_gravity(robot: Robot, value: Array) -> Robot:
     """The robot under another gravity, (3,) m/s² in the base."""
-    changed: Robot = _model("gravity", "", _gravity(value)).apply(robot)
-    return changed
+    return _with_model(robot, _gravity(value))
 
 
 def _model(
     kind: str, sentence: str, change: Callable[[Any], None], cost: float = 1.0, place: str = ""
 ) -> Confusion:
-    def apply(robot: Robot) -> Robot:
-        model = pin.Model(robot.model)
-        change(model)
-        return Robot(robot.name, model, robot.tool, "", robot.table, None, robot.source)
+    return Confusion(kind, sentence, "robot", partial(_with_model, change=change), cost, place)
 
-    return Confusion(kind, sentence, "robot", apply, cost, place)
+
+def _with_model(robot: Robot, change: Callable[[Any], None]) -> Robot:
+    model = pin.Model(robot.model)
+    change(model)
+    return Robot(robot.name, model, robot.tool, "", robot.table, None, robot.source)
 
 
 def _gravity(value: Array) -> Callable[[Any], None]:
@@ -412,10 +344,10 @@ def _gravity(value: Array) -> Callable[[Any], None]:
     return change
 
 
-def _armature(joint: int | None) -> Callable[[Any], None]:
+def _armature(joints: int | slice) -> Callable[[Any], None]:
     def change(model: Any) -> None:
         kept = np.array(model.armature)
-        kept[slice(None) if joint is None else joint] = 0.0
+        kept[joints] = 0.0
         model.armature = kept
 
     return change
@@ -425,7 +357,7 @@ def _inertial(
     kind: str,
     sentence: str,
     link: int | None,
-    change: Callable[[Any], tuple[float, Array, Array]],
+    change: BodyChange,
     cost: float = 1.0,
 ) -> Confusion:
     def apply(model: Any) -> None:
@@ -434,8 +366,3 @@ def _inertial(
 
     place = "" if link is None else f"link {link + 1}"
     return _model(kind, sentence, apply, cost, place)
-
-
-def _from_the_joint(link: DHLink) -> tuple[Array, Array]:
-    """Centre and tensor as if given in the frame at the joint (no Tail in front)."""
-    return np.array(link.com), np.array(link.inertia)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Mapping
 
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.derivations.operations import turns, without_own
 from kinlab.doctor.derivations.walk import Assignment, Program, Step, again
 from kinlab.doctor.derivations.words import (
@@ -23,6 +24,9 @@ from kinlab.doctor.derivations.words import (
     which,
 )
 from kinlab.host.language import N_, _
+
+_LINES = 2
+"""Lines of a loop up to which it is called by what they make."""
 
 
 def everywhere(of: Program) -> Iterator[Step]:
@@ -54,28 +58,28 @@ def slides(of: Program) -> Iterator[Step]:
         node
         for line in of.lines
         if line.about
-        for node in ast.walk(line.statement)
+        for node in nodes(line.statement)
         if isinstance(node, ast.IfExp)
     ]
-    nodes = [node for node in every if isinstance(node.test, ast.Subscript)]
-    if len(nodes) > 1:
+    asking = [node for node in every if isinstance(node.test, ast.Subscript)]
+    if len(asking) > 1:
         yield Step(
             "slide as hinge",
             _("treats a slide (prismatic joint) as a hinge (revolute)"),
-            tuple((node, node.body) for node in nodes),
+            tuple((node, node.body) for node in asking),
             1.0,
         )
         yield Step(
             "hinge as slide",
             _("treats a hinge (revolute) as a slide (prismatic joint)"),
-            tuple((node, node.orelse) for node in nodes),
+            tuple((node, node.orelse) for node in asking),
             1.15,
         )
     bounded = [node for node in every if isinstance(node.test, ast.Compare)]
     if len(bounded) > 1:
         does = _("leaves the link's own joint out (j < i for j <= i)")
         yield Step("own joint", does, tuple((x, without_own(x)) for x in bounded), 1.02)
-    inner = [x for x in bounded if ast.unparse(x.test) == "j <= k"]
+    inner = [x for x in bounded if text_of(x.test) == "j <= k"]
     if len(inner) > 1:
         does = _("gives every joint a column, also those behind the link")
         yield Step("sum", does, tuple((x, x.body) for x in inner), 1.05)
@@ -103,11 +107,11 @@ def _everywhere(of: Program) -> Iterator[Step]:
     assigned = {name_of(target) for line in of.lines for target in line.statement.targets}
     places: dict[str, list[tuple[int, ast.expr]]] = {}
     for number, line in enumerate(of.lines):
-        for node in ast.walk(line.statement.value) if line.about else ():
+        for node in nodes(line.statement.value) if line.about else ():
             turned = isinstance(node, ast.Attribute) and name_of(node.value) == "R"
             if turned or (isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name)):
                 assert isinstance(node, ast.expr)
-                places.setdefault(ast.unparse(node), []).append((number, node))
+                places.setdefault(text_of(node), []).append((number, node))
     in_every = _("{does} in every line")
     for found in places.values():
         if len({number for number, _node in found}) < 2:
@@ -138,7 +142,7 @@ def _other_axes(of: Program) -> Iterator[Step]:
     """Axis and origin of the frame before or behind, in every line; another axis of the frame."""
     places: dict[str, list[ast.Subscript]] = {"z": [], "o": []}
     for line in of.lines:
-        for node in ast.walk(line.statement.value) if line.about else ():
+        for node in nodes(line.statement.value) if line.about else ():
             if isinstance(node, ast.Subscript) and name_of(node) in places:
                 places[name_of(node)].append(node)
     if not places["z"] or not places["o"]:
@@ -164,9 +168,9 @@ def _other_links(of: Program) -> Iterator[Step]:
     """Rotation and place of the link before or behind, in every line where they stand together."""
     places: dict[str, list[ast.Subscript]] = {}
     for line in of.lines:
-        for node in ast.walk(line.statement.value) if line.about else ():
+        for node in nodes(line.statement.value) if line.about else ():
             if isinstance(node, ast.Subscript) and name_of(node) in ("R", "P"):
-                places.setdefault(ast.unparse(node.slice), []).append(node)
+                places.setdefault(text_of(node.slice), []).append(node)
     words = {
         ("R", -1): N_("takes the rotation R of the link before in every line"),
         ("R", 1): N_("takes the rotation R of the next link in every line"),
@@ -188,7 +192,7 @@ def _in_base(of: Program) -> Iterator[Step]:
     """What is asked for of every link, in the base's axes for the link's."""
     turn = ast.parse("R_[i]", mode="eval").body
     for line in of.lines:
-        if ast.unparse(line.statement.targets[0]) == "asked[i]":
+        if text_of(line.statement.targets[0]) == "asked[i]":
             value = line.statement.value
             parts = value.args if isinstance(value, ast.Call) else [value]
             edits = tuple((x, ast.BinOp(turn, ast.MatMult(), again(x))) for x in parts)
@@ -198,21 +202,21 @@ def _in_base(of: Program) -> Iterator[Step]:
 def _after_product(of: Program) -> Iterator[Step]:
     """What a loop inward multiplies up, taken after the link's own matrix and not before."""
     for loop in of.body:
-        if not isinstance(loop, ast.For) or ast.unparse(loop.iter) != "inward":
+        if not isinstance(loop, ast.For) or text_of(loop.iter) != "inward":
             continue
         lines = [line for line in of.lines if line.statement in loop.body]
-        made = {ast.unparse(line.statement.targets[0]): line for line in lines}
+        made = {text_of(line.statement.targets[0]): line for line in lines}
         products = {
             name: line
             for name, line in made.items()
-            if name.replace("i]", "i + 1]") in ast.unparse(line.statement.value)
-            and "R[i" in ast.unparse(line.statement.value)
+            if name.replace("i]", "i + 1]") in text_of(line.statement.value)
+            and "R[i" in text_of(line.statement.value)
         }
         for name, line in made.items():
             edits = []
-            for node in ast.walk(line.statement.value) if name not in products else ():
-                if isinstance(node, ast.Subscript) and ast.unparse(node) in products:
-                    text = ast.unparse(products[ast.unparse(node)].statement.value)
+            for node in nodes(line.statement.value) if name not in products else ():
+                if isinstance(node, ast.Subscript) and text_of(node) in products:
+                    text = text_of(products[text_of(node)].statement.value)
                     text = text.replace("[i]", "[i-1]").replace("[i + 1]", "[i]")
                     edits.append((node, ast.parse(text, mode="eval").body))
             if edits:
@@ -222,7 +226,7 @@ def _after_product(of: Program) -> Iterator[Step]:
 
 def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> Iterator[Step]:
     """Loops that leave their first or last joint out: what they make stays zero there."""
-    for loop in (x for statement in of.body for x in ast.walk(statement)):
+    for loop in (x for statement in of.body for x in nodes(statement)):
         if not isinstance(loop, ast.For) or n < 2:
             continue
         lines = [line for line in of.lines if line.statement in loop.body]
@@ -232,13 +236,15 @@ def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> It
             value, target = line.statement.value, line.statement.targets[0]
             if id(value) not in axes:
                 continue
-            sums = isinstance(target, ast.Name) and ast.unparse(target) in ast.unparse(value)
+            sums = isinstance(target, ast.Name) and text_of(target) in text_of(value)
             edits.append((value, again(target) if sums else times(0, value)))
         if not told_of or not edits:
             continue
         yield from _not_carried(loop, lines, n)
         for joint in (1, n):
             does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
+            if len(told_of) > _LINES:  # of so many, what is asked may be another
+                does = _("leaves link {number} out of the loop over the links: it is one too short")
             said = does.format(number=joint, line=together(told_of[-2:]))
             yield Step("loop", said, tuple(edits), 1.12, joint)
 
@@ -248,12 +254,12 @@ def _not_carried(loop: ast.For, lines: list[Assignment], n: int) -> Iterator[Ste
     carried = tuple(
         (part, times(0, part))
         for line in lines
-        for node in ast.walk(line.statement.value)
+        for node in nodes(line.statement.value)
         if isinstance(node, ast.expr) and is_sum(node)
         for part in halves(node)
-        if not is_sum(part) and "i + 1" in ast.unparse(part)
+        if not is_sum(part) and "i + 1" in text_of(part)
     )
-    if carried and ast.unparse(loop.iter) == "inward":
+    if carried and text_of(loop.iter) == "inward":
         late = _("does not carry the last link's part inward: the loop begins one link too late")
         early = _("carries nothing inward to the first link: the loop ends one link too early")
         alone = _("has each link's own part alone: carries nothing inward from the links behind")
@@ -266,7 +272,7 @@ def _not_turned(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[St
     """A rotation left out wherever it stands."""
     places: dict[str, list[ast.BinOp]] = {}
     for line in of.lines:
-        for node in ast.walk(line.statement.value) if line.about else ():
+        for node in nodes(line.statement.value) if line.about else ():
             if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)):
                 continue
             if turns(node.left) and len(axes.get(id(node.right), ())) == 1:
@@ -284,7 +290,7 @@ def _halves_exchanged(of: Program) -> Iterator[Step]:
         node
         for line in of.lines
         if line.about
-        for node in ast.walk(line.statement.value)
+        for node in nodes(line.statement.value)
         if isinstance(node, ast.Call) and name_of(node.func) == "twist"
     ]
     if calls:
@@ -298,18 +304,18 @@ def _updated(of: Program, axes: Mapping[int, tuple[int, ...]]) -> Iterator[Step]
         if not isinstance(loop, ast.For):
             continue
         lines = [line for line in of.lines if line.statement in loop.body]
-        made = [ast.unparse(target) for line in lines for target in line.statement.targets]
+        made = [text_of(target) for line in lines for target in line.statement.targets]
         for k, line in enumerate(lines):
             for later in lines[k + 1 :]:
-                name = ast.unparse(later.statement.targets[0])
+                name = text_of(later.statement.targets[0])
                 if made.count(name) != 1:
                     continue
                 before = name.replace("[i]", "[i-1]").replace("-", " - ")
                 edits = tuple(
                     (node, again(later.statement.value))
-                    for node in ast.walk(line.statement.value)
+                    for node in nodes(line.statement.value)
                     if isinstance(node, ast.Subscript)
-                    and ast.unparse(node) == before
+                    and text_of(node) == before
                     and id(node) in axes
                 )
                 if edits:

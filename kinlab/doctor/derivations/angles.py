@@ -10,6 +10,7 @@ import ast
 import re
 from collections.abc import Iterator
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.derivations.operations import Make
 from kinlab.doctor.derivations.walk import Program, Step, again
 from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
@@ -105,15 +106,16 @@ def _factors(node: ast.expr) -> Iterator[ast.expr]:
 
 def exchanged(of: Program) -> Iterator[Step]:
     """Two names each for the other, in one line and in every line."""
+    named = [
+        (line, [node for node in nodes(line.statement.value) if isinstance(node, ast.Name)])
+        for line in of.lines
+        if line.about
+    ]
     for one, two in _EXCHANGED:
         names = [spelt(ast.Name(x)) for x in (one, two)]
         every: list[tuple[ast.expr, ast.expr]] = []
-        for line in of.lines:
-            found = [
-                node
-                for node in ast.walk(line.statement.value)
-                if isinstance(node, ast.Name) and node.id in (one, two) and line.about
-            ]
+        for line, inside in named:
+            found = [node for node in inside if node.id in (one, two)]
             edits = [(x, again(ast.Name(two if x.id == one else one))) for x in found]
             every += edits
             if len({x.id for x in found}) == 2:
@@ -138,7 +140,7 @@ def of_angles(of: Program) -> Iterator[Step]:
             does = _("has {what} with the opposite sign").format(what=_(line.about))
             turned = ast.UnaryOp(ast.USub(), again(whole))
             yield Step("sign", does, ((whole, turned),), 1.02, about=line.about)
-        for node in ast.walk(whole):
+        for node in nodes(whole):
             if angle and is_sum(node) and isinstance(node, ast.BinOp) and is_sum(node.right):
                 # both at once: phi + (q1 + q2)
                 does = _("{does} in {line}").format(
@@ -179,7 +181,7 @@ def of_rods(of: Program) -> Iterator[Step]:
         found = [
             node
             for line in of.lines
-            for node in ast.walk(line.statement.value)
+            for node in nodes(line.statement.value)
             if isinstance(node, ast.Subscript) and name_of(node) == name
         ]
         for text, does, cost in ways if found else ():

@@ -29,6 +29,8 @@ placed otherwise."""
 _WORK = 1_200_000
 """Assignments that all derivations of a formula together may cost in one attempt: counted, and no
 clock, so that the answer is the same on every machine."""
+_PLAIN = 1.04
+"""Cost up to which steps are walked before all others, where the likeliest is asked for."""
 _FEW = 80
 """Steps up to which all are joined, also those that change what is right."""
 _CHUNK = 5_000
@@ -69,6 +71,24 @@ def _ready(case: Case, tried: Iterable[Road]) -> Ready:
 def taken_otherwise(case: Case, ways: Ready) -> list[Found]:
     """What explains the hand formula by one step, at all joints."""
     return [found for road, shapes in ways for found in _by_one(case, road, shapes, False)]
+
+
+def likeliest(case: Case, ways: Ready, most: float) -> list[Found]:
+    """Of what :func:`taken_otherwise` finds the likeliest, and nothing of more than a cost.
+
+    Steps that are far-fetched are walked only where no plain one explains the formula.
+    """
+    found: list[Found] = []
+    above = 0.0
+    for limit in (_PLAIN, np.inf):
+        for road, shapes in ways:
+            every = steps(road.of, shapes, road.n, False)
+            some = [step for step in every if above < step.cost <= min(limit, most)]
+            found += _tried(case, road, [(step,) for step in some])
+            exact = [one.cost for one in found if one.error <= TOLERANCES.formula_agrees]
+            most = min([most, *exact])
+        above = limit
+    return found
 
 
 def taken_at_one_joint(case: Case, ways: Ready) -> list[Found]:
@@ -239,6 +259,8 @@ def _apart(
 
 def _tried(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
     """The ways that give the hand formula: at one state first, then at all."""
+    if not ways:
+        return
     size = error_sizes(np.asarray(case.answer(())))
     few = case.few(1)
     near = []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.fivebar import numbers as numbers_of_loop
 from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.bytecode.syntax import text_of
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derivations.books import columns, energies, five_bar, matrices, recursions
 from kinlab.doctor.derivations.givens import (
@@ -220,7 +220,7 @@ def _road(of: Program, asked: Asked, robot: Robot, pairs: bool = True, walks: in
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         return asked(ways, x, lambda q: as_placed(robot, q))
 
-    slopes = any("slope(" in ast.unparse(line.statement) for line in of.lines)
+    slopes = any("slope(" in text_of(line.statement) for line in of.lines)
     work = walks * of.work(robot.n)
     return Road(of, walked, robot.n, work, pairs, asked, pairs or not slopes)
 
@@ -349,7 +349,7 @@ def through_links(case: Case) -> Iterator[Road]:
 def _through(of: Program, robot: Robot, asked: Asked) -> Walked:
     rest = np.array([f[0] for f in as_placed(robot, np.zeros((1, robot.n)))[1]])
     base = np.asarray(robot.table.base)  # type: ignore[union-attr]
-    exponential = not any("A[" in ast.unparse(line.statement) for line in of.lines)
+    exponential = not any("A[" in text_of(line.statement) for line in of.lines)
 
     def walked(ways: Ways, x: Stacks) -> tuple[Array, Walk]:
         count, n = len(ways), robot.n

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 from kinlab.doctor.derivations.across import across, everywhere, slides
 from kinlab.doctor.derivations.angles import at_angle, at_difference, exchanged, of_angles, of_rods
 from kinlab.doctor.derivations.operations import (
@@ -40,46 +41,49 @@ from kinlab.doctor.derivations.words import (
     told_other,
     which,
 )
-from kinlab.host.language import _, language
+from kinlab.host.language import _, language, speaking
 
-_ALIKE = (
-    "w dw",
-    "dv dvc",
-    "F f",
-    "N nn",
-    "P c",
-    "F N",
-    "f nn",
-    "Jv Jw",
-    "z o",
-    "crank rod",
-    "l1 l2",
-    "A B C",
-    "ct st",
-    "sa ca",
-    "a dd d",
-    "x y",
-    "qd qdd",
-    "p o",
-    "pc p",
-    "E1 E2",
-    "v a",
-    "M C",
-    "o_ o",
-    "R_ R",
-    "G q",
-    "c2 s2",
-    "c3 s3",
-    "c4 s4",
-    "c23 s23",
-    "beta psi",
-    "l2 l3",
-    "d3 d4",
-    "a2 a3",
-    "px py",
-    "late early",
-    "later earlier",
-)
+_ALIKE = [
+    pair.split()
+    for pair in (
+        "w dw",
+        "dv dvc",
+        "F f",
+        "N nn",
+        "P c",
+        "F N",
+        "f nn",
+        "Jv Jw",
+        "z o",
+        "crank rod",
+        "l1 l2",
+        "A B C",
+        "ct st",
+        "sa ca",
+        "a dd d",
+        "x y",
+        "qd qdd",
+        "p o",
+        "pc p",
+        "E1 E2",
+        "v a",
+        "M C",
+        "o_ o",
+        "R_ R",
+        "G q",
+        "c2 s2",
+        "c3 s3",
+        "c4 s4",
+        "c23 s23",
+        "beta psi",
+        "l2 l3",
+        "d3 d4",
+        "a2 a3",
+        "px py",
+        "late early",
+        "later earlier",
+    )
+]
 """Names that are easily taken for one another."""
 
 _GIVEN = ("zero", "one", "end", "g", "number", "zeros", "nothing")
@@ -95,10 +99,12 @@ def steps(of: Program, axes: Mapping[int, tuple[int, ...]], n: int, singly: bool
         n: number of joints.
         singly: at each joint alone.
     """
-    return list(_steps(of, tuple(sorted(axes.items())), n, singly, language()))
+    spoken = language()
+    with speaking(spoken):  # so that it need not be asked for at every word
+        return list(_steps(of, tuple(sorted(axes.items())), n, singly, spoken))
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)
 def _steps(
     of: Program,
     shapes_of: tuple[tuple[int, tuple[int, ...]], ...],
@@ -112,7 +118,7 @@ def _steps(
     found: list[Step] = []
     shapes: dict[str, tuple[int, ...]] = {}
     for line in of.lines:
-        for node in ast.walk(line.statement):
+        for node in nodes(line.statement):
             if isinstance(node, ast.Name | ast.Subscript) and id(node) in axes:
                 shapes[name_of(node)] = (isinstance(node, ast.Subscript), *axes[id(node)])
     for line in reversed(of.lines):  # of steps that come to the same, the one nearest the answer
@@ -123,7 +129,7 @@ def _steps(
     if not singly:
         return (*everywhere(of), *found, *across(of, axes, n))
     at_joint = _("{does}, at joint {joint}")
-    looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in ast.walk(s)}
+    looped = {id(x) for s in of.body if isinstance(s, ast.For) for x in nodes(s)}
     return tuple(
         replace(
             s,
@@ -161,11 +167,11 @@ def _of_line(
     yield from _terms(whole, axes, line.about, step)
     given = {
         id(x)
-        for call in ast.walk(whole)
+        for call in nodes(whole)
         if isinstance(call, ast.Call) and name_of(call.func) in ("ikj", "jki")
         for x in call.args
     }
-    for node in ast.walk(whole):
+    for node in nodes(whole):
         if not isinstance(node, ast.expr) or id(node) not in axes:
             continue
         if isinstance(node, ast.BinOp):
@@ -198,17 +204,16 @@ def _of_line(
 def _surroundings(whole: ast.expr) -> dict[int, str]:
     """For everything inside a term of a sum, or inside an entry of a matrix: in which."""
     out: dict[int, str] = {}
-    for node in ast.walk(whole):
+    for node in nodes(whole):
         if isinstance(node, ast.List):
             for r, row in enumerate(node.elts):
                 for c, entry in enumerate(row.elts if isinstance(row, ast.List) else ()):
                     where = _("entry ({row}, {column})").format(row=r + 1, column=c + 1)
-                    out |= {id(inner): where for inner in ast.walk(entry)}
+                    out |= {id(inner): where for inner in nodes(entry)}
         elif isinstance(node, ast.BinOp) and is_sum(node):
             for part in summands(node):
-                inside = (x for x in ast.walk(part) if x is not part)
-                if not is_sum(part):
-                    out |= {id(inner): told(part) for inner in inside}
+                term = told(part)
+                out |= {id(inner): term for inner in nodes(part)[1:]}
     return out
 
 
@@ -216,9 +221,9 @@ def _terms(
     whole: ast.expr, axes: Mapping[int, tuple[int, ...]], about: str, step: Make
 ) -> Iterator[Step]:
     """The terms of every sum: left out, with the other sign, twice, half; one alone."""
-    inner = {id(x) for node in ast.walk(whole) if is_sum(node) for x in halves(node)}
+    inner = {id(x) for node in nodes(whole) if is_sum(node) for x in halves(node)}
     tops = [id(x) for x in _branches(whole)]
-    for node in ast.walk(whole):
+    for node in nodes(whole):
         if not isinstance(node, ast.expr) or id(node) not in axes or id(node) in inner:
             continue
         if not is_sum(node) and (id(node) not in tops or isinstance(node, ast.List)):
@@ -265,7 +270,7 @@ def _that_of(what: str, part: ast.expr) -> str:
     if of_centre and name_of(part) == "dv":
         return _("takes the acceleration of the link's origin for that of the centre of mass")
     new = meant(part)
-    if isinstance(part, ast.Subscript) and "+ 1" in ast.unparse(part.slice):
+    if isinstance(part, ast.Subscript) and "+ 1" in text_of(part.slice):
         new = _("{what} of the next link").format(what=new)
     return _("takes {new} for {old}").format(new=new, old=_(what))
 
@@ -286,7 +291,7 @@ def _own_for_next(
     right = node.right
     if not (isinstance(node.op, ast.MatMult) and isinstance(right, ast.Subscript)):
         return
-    if name_of(node.left) != "R" or ast.unparse(right.slice) != "i + 1":
+    if name_of(node.left) != "R" or text_of(right.slice) != "i + 1":
         return
     for pair in (("f", "F"), ("nn", "N")):
         if name_of(right) == pair[0] and pair[1] in shapes:
@@ -299,15 +304,15 @@ def _own_for_next(
 
 def _before_for_behind(whole: ast.expr, step: Make) -> Iterator[Step]:
     """The way from the base to the link's end for that from the joint to the tool; all of it."""
-    for node in ast.walk(whole):
-        if isinstance(node, ast.BinOp) and ast.unparse(node) in ("p - o[i]", "pc - o[j]"):
+    for node in nodes(whole):
+        if isinstance(node, ast.BinOp) and text_of(node) in ("p - o[i]", "pc - o[j]"):
             first = ast.BinOp(node.left, ast.Sub(), ast.parse("o[1]", mode="eval").body)
             does = _(
                 "adds up all links for those behind the joint ({new} for {old}: the inner sum "
                 "begins at the first joint)"
             ).format(new=spelt(first, True), old=spelt(node, True))
             yield step("sum", does, 1.1, (node, first))
-        if isinstance(node, ast.BinOp) and ast.unparse(node) == "p - o[i]":
+        if isinstance(node, ast.BinOp) and text_of(node) == "p - o[i]":
             new = ast.parse("o_[i] - o_[0]", mode="eval").body
             does = _(
                 "adds up the links before the joint for those behind it ({new} for {old})"
@@ -324,16 +329,15 @@ def _others(
 ) -> Iterator[Step]:
     """Another index or another name, in one place and wherever it stands in the line."""
     places: dict[str, list[ast.expr]] = {}
-    inner = {id(x.value) for x in ast.walk(whole) if isinstance(x, ast.Subscript)}
-    called = {id(x.func) for x in ast.walk(whole) if isinstance(x, ast.Call)}
-    index = {
-        id(y) for x in ast.walk(whole) if isinstance(x, ast.Subscript) for y in ast.walk(x.slice)
-    }
-    for node in ast.walk(whole):
+    every = nodes(whole)
+    inner = {id(x.value) for x in every if isinstance(x, ast.Subscript)}
+    called = {id(x.func) for x in every if isinstance(x, ast.Call)}
+    index = {id(y) for x in every if isinstance(x, ast.Subscript) for y in nodes(x.slice)}
+    for node in every:
         named = isinstance(node, ast.Name | ast.Subscript) and id(node) in axes
         if named and not {id(node)} & (inner | called | index):
             assert isinstance(node, ast.expr)
-            places.setdefault(ast.unparse(node), []).append(node)
+            places.setdefault(text_of(node), []).append(node)
     for found in places.values():
         sets = [found, *([x] for x in found)] if len(found) > 1 else [found]
         for chosen in sets:
@@ -360,7 +364,7 @@ def _instead(
             if index is not None:
                 cost = 1.1 if name in ("z", "o") else 1.16
                 yield ast.Subscript(node.value, index), "index", cost
-    likely = {x for group in _ALIKE for x in group.split() if name in group.split()}
+    likely = {x for group in _ALIKE if name in group for x in group}
     for other in sorted(shapes):
         if other == name or shapes[other][1:] != axes or other in _GIVEN:
             continue

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes, text_of
 
 Rows = Any
 """Which alternatives are worked out: their numbers in order, or None for all."""
@@ -51,20 +52,20 @@ def _assignments(body: Iterable[ast.stmt], n: int) -> int:
     for statement in body:
         if isinstance(statement, ast.For):
             count += n * _assignments(statement.body, n)
-        elif "slope(" in ast.unparse(statement):
+        elif "slope(" in text_of(statement):
             count += 2 * n * count
         else:
             count += 1
     return count
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=256)
 def program(text: str) -> Program:
     """Reads a derivation; the comment above a line says what it is."""
     tree = ast.parse(text)
     rows = text.splitlines()
     lines = []
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, ast.Assign):
             above = rows[node.lineno - 2].strip() if node.lineno > 1 else ""
             lines.append(Assignment(node, above[2:] if above.startswith("# ") else ""))
@@ -115,6 +116,7 @@ class Walk:
         self.given: frozenset[str] = frozenset()
         self.joint = 0
         self.axes: dict[int, tuple[int, ...]] = {}
+        self.worked_out: dict[int, Array] = {}
         self.instead: dict[int, list[tuple[ast.expr, Any, Any]]] = {}
         marks: dict[tuple[int, int], tuple[ast.expr, ast.expr, list[int], list[int]]] = {}
         for row, way in enumerate(ways):
@@ -125,7 +127,7 @@ class Walk:
                     mark[3].append(step.joint or 0)
         for old, new, rows, joints in marks.values():
             found = self.instead.setdefault(id(old), [])
-            found.append((new, np.array(rows), np.array(joints)))
+            found.append((new, np.array(rows), np.array(joints) if any(joints) else None))
 
     def values(self, name: str) -> Array:
         """A name of the program after the walk, (B, N, ...)."""
@@ -165,6 +167,7 @@ class Walk:
             assert isinstance(target, ast.Name)
             self.names[target.id] = self._slope(statement)
             return
+        self.worked_out = {}
         value = self.value(statement.value, None)
         if isinstance(target, ast.Subscript):
             assert isinstance(target.value, ast.Name)
@@ -196,14 +199,25 @@ class Walk:
 
     def value(self, node: ast.expr, rows: Rows) -> Array:
         """An expression for some alternatives, (B or 1, N, ...)."""
-        marks = self.instead.get(id(node))
+        if rows is not None:
+            known = self.worked_out.get(id(node))
+            if known is not None:  # for all of them, by the line that is being run
+                return _chosen(known, rows)
         plain = self._plain(node, rows)
         self.axes[id(node)] = plain.shape[2:]
-        if marks is None:
-            return plain
-        out = np.array(self._spread(plain, rows))
+        marks = self.instead.get(id(node))
+        value = plain if marks is None else self._with_others(plain, rows, marks)
+        if rows is None:
+            self.worked_out[id(node)] = value
+        return value
+
+    def _with_others(
+        self, plain: Array, rows: Rows, marks: list[tuple[ast.expr, Any, Any]]
+    ) -> Array:
+        """A value in whose rows of alternatives their own expressions stand."""
+        out = plain
         for new, which, joints in marks:
-            here = which[(joints == 0) | (joints == self.joint)]
+            here = which if joints is None else which[(joints == 0) | (joints == self.joint)]
             at = here
             if rows is not None:
                 at = np.searchsorted(rows, here)
@@ -211,6 +225,9 @@ class Walk:
                 at, here = at[met], here[met]
             if not len(here):
                 continue
+            if out is plain:
+                count = len(self.ways) if rows is None else len(rows)
+                out = np.array(np.broadcast_to(plain, (count, *plain.shape[1:])))
             try:
                 part = self.value(new, here)
             except (Absent, ValueError, TypeError, IndexError, np.linalg.LinAlgError):
@@ -225,10 +242,6 @@ class Walk:
                 out = np.repeat(out, part.shape[1], axis=1)
             out[at] = _deep(part, out.ndim)
         return out
-
-    def _spread(self, value: Array, rows: Rows) -> Array:
-        count = len(self.ways) if rows is None else len(rows)
-        return np.broadcast_to(value, (count, *value.shape[1:]))
 
     def _plain(self, node: ast.expr, rows: Rows) -> Array:
         if isinstance(node, ast.Constant):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterable, Iterator
 
+from kinlab.doctor.bytecode.syntax import text_of
 from kinlab.doctor.derivations.walk import again
 from kinlab.host.language import N_, _
 
@@ -174,7 +175,7 @@ def which(old: ast.expr, new: ast.expr) -> str:
     assert isinstance(new, ast.Subscript)
     name = name_of(new)
     thing = "joint" if name == "z" else "frame" if name in ("o", "o_", "T", "R_") else "link"
-    one, two = ast.unparse(old.slice), ast.unparse(new.slice)
+    one, two = text_of(old.slice), text_of(new.slice)
     back = "- 1" in two or ("+ 1" in one and "+ 1" not in two)
     words = {
         ("joint", True): _("{what} of the joint before"),
@@ -234,8 +235,8 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
     if isinstance(node, ast.Subscript):
         name = spelt(node.value)
         if isinstance(node.slice, ast.Constant):
-            return f"{name}{ast.unparse(node.slice)}"
-        index = ast.unparse(node.slice).replace(" ", "")
+            return f"{name}{text_of(node.slice)}"
+        index = text_of(node.slice).replace(" ", "")
         return (
             name if not indexed else f"{name}_{index}" if len(index) == 1 else f"{name}_({index})"
         )
@@ -258,7 +259,7 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
         called = _CALLED.get(node.func.id, node.func.id)
         return f"{called}({', '.join(spelt(x, indexed) for x in node.args)})"
     if isinstance(node, ast.BinOp):
-        if isinstance(node.op, ast.Pow) and ast.unparse(node.right) == "1":
+        if isinstance(node.op, ast.Pow) and text_of(node.right) == "1":
             return spelt(node.left, indexed)
         if is_sum(node):
             sign = "+" if isinstance(node.op, ast.Add) else "-"
@@ -273,7 +274,7 @@ def spelt(node: ast.expr, indexed: bool = False) -> str:
         loose = isinstance(node.right, ast.Call) and isinstance(node.op, ast.Mult)
         right = spelt(node.right, indexed) if loose else _closed(node.right, indexed)
         return f"{left}{joint}{right}"
-    return spelt(node.body, indexed) if isinstance(node, ast.IfExp) else ast.unparse(node)
+    return spelt(node.body, indexed) if isinstance(node, ast.IfExp) else text_of(node)
 
 
 def _closed(node: ast.expr, indexed: bool) -> str:

@@ -27,13 +27,13 @@ import numpy as np
 
 from kinlab.check.diagnosis import Cause
 from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.marking.judge import of_values, states_of
 from kinlab.doctor.marking.marks import Outcome, lost, missing
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.submission import Submission
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import WrongLines
-from kinlab.doctor.terms import split_name
 from kinlab.errors import KinlabError
 from kinlab.host.language import N_, _
 

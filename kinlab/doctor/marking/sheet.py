@@ -31,10 +31,10 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
+from kinlab.check.quantities.registry import split_name
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name
@@ -49,17 +49,7 @@ _LIMIT = 1 << 20
 _QUESTIONS = 100
 _ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,31}")
 _SHEET = ("title", "robot", "feedback", "samples", "seed", "slips", "variation", "questions")
-_QUESTION = (
-    "id",
-    "text",
-    "title",
-    "entry",
-    "quantity",
-    "answer",
-    "points",
-    "slips",
-    "tolerance",
-)
+_QUESTION = ("id", "text", "title", "entry", "quantity", "answer", "points", "slips", "tolerance")
 
 
 class SheetError(FileError):

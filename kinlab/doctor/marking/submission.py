@@ -18,8 +18,8 @@ from pathlib import Path
 from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
+from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.marking.sheet import Question, Sheet
-from kinlab.doctor.terms import split_name
 from kinlab.doctor.text.claims import quantity_of
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.lines import read_lines

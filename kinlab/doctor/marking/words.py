@@ -94,6 +94,14 @@ KINDS: dict[str, str] = {
     N_("extra statement"): N_("a line is one too many"),
     N_("condition"): N_("a condition is off"),
     N_("entries swapped"): N_("two entries are exchanged"),
+    N_("names exchanged"): N_("two names are exchanged"),
+    N_("columns swapped"): N_("two columns are exchanged"),
+    N_("whole division"): N_("a division leaves the remainder out"),
+    N_("missing statement"): N_("a line is missing"),
+    N_("too deep"): N_("a line stands in a block and belongs behind it"),
+    N_("not deep enough"): N_("a line stands behind a loop or condition and belongs in it"),
+    N_("in the loop"): N_("a line stands in a loop and belongs before it"),
+    N_("before the loop"): N_("a line stands before a loop and belongs in it"),
     N_("rows"): N_("other rows or columns are taken"),
     N_("product"): N_("a product of matrices and one of entries are mixed"),
     N_("missing matrix"): N_("a product with a matrix is missing"),
@@ -105,32 +113,14 @@ KINDS: dict[str, str] = {
 """Kinds of slips, as a sheet may name them, with what is said of them."""
 
 OTHERS = (
-    N_("centripetal term"),
-    N_("tangential term"),
-    N_("tensor not rotated"),
-    N_("tensor transposed"),
-    N_("own joint"),
-    N_("theta sign"),
-    N_("products of inertia"),
-    N_("Christoffel"),
-    N_("unread"),
-    N_("missing entries"),
-    N_("another quantity"),
-    N_("exchanged"),
-    N_("rotation left out"),
-    N_("rotated twice"),
-    N_("only one term"),
-    N_("no value"),
-    N_("gravity added"),
-    N_("arguments exchanged"),
-    N_("quadrant"),
-    N_("supplementary angle"),
-    N_("root"),
-    N_("branches mixed"),
-    N_("constant angle"),
-    N_("singular matrix"),
-    N_("one number"),
-)
+    N_("centripetal term"), N_("tangential term"), N_("tensor not rotated"),
+    N_("tensor transposed"), N_("own joint"), N_("theta sign"),
+    N_("products of inertia"), N_("Christoffel"), N_("unread"), N_("missing entries"),
+    N_("another quantity"), N_("exchanged"), N_("rotation left out"),
+    N_("rotated twice"), N_("only one term"), N_("no value"), N_("gravity added"),
+    N_("arguments exchanged"), N_("quadrant"), N_("supplementary angle"), N_("root"),
+    N_("branches mixed"), N_("constant angle"), N_("singular matrix"), N_("one number"),
+)  # fmt: skip
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 
 
@@ -138,6 +128,7 @@ _SAID = {
     **KINDS,
     "unread": N_("could not be read"),
     "missing entries": N_("entries are missing"),
+    "no value": N_("it gives zero everywhere, or no number"),
 }
 
 

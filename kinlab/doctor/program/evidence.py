@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
 from kinlab.doctor.program.observed import Observed
@@ -57,13 +58,14 @@ class Grounds:
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
+        self._of_data: dict[str, float] = {}
         if table_of(case.robot) is None:
             return
         stacks = case.arguments.items()
         self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
         for part, tree in enumerate(trial.trees):
             self._look(part, tree, observed)
-            for node in ast.walk(tree):
+            for node in nodes(tree):
                 seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
                 if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
                     own = float(seen.values[0])
@@ -75,15 +77,21 @@ class Grounds:
         if edit.part in self.sound:
             return _SOUND
         if edit.part == DATA:
-            using = [k for k in self.trial.above[DATA] if self._uses(k, str(edit.node))]
-            if using and all(k in self.sound for k in using):
-                return _SOUND
-            return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
+            name = str(edit.node)
+            if name not in self._of_data:
+                self._of_data[name] = self._against_data(name)
+            return self._of_data[name]
         if edit.kind in _SPOILING and id(edit.node) in self.right:
             return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
         return _TRUSTED if edit.part in self.trusted else 0.0
+
+    def _against_data(self, name: str) -> float:
+        using = [k for k in self.trial.above[DATA] if self._uses(k, name)]
+        if using and all(k in self.sound for k in using):
+            return _SOUND
+        return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
 
     def coincident(self, edit: ProgramEdit) -> bool:
         """Whether an edit multiplies by a number that a name of the program has as its value."""
@@ -94,18 +102,18 @@ class Grounds:
         return sum(
             self._of(node.value, observed) is not None
             for tree in self.trial.trees
-            for node in ast.walk(tree)
+            for node in nodes(tree)
             if isinstance(node, ast.Assign | ast.Return) and node.value is not None
         )
 
     def _uses(self, part: int, name: str) -> bool:
         tree = self.trial.trees[part]
-        return any(isinstance(node, ast.Name) and node.id == name for node in ast.walk(tree))
+        return any(isinstance(node, ast.Name) and node.id == name for node in nodes(tree))
 
     def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
         """Statements that give what a textbook has, and whether the part returns it."""
         returned: list[bool] = []
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if not isinstance(node, ast.Assign | ast.Return) or node.value is None:
                 continue
             if isinstance(node.value, ast.Tuple):
@@ -114,7 +122,7 @@ class Grounds:
             senses = self._of(node.value, observed)
             good = senses is not None
             if good and not isinstance(node.value, ast.Name):
-                self.right |= {id(inner) for inner in ast.walk(node)}
+                self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
             if near:
                 self.trusted |= {k for k in range(1, len(self.trial.trees)) if self._calls(node, k)}
@@ -129,7 +137,7 @@ class Grounds:
 
     def _right_alone(self, node: ast.expr, observed: Observed) -> None:
         if self._of(node, observed) is not None:
-            self.right |= {id(inner) for inner in ast.walk(node)}
+            self.right |= {id(inner) for inner in nodes(node)}
 
     def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
         """Whether a value is nearly one of the things that an arm has one of: also a little beside
@@ -206,7 +214,7 @@ class Grounds:
 
     def _calls(self, tree: ast.AST, part: int) -> bool:
         name = self.trial.program.parts[part].name
-        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in ast.walk(tree))
+        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in nodes(tree))
 
 
 def _factor(edit: ProgramEdit) -> float:

@@ -49,15 +49,21 @@ class Contents:
         return [(one, one.copy()) for one in self._holders.values()]
 
     @staticmethod
-    def put_back(before: list[tuple[Any, Any]]) -> None:
-        """What was held when :meth:`now` was asked, wherever something was written."""
-        for one, copy in before:
-            if isinstance(one, np.ndarray):
-                if one.tobytes() != copy.tobytes():
-                    one[...] = copy
-            elif isinstance(one, list):
-                if len(one) != len(copy) or any(a is not b for a, b in zip(one, copy, strict=True)):
-                    one[:] = copy
-            elif one.keys() != copy.keys() or any(one[key] is not copy[key] for key in copy):
+    def put_back(before: list[tuple[Any, Any]]) -> bool:
+        """Puts back what was held when :meth:`now` was asked; whether anything was not so."""
+        spoilt = [(one, copy) for one, copy in before if not _same(one, copy)]
+        for one, copy in spoilt:
+            if isinstance(one, dict):
                 one.clear()
                 one.update(copy)
+            else:
+                one[... if isinstance(one, np.ndarray) else slice(None)] = copy
+        return bool(spoilt)
+
+
+def _same(one: Any, copy: Any) -> bool:
+    if isinstance(one, np.ndarray):
+        return bool(one.tobytes() == copy.tobytes())
+    if isinstance(one, dict):
+        return one.keys() == copy.keys() and all(one[key] is copy[key] for key in copy)
+    return len(one) == len(copy) and all(a is b for a, b in zip(one, copy, strict=True))

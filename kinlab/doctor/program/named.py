@@ -8,9 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.glossary.meaning import meaning_of, said
-from kinlab.doctor.glossary.textbook import Glossary, Sense, meanings
+from kinlab.doctor.glossary.textbook import Glossary, Sense
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch
@@ -28,21 +29,17 @@ def named(edit: ProgramEdit, search: LineSearch) -> list[tuple[str, str]]:
     """
     if table_of(search.case.robot) is None or edit.kind in ("loop", "condition"):
         return []
-    arguments = search.case.arguments
-    known = [
-        meanings(search.case.robot, {name: stack[k] for name, stack in arguments.items()})
-        for k in search.watched
-    ]
+    known = search.evidence.known
     if edit.part == DATA:
         if edit.numbers is None:
             return []
         right = np.array(edit.numbers[1])
         sense = meaning_of(known, [right for _state in known])
         return [] if sense is None else [(f"{edit.numbers[1]:.6g}", said(sense))]
-    nodes = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
-    texts = {ast.unparse(n): n for n in ast.walk(search.trial.trees[edit.part]) if _piece(n)}
+    changed = [edit.node, *(c.new for c in edit.changes if isinstance(c.new, ast.AST))]
+    texts = {ast.unparse(n): n for n in nodes(search.trial.trees[edit.part]) if _piece(n)}
     out: dict[str, str] = {}
-    for node in nodes:
+    for node in changed:
         for piece in _pieces(node):
             text = ast.unparse(piece)
             sense = _sense(texts.get(text, piece), search.observed, known)

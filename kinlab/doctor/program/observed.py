@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
 
 _KEPT = 64
@@ -45,7 +45,7 @@ class Observed:
         self._seen: dict[int, Seen] = {}
         parts = trial.program.parts
         originals = [trial.placed(k) for k in range(len(parts))]
-        self._by_number = [dict(enumerate(ast.walk(tree))) for tree in trial.trees]
+        self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         self.work: dict[int, int] = {}
         """Expressions evaluated at all the states by what depends on a part, by its number."""
@@ -59,7 +59,7 @@ class Observed:
             for k, function in enumerate(originals):
                 trial.place(k, function)
         own = [
-            sum(self._seen[id(node)].count for node in ast.walk(tree) if id(node) in self._seen)
+            sum(self._seen[id(node)].count for node in nodes(tree) if id(node) in self._seen)
             for tree in trial.trees
         ]
         self.work = {k: sum(own[j] for j in trial.above[k]) for k in trial.above}
@@ -107,9 +107,9 @@ def _numbers(value: Any) -> Array | None:
 
 def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
     """A copy in which every expression tells its value."""
-    own = copy.deepcopy(tree)
-    numbers = {id(node): number for number, node in enumerate(ast.walk(own))}
-    for parent in list(ast.walk(own)):
+    own = copied(tree)
+    numbers = {id(node): number for number, node in enumerate(nodes(own))}
+    for parent in nodes(own):
         for name, value in ast.iter_fields(parent):
             holder, keys = (
                 (value, range(len(value))) if isinstance(value, list) else (parent, [name])

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
+from kinlab.doctor.bytecode.syntax import nodes
 
 _Cache = type(functools.lru_cache(len))
 _HEAP = 1 << 9
@@ -211,7 +212,7 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
 
 def _plain(tree: ast.FunctionDef) -> bool:
     """Whether a definition asks for nothing but arithmetic."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, _BEYOND):
             return False
         names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -245,9 +246,9 @@ def _remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
     known = {**function.__globals__, **_free(function)}
     named = inspect.signature(function, follow_wrapped=False).parameters.values()
     kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
-    own = {n.id for n in ast.walk(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
-    own |= {n.arg for n in ast.walk(tree) if isinstance(n, ast.arg)} - kept
-    for node in ast.walk(tree):
+    own = {n.id for n in nodes(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    own |= {n.arg for n in nodes(tree) if isinstance(n, ast.arg)} - kept
+    for node in nodes(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
             root = _root(node.func.value)
             held = None if root is None or root in own else known.get(root, ())

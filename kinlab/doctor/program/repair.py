@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any
@@ -17,6 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
@@ -26,6 +27,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.scaled import larger, scaled
 from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
+from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
@@ -106,13 +108,21 @@ class LineSearch:
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
+        self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
+        self._few = self._at(self.first)
+        self._near = max(TOLERANCES.tried_further, allowed) * self.scale
         self._prepare()
+
+    def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
+        """The arguments and the right answers at some states."""
+        chosen = list(which)
+        return [stack[chosen] for stack in self.case.arguments.values()], self.wanted[chosen]
 
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
         self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
         self.observed = Observed(self.trial, self.states)
-        self.nodes = [sum(1 for _ in ast.walk(tree)) for tree in self.trial.trees]
+        self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
 
     @property
@@ -140,8 +150,15 @@ class LineSearch:
             isinstance(node, ast.For | ast.While | ast.comprehension | ast.MatMult)
             or (isinstance(node, ast.Call) and called(node) in ("cross", "dot"))
             for part in self.program.parts
-            for node in ast.walk(part.tree)
+            for node in nodes(part.tree)
         )
+
+    def at(self, case: Case, wanted: Array) -> LineSearch:
+        """The same program asked at other states, all of which are its first."""
+        other = copy.copy(self)
+        other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
+        other._few = other._at(other.first)
+        return other
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
         """The search for more, while edits stand in the program."""
@@ -154,14 +171,16 @@ class LineSearch:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
-            for edit in sorted(edits(self.trial, self.observed), key=self._dear):
+            tried = sorted(edits(self.trial, self.observed), key=self._dear)
+            variants = Variants(self.trial, tried)
+            for edit in tried:
                 if found and self.likely(edit) > best + (_DOUBTED if doubted else _TIED):
                     break
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
                     break
                 try:
-                    with changed(self.trial, (edit,)):
+                    with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
                         values = self.values(self.first)
                         if values is None:
                             continue
@@ -175,7 +194,7 @@ class LineSearch:
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if not found or best > _NUMBER:
-                found = [*self._numbers(), *found]
+                found = self._numbers() + found
         return found
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -195,7 +214,7 @@ class LineSearch:
                 lines.setdefault(row_of(edit), repair)
         if len(lines) < 2:
             return found
-        rights = {id(one): self._left_right(one) for one in [*lines.values()][:_RIVALS]}
+        rights = {id(one): self.left_right(one.edits[-1:]) for one in [*lines.values()][:_RIVALS]}
         most = max(rights.values())
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
@@ -223,9 +242,9 @@ class LineSearch:
                         held.append(repair)
         return [*held, *(one for one in found[_RIVALS:])] if held else found
 
-    def _left_right(self, repair: ProgramRepair) -> int:
-        """How many statements are what a textbook has, once a repair stands."""
-        with changed(self.trial, repair.edits[-1:]):
+    def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
+        """How many statements are what a textbook has, once edits stand."""
+        with changed(self.trial, several):
             try:
                 return self.evidence.count(Observed(self.trial, self.states))
             except Exception:  # noqa: BLE001  what cannot be watched tells nothing
@@ -247,22 +266,26 @@ class LineSearch:
             np.log10(max(1, work[edit.part]) / max(1, work[0]))
         )
 
-    def _numbers(self) -> Iterator[ProgramRepair]:
-        """Single numbers, of the text or the data, with which the program is right."""
+    def _numbers(self) -> list[ProgramRepair]:
+        """The single number, of the text or the data, with which the program is right.
+
+        Of several the one that is typed with the fewest digits: others only make up for it.
+        """
+        found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
         every = [*numbers(self.trial, self.observed)]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
         for place in every:
             if self.work > self.most + _SOLVED:
-                return
+                break
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
-                    yield repair
-                    return
+                    found.append((against(edit), len(f"{value:.12g}"), repair))
+        return [min(found, key=lambda one: one[:2])[2]] if found else []
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -311,9 +334,8 @@ class LineSearch:
 
     def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - (self.wanted[self.first] if wanted is None else wanted[self.first]))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
-        return near.all(axis=0).ravel()
+        gap = np.abs(values - (self._few[1] if wanted is None else wanted[self.first]))
+        return (gap <= self._near).all(axis=0).ravel()
 
     def verdict(
         self, several: tuple[ProgramEdit, ...], values: Array | None = None
@@ -334,11 +356,9 @@ class LineSearch:
     def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
         quantity, robot = self.case.quantity, self.case.robot
-        asked = state_by_state(quantity.asked(robot, self.trial.function))
-        stacks = [stack[list(which)] for stack in self.case.arguments.values()]
-        wanted = self.wanted[list(which)]
+        stacks, wanted = self._few if which is self.first else self._at(which)
         try:
-            values = np.asarray(asked(None, *stacks), dtype=float)
+            values = np.asarray(self._asked(None, *stacks), dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):

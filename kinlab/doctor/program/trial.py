@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
@@ -81,7 +82,7 @@ class Trial:
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
         self.trees = [_bounded(part.tree) for part in program.parts]
-        self.space["_turn"] = self._turn
+        self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
         self.above = _callers(program)
         self._touched: set[int] = set()
@@ -138,35 +139,50 @@ class Trial:
             setattr(self.classes[part.owner], part.name, function)
 
     @contextmanager
-    def changed(self, parts: set[int], changes: Sequence[FieldChange]) -> Iterator[None]:
+    def changed(
+        self,
+        parts: set[int],
+        changes: Sequence[FieldChange],
+        compiled: tuple[int, FunctionType] | None = None,
+    ) -> Iterator[None]:
         """The program with changes in it, beside those that stand already.
 
         Args:
             parts: where the changes are; -1 stands for the data.
             changes: what is put where.
+            compiled: the number of the changes in a function that has them, where it is made.
         """
-        before = [(change, change.now) for change in changes]
+        old = [(change, change.now) for change in changes]
         every = range(len(self.trees))
-        outer, compiled, kept = self._touched, [*self._made], [self.placed(k) for k in every]
+        outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
         held = self._contents.now()
         self._touched = outer | {k for part in parts for k in self.above[part]}
         try:
             for change in changes:
-                _located(change.new)
+                if compiled is None:
+                    _located(change.new)
                 change.put(change.new)
             for k in every:
-                if k in parts:
+                if k in parts and compiled is not None:
+                    self.space["_edit"], self._made[k] = compiled
+                elif k in parts:
                     self._made[k] = self._compiled(k)
                 # only of what no change reaches, this one's or one that stands, answers are kept
                 self.place(k, self._made[k] if k in self._touched else self._remembering[k])
             yield
         finally:
-            for change, old in reversed(before):
-                change.put(old)
-            self._contents.put_back(held)
-            self._touched, self._made = outer, compiled
+            for change, value in reversed(old):
+                change.put(value)
+            if self._contents.put_back(held):  # answers may rest on what was written
+                self._forget()
+            self._touched, self._made = outer, before
+            self.space["_edit"] = 0
             for k in every:
                 self.place(k, kept[k])
+
+    def _forget(self) -> None:
+        for one in self._remembering:
+            one.known.clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
@@ -229,22 +245,21 @@ def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> Fun
 def _callers(program: OwnProgram) -> dict[int, set[int]]:
     """For each part those whose answers depend on it, itself among them; -1 for the data."""
     every = range(len(program.parts))
-    calls = [
-        {k for k in every if program.parts[k].name in _names_in(part.tree)}
-        for part in program.parts
-    ]
+    names = [_names_in(part.tree) for part in program.parts]
+    calls = [{k for k in every if program.parts[k].name in inside} for inside in names]
     above = {k: {k} for k in every}
     for _round in every:
         for k in every:
             above[k] |= {j for j in every if calls[j] & above[k]}
-    data = {k for k in every if _names_in(program.parts[k].tree) & {*program.data}}
+    data = {k for k in every if names[k] & {*program.data}}
     owned = {k for k in every if program.parts[k].owner is not None}
     return {**above, -1: {j for k in data | owned for j in above[k] | {k}}}
 
 
 def _names_in(tree: ast.AST) -> set[str]:
-    names = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
-    return names | {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    found = nodes(tree)
+    names = {node.id for node in found if isinstance(node, ast.Name)}
+    return names | {node.attr for node in found if isinstance(node, ast.Attribute)}
 
 
 def _class_of(value: Any) -> type:
@@ -275,9 +290,21 @@ def _remembering(function: FunctionType) -> Any:
             if len(known) >= _REMEMBERED:
                 known.clear()
             known[key] = function(*asked)
-        return copy.deepcopy(known[key])
+        return _again(known[key])
 
+    remembered.known = known  # type: ignore[attr-defined]
     return remembered
+
+
+def _again(value: Any) -> Any:
+    """A copy of an answer."""
+    if isinstance(value, np.ndarray) and value.dtype.kind != "O":
+        return value.copy()
+    if type(value) in (float, np.float64, int):
+        return value
+    if type(value) in (tuple, list):
+        return type(value)(map(_again, value))
+    return copy.deepcopy(value)
 
 
 def _key(value: Any) -> Any:
@@ -293,7 +320,7 @@ def _key(value: Any) -> Any:
 
 def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
     """A copy that prints nothing and whose loops end."""
-    own = copy.deepcopy(tree)
+    own = copied(tree)
     own.returns, own.args.defaults = None, []
     own.args.kw_defaults = [None] * len(own.args.kwonlyargs)
     for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
@@ -319,7 +346,7 @@ def _located(new: Any) -> None:
     """Gives new nodes a line, which compiling asks for."""
     for one in new if isinstance(new, list) else [new]:
         if isinstance(one, ast.AST):
-            for node in ast.walk(one):
+            for node in nodes(one):
                 if "lineno" in node._attributes and not hasattr(node, "lineno"):
                     node.lineno = node.end_lineno = 1  # type: ignore[attr-defined]
                     node.col_offset = node.end_col_offset = 0  # type: ignore[attr-defined]

@@ -10,12 +10,14 @@ from typing import Any
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.program.digits import nearly, to_the_digits
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.scaled import believed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
@@ -122,7 +124,8 @@ def lines(
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
-        yield WrongLines([cause_of(one, search) for one in repairs], search.written_out)
+        told = [one for one in (believed(repair, search) for repair in repairs) if one]
+        yield WrongLines([cause_of(one, search) for one in told], search.written_out)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
@@ -254,7 +257,7 @@ def _of_data(edit: ProgramEdit) -> str:
 def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
     """What stands there, and what should: the widest that is short."""
     tree = trial.trees[edit.part]
-    above = {id(child): node for node in ast.walk(tree) for child in ast.iter_child_nodes(node)}
+    above = {id(child): node for node in nodes(tree) for child in ast.iter_child_nodes(node)}
     chain = [edit.node]
     while id(chain[-1]) in above and isinstance(chain[-1], ast.expr):
         chain.append(above[id(chain[-1])])

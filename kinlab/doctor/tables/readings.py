@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from itertools import combinations
+from itertools import combinations, product
 
 import numpy as np
 
@@ -72,19 +72,12 @@ def _differs(one: Chain, two: Chain) -> bool:
 
 
 def _convention(chain: Chain) -> Iterator[Reading]:
-    names = ("standard", "modified")
-    written, meant = names[chain.modified], names[not chain.modified]
-    cause = Cause(
-        None,
-        "convention",
-        written,
-        meant,
-        "convention",
-        _("the rows are in the modified convention, not the standard")
-        if meant == "modified"
-        else _("the rows are in the standard convention, not the modified"),
-        0.9,
-    )
+    written, meant = "standard", "modified"
+    told = _("the rows are in the modified convention, not the standard")
+    if chain.modified:
+        written, meant = meant, written
+        told = _("the rows are in the standard convention, not the modified")
+    cause = Cause(None, "convention", written, meant, "convention", told, 0.9)
     yield Reading(chain.but(modified=not chain.modified), (cause,))
 
 
@@ -103,10 +96,9 @@ def _shifted(chain: Chain) -> Iterator[Reading]:
             cells[:, [A, ALPHA]] = moved
             end = 1 if step > 0 else chain.n
             none = _("{slip}; row {row} has none").format(slip=told, row=end)
-            sentence = none if fill else told
-            cost = 1.1 if fill else 1.15
+            said, cost = (none, 1.1) if fill else (told, 1.15)
             written = chain.cells[:, [A, ALPHA]]
-            cause = Cause(every, "a, alpha", written, moved, "shifted", sentence, cost)
+            cause = Cause(every, "a, alpha", written, moved, "shifted", said, cost)
             yield Reading(chain.with_cells(cells), (cause,))
 
 
@@ -125,49 +117,30 @@ def _units(chain: Chain) -> Iterator[Reading]:
         (1.0 / turn, "radians for degrees", N_("turned into radians twice")),
     )
     for columns in ((ALPHA,), (THETA,), (ALPHA, THETA)):
-        if _entries(chain, columns) < 2:
-            continue  # a cell of its own
-        for factor, kind, told in angles:
-            cells = chain.cells.copy()
-            cells[:, columns] *= factor
-            yield Reading(chain.with_cells(cells), (_unit_cause(columns, kind, told, ()),))
+        for factor, kind, told in angles if _entries(chain, columns) > 1 else ():
+            yield Reading(_scaled(chain, columns, factor), (_unit_cause(columns, kind, told, ()),))
     for factor, kind, told in _SCALES:
-        for columns in ((A,), (D,), (A, D)):
-            if len(columns) == 1 and _entries(chain, columns) < 2:
-                continue
-            cells = chain.cells.copy()
-            cells[:, columns] *= factor
-            other = chain.with_cells(cells)
-            yield Reading(other, (_unit_cause(columns, kind, told, ()),))
-            if len(columns) == 2:
-                ends = {}
-                for which in ("base", "tool"):
-                    pose = getattr(chain, which).copy()
-                    pose[:3, 3] *= factor
-                    ends[which] = pose
-                for some in (("tool",), ("base",), ("base", "tool")):
-                    changed = {which: ends[which] for which in some}
-                    yield Reading(
-                        other.but(**changed),
-                        (_unit_cause(columns, kind, told, some),),
-                    )
+        for columns in ((A,), (D,)):
+            if _entries(chain, columns) > 1:
+                other = _scaled(chain, columns, factor)
+                yield Reading(other, (_unit_cause(columns, kind, told, ()),))
+        other = _scaled(chain, (A, D), factor)
+        for some in ((), ("tool",), ("base",), ("base", "tool")):
+            ends = {which: getattr(chain, which).copy() for which in some}
+            for pose in ends.values():
+                pose[:3, 3] *= factor
+            yield Reading(other.but(**ends), (_unit_cause((A, D), kind, told, some),))
+    both = _scaled(_scaled(chain, (A, D), 1e-3), (ALPHA, THETA), turn)
+    written, meant = "degrees and millimetres", "radians and metres"
+    said = _("the table is in degrees and millimetres")
+    yield Reading(both, (Cause(None, "units", written, meant, "units", said, 1.3),))
+
+
+def _scaled(chain: Chain, columns: tuple[int, ...], factor: float) -> Chain:
+    """The columns in other units; a single entry that is off is a cell of its own."""
     cells = chain.cells.copy()
-    cells[:, [A, D]] *= 1e-3
-    cells[:, [ALPHA, THETA]] *= turn
-    yield Reading(
-        chain.with_cells(cells),
-        (
-            Cause(
-                None,
-                "units",
-                "degrees and millimetres",
-                "radians and metres",
-                "units",
-                _("the table is in degrees and millimetres"),
-                1.3,
-            ),
-        ),
-    )
+    cells[:, columns] *= factor
+    return chain.with_cells(cells)
 
 
 def _entries(chain: Chain, columns: tuple[int, ...]) -> int:
@@ -195,36 +168,21 @@ def _unit_cause(columns: tuple[int, ...], kind: str, told: str, extra: tuple[str
 def _signs(chain: Chain) -> Iterator[Reading]:
     every = tuple(range(1, chain.n + 1))
     for column in range(4):
-        cells = chain.cells.copy()
-        cells[:, column] *= -1.0
-        name = COLUMNS[column]
-        rows = tuple(int(k) + 1 for k in np.flatnonzero(chain.cells[:, column]))
+        name, written = COLUMNS[column], chain.cells[:, column]
+        rows = tuple(int(k) + 1 for k in np.flatnonzero(written))
         if len(rows) < 2:
             continue  # a cell of its own
         told = _("column {column} has the wrong sign").format(column=name)
-        place = every if len(rows) == chain.n else rows
-        cause = Cause(place, name, chain.cells[:, column], cells[:, column], "sign", told, 1.1)
-        yield Reading(chain.with_cells(cells), (cause,))
-    cause = Cause(
-        every,
-        "flip",
-        list(chain.sign < 0),
-        list(chain.sign > 0),
-        "sense",
-        _("every joint turns the other way"),
-        1.2,
-    )
+        cause = Cause(rows, name, written, -written, "sign", told, 1.1)
+        yield Reading(_scaled(chain, (column,), -1.0), (cause,))
+    told, before, after = _("every joint turns the other way"), chain.sign < 0, chain.sign > 0
+    cause = Cause(every, "flip", list(before), list(after), "sense", told, 1.2)
     yield Reading(chain.but(sign=-chain.sign), (cause,))
 
 
 def _exchanged(chain: Chain) -> Iterator[Reading]:
-    for one, two in ((A, D), (ALPHA, THETA), (A, ALPHA), (D, THETA)):
+    for one, two, likely in ((A, D, 1.0), (ALPHA, THETA, 1.2), (A, ALPHA, 1.5), (D, THETA, 1.5)):
         names = (COLUMNS[one], COLUMNS[two])
-        likely = 1.0 if one == A and two == D else 1.2
-        if one == A and two == ALPHA:
-            likely = 1.5
-        if one == D:
-            likely = 1.5
         different = [int(k) for k in np.flatnonzero(chain.cells[:, one] != chain.cells[:, two])]
         sets = [[k] for k in different]
         if likely == 1.0:
@@ -234,118 +192,58 @@ def _exchanged(chain: Chain) -> Iterator[Reading]:
         for rows in sets:
             cells = chain.cells.copy()
             cells[rows, one], cells[rows, two] = chain.cells[rows, two], chain.cells[rows, one]
-            named = tuple(k + 1 for k in rows)
+            named = rows[0] + 1 if len(rows) == 1 else tuple(k + 1 for k in rows)
             told = _("{one} and {two} are exchanged").format(one=names[0], two=names[1])
-            yield Reading(
-                chain.with_cells(cells),
-                (
-                    Cause(
-                        named[0] if len(rows) == 1 else named,
-                        f"{names[0]}, {names[1]}",
-                        chain.cells[rows][:, [one, two]],
-                        cells[rows][:, [one, two]],
-                        "exchanged",
-                        at_row(named[0] if len(rows) == 1 else named, told),
-                        likely + (0.1 if len(rows) > 1 else 0.0),
-                    ),
-                ),
-            )
+            written, meant = (x[rows][:, [one, two]] for x in (chain.cells, cells))
+            cost = likely + (0.1 if len(rows) > 1 else 0.0)
+            both, said = ", ".join(names), at_row(named, told)
+            cause = Cause(named, both, written, meant, "exchanged", said, cost)
+            yield Reading(chain.with_cells(cells), (cause,))
 
 
 def _order(chain: Chain) -> Iterator[Reading]:
     n = chain.n
-    for i in range(n):
-        for j in range(i + 1, n):
-            order = list(range(n))
-            order[i], order[j] = j, i
-            near = 0.0 if j == i + 1 else 0.1
-            cause = Cause(
-                (i + 1, j + 1),
-                "order",
-                (i + 1, j + 1),
-                (j + 1, i + 1),
-                "exchanged",
-                _("rows {one} and {two} are exchanged").format(one=i + 1, two=j + 1),
-                1.0 + near,
-            )
-            yield Reading(_permuted(chain, order), (cause,))
-            cells = chain.cells[order]  # the joints and bodies stayed where they are
-            yield Reading(chain.with_cells(cells), (replace(cause, cost=cause.cost + 0.02),))
-    for i in range(n):
-        for j in range(n):
-            if abs(i - j) < 2:
-                continue
+    for i, j in combinations(range(n), 2):
+        order = list(range(n))
+        order[i], order[j] = j, i
+        told = _("rows {one} and {two} are exchanged").format(one=i + 1, two=j + 1)
+        one, two = (i + 1, j + 1), (j + 1, i + 1)
+        cost = 1.0 if j == i + 1 else 1.1
+        cause = Cause(one, "order", one, two, "exchanged", told, cost)
+        yield Reading(chain.permuted(order), (cause,))
+        cells = chain.cells[order]  # the joints and bodies stayed where they are
+        yield Reading(chain.with_cells(cells), (replace(cause, cost=cost + 0.02),))
+    for i, j in product(range(n), repeat=2):
+        if abs(i - j) > 1:
             order = [k for k in range(n) if k != i]
             order.insert(j, i)
-            cause = Cause(
-                (i + 1, j + 1),
-                "order",
-                i + 1,
-                j + 1,
-                "displaced",
-                _("row {row} belongs at place {place}").format(row=i + 1, place=j + 1),
-                1.3,
-            )
-            yield Reading(_permuted(chain, order), (cause,))
+            told = _("row {row} belongs at place {place}").format(row=i + 1, place=j + 1)
+            cause = Cause((i + 1, j + 1), "order", i + 1, j + 1, "displaced", told, 1.3)
+            yield Reading(chain.permuted(order), (cause,))
     if n > 3:
-        cause = Cause(
-            None,
-            "order",
-            "tool to base",
-            "base to tool",
-            "reversed",
-            _("the rows stand in reversed order"),
-            1.3,
-        )
-        yield Reading(_permuted(chain, list(range(n))[::-1]), (cause,))
-
-
-def _permuted(chain: Chain, order: list[int]) -> Chain:
-    return chain.but(
-        cells=chain.cells[order],
-        prismatic=chain.prismatic[order],
-        sign=chain.sign[order],
-        source=tuple(chain.source[k] for k in order),
-    )
+        told, way = _("the rows stand in reversed order"), ("tool to base", "base to tool")
+        cause = Cause(None, "order", *way, "reversed", told, 1.3)
+        yield Reading(chain.permuted(list(range(n))[::-1]), (cause,))
 
 
 def _joints(chain: Chain) -> Iterator[Reading]:
     kinds = ("revolute", "prismatic")
     for k in range(chain.n):
         slides = bool(chain.prismatic[k])
-        kind = chain.prismatic.copy()
-        kind[k] = not slides
-        cause = Cause(
-            k + 1,
-            "joint",
-            kinds[slides],
-            kinds[not slides],
-            "type",
-            at_row(
-                k + 1,
-                _("the joint is revolute, not prismatic")
-                if slides
-                else _("the joint is prismatic, not revolute"),
-            ),
-            1.0,
+        other, turned = (
+            _("the joint is prismatic, not revolute"),
+            _("the joint turns the other way"),
         )
+        if slides:
+            other = _("the joint is revolute, not prismatic")
+            turned = _("the joint slides the other way")
+        kind, sign = chain.prismatic.copy(), chain.sign.copy()
+        kind[k], sign[k] = not slides, -sign[k]
+        told, (written, meant) = at_row(k + 1, other), (kinds[slides], kinds[not slides])
+        cause = Cause(k + 1, "joint", written, meant, "type", told, 1.0)
         yield Reading(chain.but(prismatic=kind), (cause,))
-        sign = chain.sign.copy()
-        sign[k] *= -1.0
-        cause = Cause(
-            k + 1,
-            "flip",
-            bool(chain.sign[k] < 0),
-            bool(sign[k] < 0),
-            "sense",
-            at_row(
-                k + 1,
-                _("the joint slides the other way")
-                if slides
-                else _("the joint turns the other way"),
-            ),
-            1.0,
-        )
+        told, (before, after) = at_row(k + 1, turned), (bool(x[k] < 0) for x in (chain.sign, sign))
+        cause = Cause(k + 1, "flip", before, after, "sense", told, 1.0)
         yield Reading(chain.but(sign=sign), (cause,))
 
 
@@ -362,13 +260,6 @@ def _frames(chain: Chain, base: list[Array], tool: list[Array]) -> Iterator[Read
             cause = pose_cause(which, written, meant, known[0] if known else None)
             yield Reading(chain.but(**{which: meant}), (cause,))
     if np.max(np.abs(chain.base - chain.tool)) > 1e-12:
-        cause = Cause(
-            None,
-            "base, tool",
-            "base, tool",
-            "tool, base",
-            "exchanged",
-            _("base and tool are exchanged"),
-            1.2,
-        )
+        both, told = "base, tool", _("base and tool are exchanged")
+        cause = Cause(None, both, both, "tool, base", "exchanged", told, 1.2)
         yield Reading(chain.but(base=chain.tool, tool=chain.base), (cause,))

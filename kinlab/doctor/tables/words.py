@@ -159,22 +159,15 @@ def angle_cause(
     meant = wrapped(solved)
     change = degrees(wrapped(meant - written))
     if _close(written, 0.0):
-        return Cause(
-            row,
-            column,
-            written,
-            meant,
-            "missing",
-            at_row(row, _("{cell} lacks {change}").format(cell=column, change=change)),
-            1.0 if _round(meant, TOLERANCES.solved_angle) else 1.6,
-        )
+        told = at_row(row, _(_ANGLE_SLIPS["missing"]).format(cell=column, change=change))
+        cost = 1.0 if _round(meant, TOLERANCES.solved_angle) else 1.6
+        return Cause(row, column, written, meant, "missing", told, cost)
     kind, cost = _typed(written, meant)
     if cost > 1.7:
         kind, cost = _typed(math.degrees(written), math.degrees(meant))
-    told = _("{cell} lacks {change}: {written} written, {meant} meant").format(
-        cell=column, change=change, written=degrees(written), meant=degrees(meant)
-    )
-    return Cause(row, column, written, meant, kind, at_row(row, told), cost)
+    fields = {"change": change, "written": degrees(written), "meant": degrees(meant)}
+    told = at_row(row, _(_ANGLE_SLIPS["quarter-turn"]).format(cell=column, **fields))
+    return Cause(row, column, written, meant, kind, told, cost)
 
 
 _ANGLE_SLIPS = {
@@ -325,20 +318,11 @@ def _pose_relations(written: Array) -> Iterator[tuple[str, Array, str]]:
     yield "transposed", turned, N_("{frame} has its rotation transposed")
     if not np.any(written[:3, 3]):
         return
-    for factor, kind, told in (
-        (
-            1e-3,
-            "millimetres",
-            N_("{frame} has the slip 'millimetres' in its translation: meant is {meant}"),
-        ),
-        (0.1, "decimal", N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")),
-        (
-            10.0,
-            "decimal",
-            N_("{frame} has the slip 'decimal' in its translation: meant is {meant}"),
-        ),
-        (-1.0, "sign", N_("{frame} has the slip 'sign' in its translation: meant is {meant}")),
-    ):
+    metres = N_("{frame} has the slip 'millimetres' in its translation: meant is {meant}")
+    point = N_("{frame} has the slip 'decimal' in its translation: meant is {meant}")
+    sign = N_("{frame} has the slip 'sign' in its translation: meant is {meant}")
+    ways = ((1e-3, "millimetres", metres), (0.1, "decimal", point), (10.0, "decimal", point))
+    for factor, kind, told in (*ways, (-1.0, "sign", sign)):
         scaled = np.array(written)
         scaled[:3, 3] *= factor
         yield kind, scaled, told

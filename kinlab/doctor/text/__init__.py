@@ -23,6 +23,8 @@ module            what it holds
 ``pairs``         Pairs of effects that make up a difference, found without trying each with each
 ``stand_ins``     Numbers of a text within their digits: what they may stand for, and whether that
                   explains it
+``throughout``    One thing for another in the whole text: a name, a number, the joints, sines and
+                  cosines
 ``written``       A formula as its writer wrote it: names, literals with their digits, and values
                   at any numbers
 ================  ================================================================================

@@ -8,15 +8,12 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Mapping
-from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import (
-    Change,
     Line,
     Place,
     inside_call,
@@ -26,13 +23,12 @@ from kinlab.doctor.text.line import (
     words_in,
 )
 from kinlab.doctor.text.meanings import CLOSE
+from kinlab.doctor.text.throughout import NUMBERS, alike, throughout
 from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 
-_NUMBERS = {"1": 1.0, "2": 2.0, "3": 3.0, "4": 4.0, "6": 6.0, "8": 8.0, "12": 12.0, "0.5": 0.5}
-_NUMBERS |= {"(1/3)": 1 / 3, "(1/4)": 0.25, "(1/12)": 1 / 12}
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 
@@ -59,7 +55,7 @@ def study(line: Line) -> None:
         _as_factor(line, place)
         _as_term(line, place)
     _whole_terms(line)
-    _throughout(line)
+    throughout(line)
 
 
 def _name(line: Line, place: Place, name: str) -> None:
@@ -77,10 +73,8 @@ def _name(line: Line, place: Place, name: str) -> None:
         for i in range(1, line.names.n + 1):
             if i != index:
                 _node(line, place, tree.sym(f"{head}{i}"), "index", 1.2)
-                both = tree.add(
-                    tree.sym(f"{head}{min(i, index)}"), tree.sym(f"{head}{max(i, index)}")
-                )
-                _node(line, place, both, "missing term", 1.25)
+                pair = [tree.sym(f"{head}{k}") for k in sorted((i, index))]
+                _node(line, place, tree.add(*pair), "missing term", 1.25)
         for word, value in line.atoms.items() if head == "q" else ():
             line.instead(place, f"({name} + {word})", place.value + value, "missing term", 1.5)
         for order in line.names.letters:
@@ -110,7 +104,7 @@ def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
 def _number(line: Line, place: Place) -> None:
     decimal = "." in line.segment(place)
     idle = place.above is not None and is_product(place.above.node)
-    for shown, size in _NUMBERS.items():
+    for shown, size in NUMBERS.items():
         shown = "0.25" if decimal and size == 0.25 else shown
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
             line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
@@ -124,7 +118,7 @@ def _number(line: Line, place: Place) -> None:
         held = line.meanings.holds(float(line.segment(place)))
         means = line.meanings.holds(right) or (not decimal and shown.isdigit())
         # an error of all numbers that are written so would be laid into this one
-        sure = means or (decimal and len(_alike(line, line.segment(place))) < 2)
+        sure = means or (decimal and len(alike(line, line.segment(place))) < 2)
         if _beside_names(line, place):  # what is wrong with them comes to a number too
             sure = line.meanings.parameter(right) is not None
         if sure and not shown.startswith("-") and not (idle and shown == "1"):
@@ -191,95 +185,93 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     left, right = line.siblings[id(place)]
     start, end = place.span
     gap = line.source[left.span[1] : right.span[0]]
-    if isinstance(node.op, (ast.Add, ast.Sub)):
-        plus = isinstance(node.op, ast.Add)
-        at = left.span[1] + gap.index("+" if plus else "-")
-        old, new = ("+", "-") if plus else ("-", "+")
-        term = line.source[at + 1 : end].strip()
-        turned = left.value - right.value if plus else left.value + right.value
-        pieces = {"old": f"{old} {term}", "new": f"{new} {term}"}
-        told = N_("{old} should be {new}")
-        change = Change(at, at + 1, new, "sign", 1.0, told, pieces=pieces)
-        line.put(place, turned, change)
-        told = N_("the term {term} does not belong there")
-        pieces = {"term": f"{'' if plus else '-'}{term}"}
-        change = Change(at, end, "", "extra term", 1.1, told, pieces=pieces)
-        line.put(place, left.value, change)
-        first = line.source[start:at].strip()
-        alone = right.value if plus else -right.value
-        kept = at + 1 if plus else at
-        pieces = {"term": first}
-        change = Change(start, kept, "", "extra term", 1.15, told, pieces=pieces)
-        line.put(place, alone, change)
-        return
-    sign = {ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
+    sign = {ast.Add: "+", ast.Sub: "-", ast.Mult: "*", ast.Div: "/", ast.Pow: "**"}[type(node.op)]
     at = left.span[1] + gap.index(sign)
     first, second = line.source[start:at].strip(), line.source[at + len(sign) : end].strip()
+    if is_sum(node):
+        plus = sign == "+"
+        other = "-" if plus else "+"
+        shown = {"old": f"{sign} {second}", "new": f"{other} {second}"}
+        turned = left.value - right.value if plus else left.value + right.value
+        told = N_("{old} should be {new}")
+        line.edit(place, turned, (at, at + 1, other), "sign", 1.0, told, shown)
+        told, term = N_("the term {term} does not belong there"), second if plus else f"-{second}"
+        line.edit(place, left.value, (at, end, ""), "extra term", 1.1, told, {"term": term})
+        alone = right.value if plus else -right.value
+        line.edit(place, alone, (start, at + plus, ""), "extra term", 1.15, told, {"term": first})
+        return
     if isinstance(node.op, ast.Pow):
         base = left.value
         told, pieces = line.told(
             place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
         )
-        pieces |= {"old": line.segment(place), "new": first}
+        pieces["old"] = line.segment(place)
         cost = 1.1 if second.strip("()") == "2" else 1.5
-        change = Change(at, end, "", "power", cost, told, pieces=pieces)
-        line.put(place, base, change)
-        for other in (2, 3, 4, -1):
+        line.edit(place, base, (at, end, ""), "power", cost, told, pieces | {"new": first})
+        for power in (2, 3, 4, -1):
             with np.errstate(all="ignore"):
-                value = np.power(base, float(other))
-            raised = pieces | {"new": f"{first}**{other}"}
-            change = Change(at + 2, end, str(other), "power", 1.3, told, pieces=raised)
-            line.put(place, value, change)
+                value = np.power(base, float(power))
+            span = (at + 2, end, str(power))
+            line.edit(place, value, span, "power", 1.3, told, pieces | {"new": f"{first}**{power}"})
         return
     if isinstance(node.op, ast.Div):
         told, pieces = line.told(
             place, N_("/{factor} does not belong"), N_("/{factor} does not belong in {term}")
         )
-        pieces |= {"factor": second}
-        change = Change(at, end, "", "factor", 1.25, told, pieces=pieces)
-        line.put(place, left.value, change)
+        span = (at, end, "")
+        line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
+        _as_fraction(line, place, left, right)
         return
     told, pieces = line.told(
         place,
         N_("the factor {factor} does not belong"),
         N_("the factor {factor} does not belong in {term}"),
     )
-    one, two = pieces | {"factor": second}, pieces | {"factor": first}
-    kinds = [
-        "factor" if isinstance(part.node, ast.Constant) else "extra factor"
-        for part in (right, left)
-    ]
-    line.put(place, left.value, Change(at, end, "", kinds[0], 1.3, told, pieces=one))
-    kind = kinds[1]
-    line.put(place, right.value, Change(start, at + 1, "", kind, 1.3, told, pieces=two))
+    for kept, gone, factor, span in (
+        (left, right, second, (at, end, "")),
+        (right, left, first, (start, at + 1, "")),
+    ):
+        kind = "factor" if isinstance(gone.node, ast.Constant) else "extra factor"
+        line.edit(place, kept.value, span, kind, 1.3, told, pieces | {"factor": factor})
+
+
+def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
+    """A fraction of two numbers behind a term that does not belong there: ``*180/pi``."""
+    if not isinstance(left.node, ast.BinOp) or not isinstance(left.node.op, ast.Mult):
+        return
+    front, above = line.siblings[id(left)]
+    numbers = (above.node, right.node)
+    if not all(isinstance(x, ast.Constant) or ast.unparse(x) == "pi" for x in numbers):
+        return
+    start, end = front.span[1], place.span[1]
+    told, pieces = line.told(
+        place,
+        N_("the factor {factor} does not belong"),
+        N_("the factor {factor} does not belong in {term}"),
+    )
+    pieces |= {"factor": line.source[above.span[0] : end]}
+    line.edit(place, front.value, (start, end, ""), "factor", 1.1, told, pieces)
 
 
 def _as_factor(line: Line, place: Place) -> None:
     """Squares, and factors that are missing in front of a term."""
     node = place.node
     piece = line.segment(place)
+    whole = is_sum(node)
     wrapped = f"({piece})" if isinstance(node, (ast.BinOp, ast.UnaryOp)) else piece
-    atom = isinstance(node, (ast.Name, ast.Call)) or is_sum(node)
-    if atom and not _is_base(place):
-        cost = 1.1 if not is_sum(node) else 1.4
+    if (isinstance(node, (ast.Name, ast.Call)) or whole) and not _is_base(place):
+        cost = 1.4 if whole else 1.1
         closed = re.match(r"\s*\)", line.source[place.span[1] :])
         outside = _outer_start(line, place) < place.span[0] and closed is not None
         behind = place.span[1] + (closed.end() if closed else 0)
-        line.instead(
-            place,
-            f"{wrapped}**2",
-            place.value**2,
-            "power",
-            cost,
-            (behind, behind, "**2") if outside else None,
-        )
+        squared = (behind, behind, "**2") if outside else None
+        line.instead(place, f"{wrapped}**2", place.value**2, "power", cost, squared)
     if not is_term(place):
         return
     start, end = place.span
     first = start + len(piece) - len(piece.lstrip("- "))
-    whole = is_sum(node)
     extra = 0.3 if whole else 0.0
-    body = wrapped if is_sum(node) else piece
+    body = wrapped if whole else piece
     numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
     decimal = re.search(r"(?<![\d.])0?\.5(?!\d)", line.source)
     for shown, size in _FACTORS.items():
@@ -290,16 +282,13 @@ def _as_factor(line: Line, place: Place) -> None:
         line.instead(place, new, size * place.value, "factor", cost, None if whole else span)
     signed = place.above is not None and isinstance(place.above.node, ast.BinOp)
     if not signed or place.role == 0:
-        minus = piece.startswith("-")
-        span = (start, first, "") if minus else (start, start, "-")
-        turned = _turned(line, place)
-        line.instead(
-            place, turned, -place.value, "sign", 1.0 + extra, None if is_sum(node) else span
-        )
+        span = (start, first, "") if piece.startswith("-") else (start, start, "-")
+        turned, only = _turned(line, place), None if whole else span
+        line.instead(place, turned, -place.value, "sign", 1.0 + extra, only)
     front, before = _openings(line, place)
     for name, value in line.atoms.items():
         at = front if name[0] in "mM" else before
-        at = place.span[1] if name in line.names.loads else at
+        at = end if name in line.names.loads else at
         for power, more in ((1, 0.0), (2, 0.4)):
             word = name if power == 1 else f"{name}**{power}"
             _times(line, place, word, value**power, 1.4 + more + extra, at)
@@ -307,7 +296,7 @@ def _as_factor(line: Line, place: Place) -> None:
     waves = [tree.call(f, angle) for angle in line.names.angles for f in ("cos", "sin")]
     for factor in (*moving, *waves):
         value = tree.evaluate(factor, line.at)
-        at = before if is_sum(node) else place.span[1]
+        at = before if whole else end
         _times(line, place, line.spelled(factor), value, 1.45 + extra, at)
 
 
@@ -315,12 +304,11 @@ def _times(line: Line, place: Place, word: str, value: Array, cost: float, at: i
     """A factor that is missing in a term, at a place in it; in front of a sum in parentheses."""
     piece, (start, end) = line.segment(place), place.span
     told = N_("the factor {factor} is missing in {term}")
-    pieces = {"factor": word, "term": piece}
-    new = f"*{word}" if at == end else f"{word}*"
-    change = Change(at, at, new, "missing factor", cost, told, pieces=pieces)
+    span = (at, at, f"*{word}" if at == end else f"{word}*")
     if is_sum(place.node) and at in place.span:  # no parentheses around it
-        change = replace(change, start=start, end=end, new=f"{word}*({piece})")
-    line.put(place, place.value * value, change)
+        span = (start, end, f"{word}*({piece})")
+    new = place.value * value
+    line.edit(place, new, span, "missing factor", cost, told, {"factor": word, "term": piece})
 
 
 def _openings(line: Line, place: Place) -> tuple[int, int]:
@@ -391,21 +379,14 @@ def _as_term(line: Line, place: Place) -> None:
         return
     inside = line.segment(place)
     there = [_factors(term) for term in re.split(r"[-+]", inside)]
+    told, end = N_("the term {term} is missing in {sum}"), place.span[1]
     for piece, value in line.pieces.items():
-        for sign in ("+", "-"):
-            twice = _factors(piece) in there
-            cost = (1.12 if sign == "+" else 1.6) + 0.03 * piece.count("*") + 0.4 * bool(twice)
-            pieces = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
-            change = Change(
-                place.span[1],
-                place.span[1],
-                f"{line.gap}{sign}{line.gap}{piece}",
-                "missing term",
-                cost,
-                N_("the term {term} is missing in {sum}"),
-                pieces=pieces,
-            )
-            line.put(place, place.value + (value if sign == "+" else -value), change)
+        twice = 0.4 * (_factors(piece) in there)
+        for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
+            cost = near + 0.03 * piece.count("*") + twice
+            shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
+            span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
+            line.edit(place, place.value + added, span, "missing term", cost, told, shown)
 
 
 def _factors(term: str) -> list[str]:
@@ -419,108 +400,9 @@ def _whole_terms(line: Line) -> None:
         value = line.root.value + np.broadcast_to(tree.evaluate(term, line.at), (line.count,))
         shown = line.spelled(term)
         sign, body = ("-", shown[1:]) if shown.startswith("-") else ("+", shown)
-        change = Change(
-            end,
-            end,
-            f"{line.gap}{sign}{line.gap}{body}",
-            "missing term",
-            1.3,
-            N_("the term {term} is missing"),
-            pieces={"term": shown},
-        )
-        line.put(line.root, value, change)
-
-
-def _throughout(line: Line) -> None:
-    """One name for another in the whole text; sines and cosines exchanged; gravity turned."""
-    words = words_in(line.source)
-    joints = {f"{x}{i + 1}" for x in ("q", "qd", "qdd") for i in range(line.names.n)}
-    inside = [w for w in dict.fromkeys(words) if w in line.atoms and words.count(w) > 1]
-    for word in inside:
-        for other in line.atoms:
-            if other != word:
-                told = N_("{old} should be {new} throughout")
-                pieces = {"old": word, "new": other}
-                _global(line, ((word, other),), "parameter", 1.9, told, pieces)
-    shown = {line.spelling.get(j, j) for j in joints}
-    for i in range(1, line.names.n + 1):
-        for k in range(i + 1, line.names.n + 1):
-            swap = []
-            for x in ("q", "qd", "qdd"):
-                one = line.spelling.get(f"{x}{i}", f"{x}{i}")
-                two = line.spelling.get(f"{x}{k}", f"{x}{k}")
-                swap += [(one, two), (two, one)]
-            if {a for a, _ in swap} & set(words) & shown:
-                told = N_("{one} and {two} are exchanged throughout")
-                pieces = {"one": swap[0][0], "two": swap[0][1]}
-                _global(line, tuple(swap), "index", 2.2, told, pieces)
-    if {"sin", "cos"} & set(words):
-        _global(
-            line,
-            (("sin", "cos"), ("cos", "sin")),
-            "sin/cos",
-            1.9,
-            N_("sin and cos are exchanged throughout"),
-            {},
-        )
-    _same_numbers(line)
-    weight = line.spelling.get("g", "g")
-    if words.count(weight) > 1:
-        told = N_("gravity has the opposite sign: every g should be -g")
-        _global(line, ((weight, f"(-{weight})"),), "gravity sign", 1.5, told, {})
-
-
-def _alike(line: Line, digits: str) -> list[int]:
-    """Which of the numbers are written so."""
-    spans = line.text.spans
-    return [k for k, one in enumerate(line.text.literals[: len(spans)]) if one.text == digits]
-
-
-def _same_numbers(line: Line) -> None:
-    """One number for another in the whole text: 0.3 for 1/3."""
-    decimals = dict.fromkeys(one.text for one in line.text.literals if "." in one.text)
-    for old in decimals:
-        places = _alike(line, old)
-        if len(places) < 2:
-            continue
-        for shown, size in _NUMBERS.items():
-            numbers = np.array([one.value for one in line.text.literals])
-            numbers[places] = size
-            new = line.source
-            for start, end in (line.text.spans[k] for k in reversed(places)):
-                new = f"{new[:start]}{shown}{new[end:]}"
-            told, pieces = N_("{old} should be {new} throughout"), {"old": old, "new": shown}
-            swap = ((old, shown),)
-            change = Change(0, len(line.source), new, "factor", 1.3, told, swap, pieces)
-            line.put(line.root, line.text.values(line.at, numbers), change)
-
-
-def _global(
-    line: Line,
-    swap: tuple[tuple[str, str], ...],
-    kind: str,
-    cost: float,
-    told: str,
-    pieces: Mapping[str, str],
-) -> None:
-    new = exchanged(line.source, swap)
-    if new == line.source:
-        return
-    try:
-        values = replace(line.text, text=new).values(line.at)
-    except KeyError:
-        return
-    change = Change(0, len(line.source), new, kind, cost, told, swap, pieces)
-    line.put(line.root, values, change)
-
-
-# -------- Small questions about places
-
-
-def exchanged(text: str, swap: tuple[tuple[str, str], ...]) -> str:
-    """The text with words exchanged, all at once."""
-    table = dict(swap)
-    return re.sub(r"[A-Za-z_]\w*", lambda m: table.get(m.group(), m.group()), text)
+        span = (end, end, f"{line.gap}{sign}{line.gap}{body}")
+        told = N_("the term {term} is missing")
+        line.edit(line.root, value, span, "missing term", 1.3, told, {"term": shown})
 
 
 def _is_exponent(place: Place) -> bool:
@@ -533,9 +415,5 @@ def _is_exponent(place: Place) -> bool:
 
 
 def _is_base(place: Place) -> bool:
-    above = place.above
-    return (
-        above is not None
-        and isinstance(above.node, ast.BinOp)
-        and isinstance(above.node.op, ast.Pow)
-    )
+    above = place.above.node if place.above is not None else None
+    return isinstance(above, ast.BinOp) and isinstance(above.op, ast.Pow)

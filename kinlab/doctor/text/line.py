@@ -235,8 +235,7 @@ class Line:
         """What may be missing between parentheses: parts of the derived terms."""
         found: dict[str, Array] = {}
         for term in self.terms:
-            factors = term.args if term.op == "mul" else (term,)
-            plain = [f for f in factors if f.op != "num"]
+            plain = [f for f in term.factors if f.op != "num"]
             for mask in range(1, 2 ** min(len(plain), 6)):
                 part = [f for k, f in enumerate(plain) if mask >> k & 1]
                 for front in (1, 2):
@@ -260,6 +259,20 @@ class Line:
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
+
+    def edit(
+        self,
+        place: Place,
+        value: Array,
+        span: tuple[int, int, str],
+        kind: str,
+        cost: float,
+        told: str,
+        pieces: Mapping[str, str],
+        everywhere: tuple[tuple[str, str], ...] = (),
+    ) -> None:
+        """Notes a change of a piece of the text; ``pieces`` are the fields of what is told."""
+        self.put(place, value, Change(*span, kind, cost, told, everywhere, pieces))
 
     def climbed(self, place: Place, new: Array) -> Array:
         with np.errstate(all="ignore"):
@@ -287,7 +300,6 @@ class Line:
         span: tuple[int, int, str] | None = None,
     ) -> None:
         """A piece in place of a piece; ``span`` is what of it is really typed anew, and what."""
-        start, end, put = span or (*place.span, new)
         old = self.segment(place)
         told, pieces = self.told(
             place, N_("{old} should be {new}"), N_("{old} should be {new} in {term}")
@@ -295,7 +307,7 @@ class Line:
         if pieces.get("term") == old:
             told = N_("{old} should be {new}")
         pieces |= {"old": old, "new": new}
-        self.put(place, value, Change(start, end, put, kind, cost, told, pieces=pieces))
+        self.edit(place, value, span or (*place.span, new), kind, cost, told, pieces)
 
     def told(self, place: Place, alone: str, inside: str) -> tuple[str, dict[str, str]]:
         """One of two sentences: with the term that a place is in, where it is worth showing."""

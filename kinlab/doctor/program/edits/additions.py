@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 from types import ModuleType
 
 import numpy as np
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
@@ -50,27 +50,27 @@ class Scope:
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
-        calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call)]
-        self.ranges = [copy.deepcopy(node) for node in calls if called(node) == "range"]
+        calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
+        self.ranges = [copied(node) for node in calls if called(node) == "range"]
         inner: set[str] = set()
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
-                names = [n.id for n in ast.walk(node.target) if isinstance(n, ast.Name)]
+                names = [n.id for n in nodes(node.target) if isinstance(n, ast.Name)]
                 passed = dict(_passed(node.target, node.iter, observed))
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
                 self.counters += [n for n in names if n not in (*self.counters, *passed)]
                 if isinstance(node, ast.comprehension):
                     inner |= {*names}
         for one in trial.trees:
-            for node in ast.walk(one):
+            for node in nodes(one):
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
         every = {name for one in trial.trees for name in _loaded(one)}
-        local = {n.arg for n in ast.walk(tree.args) if isinstance(n, ast.arg)}
-        local |= {n.id for n in ast.walk(tree) if isinstance(n, ast.Name)} - {*_loaded(tree)}
+        local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
+        local |= {n.id for n in nodes(tree) if isinstance(n, ast.Name)} - {*_loaded(tree)}
         self.shapes |= _given(trial, part, observed)
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
@@ -83,7 +83,7 @@ class Scope:
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {
-            n.id for one in self.angles.values() for n in ast.walk(one) if isinstance(n, ast.Name)
+            n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
         }
         here = {*_loaded(tree)}
         self.unused = {
@@ -134,20 +134,23 @@ class Scope:
             self.shapes.setdefault(node.id, seen.shape)
             if seen.whole and seen.shape == ():
                 return
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
         text = ast.unparse(node)
         if names & inner or len(text) > _LONG:
             return
-        own = copy.deepcopy(node)
-        self.pieces.setdefault(seen.shape, {}).setdefault(text, own)
+        known = self.pieces.setdefault(seen.shape, {})
+        own = known[text] = known.get(text) or copied(node)
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
-        names = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
-        short = isinstance(node, ast.Name)
-        return 0.0 if names & self.unused else _UNUSED / 2 if short else _UNUSED
+        if isinstance(node, ast.Name):
+            return 0.0 if node.id in self.unused else _UNUSED / 2
+        if not self.unused:
+            return _UNUSED
+        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
+        return 0.0 if names & self.unused else _UNUSED
 
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""
@@ -254,7 +257,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
     yield here.instead(radians, "degrees", 1.1)
-    own = {ast.unparse(n) for n in ast.walk(node)}
+    own = {ast.unparse(n) for n in nodes(node)}
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
@@ -297,12 +300,12 @@ def _factors_beside(here: Here) -> set[str]:
             break
         own = above
     sets = [
-        {ast.unparse(n) for n in ast.walk(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        {ast.unparse(n) for n in nodes(summand) if isinstance(n, ast.Name | ast.Attribute)}
         for one in terms
         for summand in _summands(one)
         if not isinstance(summand, ast.Constant)
     ]
-    inside = {ast.unparse(n) for n in ast.walk(here.node) if isinstance(n, ast.Name)}
+    inside = {ast.unparse(n) for n in nodes(here.node) if isinstance(n, ast.Name)}
     return set.intersection(*sets) - inside if sets else set()
 
 
@@ -339,7 +342,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
 
 def _loaded(tree: ast.AST) -> Iterator[str]:
     """The names that are used."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
             yield node.id
 
@@ -350,7 +353,7 @@ def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
     owned = trial.program.parts[part].owner is not None
     found: dict[str, Shape] = {}
     for tree in trial.trees if part else ():
-        for node in ast.walk(tree):
+        for node in nodes(tree):
             if isinstance(node, ast.Call) and called(node) == trial.program.parts[part].name:
                 for name, value in zip(names[owned:], node.args, strict=False):
                     seen = observed.of(value)

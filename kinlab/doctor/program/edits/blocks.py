@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
@@ -19,7 +20,7 @@ def of_blocks(
     part: int, tree: ast.FunctionDef, scope: Scope, observed: Observed
 ) -> Iterator[ProgramEdit]:
     """Statements of one part in other places."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         for name in ("body", "orelse"):
             block = getattr(node, name, None)
             if isinstance(block, list):
@@ -97,15 +98,15 @@ def _updates(
 ) -> Iterator[ProgramEdit]:
     """What a loop uses, and does not set anew: ``T = T @ A``, ``p = p + R @ d``, ``w = w_next``."""
     inside = {name for one in loop.body for name in _sets(one)}
-    counted = {n.id for n in ast.walk(loop) if isinstance(n, ast.Name) and n.id in scope.counters}
+    counted = {n.id for n in nodes(loop) if isinstance(n, ast.Name) and n.id in scope.counters}
     used = _uses(tree)
-    before = {name for one in ast.walk(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
+    before = {name for one in nodes(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
     for name in sorted((used & before) - inside - counted):
         shape = scope.shapes.get(name)
         if shape is None:
             continue
         for text, piece in scope.pieces.get(shape, {}).items():
-            names = {n.id for n in ast.walk(piece) if isinstance(n, ast.Name)}
+            names = {n.id for n in nodes(piece) if isinstance(n, ast.Name)}
             if text == name or not names & inside:
                 continue
             own = ast.Name(name, ast.Load())
@@ -126,7 +127,7 @@ def _updates(
 
 def _sets(node: ast.AST) -> set[str]:
     return {
-        n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
+        n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
     } | (
         {node.target.id}
         if isinstance(node, ast.AugAssign) and hasattr(node.target, "id")
@@ -135,4 +136,4 @@ def _sets(node: ast.AST) -> set[str]:
 
 
 def _uses(node: ast.AST) -> set[str]:
-    return {n.id for n in ast.walk(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+    return {n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}

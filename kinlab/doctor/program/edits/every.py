@@ -7,10 +7,10 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from math import pi
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -159,17 +159,17 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
 
 
 def _names(tree: ast.AST) -> list[ast.Name]:
-    return [node for node in ast.walk(tree) if isinstance(node, ast.Name)]
+    return [node for node in nodes(tree) if isinstance(node, ast.Name)]
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
     value = here.node.value
-    used = [n.id for n in ast.walk(value) if isinstance(n, ast.Name)] if value else []
+    used = [n.id for n in nodes(value) if isinstance(n, ast.Name)] if value else []
     for counter in scope.counters:
         if used.count(counter) > 1:
             for step in (1, -1):
-                moved = _Moved(counter, step).visit(copy.deepcopy(value))
+                moved = _Moved(counter, step).visit(copied(value))
                 yield here.within(here.node, "value", moved, "index", 1.13)
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator
 from itertools import combinations
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits.additions import ANGLES, Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
@@ -21,12 +21,12 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if value is None:
         return
     uses: dict[str, list[ast.expr]] = {}
-    for node in ast.walk(value):
+    for node in nodes(value):
         if isinstance(node, ast.Name | ast.Subscript) and _plain(node):
             uses.setdefault(ast.unparse(node), []).append(node)
     shapes: dict[str, Shape | None] = {}
-    for text, nodes in uses.items():
-        shapes[text] = observed.shape(nodes[0])
+    for text, found in uses.items():
+        shapes[text] = observed.shape(found[0])
     names = [text for text in uses if shapes[text] is not None and text not in scope.counters]
     for one, other in combinations(names[:_MOST], 2):
         if shapes[one] == shapes[other] and one[0] == other[0]:
@@ -39,10 +39,10 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 if other != text and other[0] == text[0] and other not in uses:
                     new = _Renamed({text: node}).of(value)
                     yield here.within(here.node, "value", new, "name", 1.14)
-    turns = {called(n) for n in ast.walk(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
-    count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in ast.walk(value))
+    turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
+    count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
-        yield here.within(here.node, "value", _Turned().visit(copy.deepcopy(value)), "sin/cos", 1.1)
+        yield here.within(here.node, "value", _Turned().visit(copied(value)), "sin/cos", 1.1)
 
 
 def _plain(node: ast.Name | ast.Subscript) -> bool:
@@ -59,16 +59,16 @@ class _Renamed(ast.NodeTransformer):
 
     def of(self, value: ast.expr) -> ast.expr:
         """A copy of an expression with the others in it."""
-        new: ast.expr = self.visit(copy.deepcopy(value))
+        new: ast.expr = self.visit(copied(value))
         return new
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
-        return copy.deepcopy(self.others.get(node.id, node))
+        return copied(self.others.get(node.id, node))
 
     def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
         other = self.others.get(ast.unparse(node))
         if other is not None:
-            return copy.deepcopy(other)
+            return copied(other)
         self.generic_visit(node)
         return node
 

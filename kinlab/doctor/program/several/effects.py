@@ -7,8 +7,9 @@ their own: with T the answer, T1 and T2 what it is with one edit each, both make
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -28,13 +29,15 @@ _LEADING = 40
 """Edits that make numbers right, of which any two are joined with a third."""
 _THIRDS = 4
 """Edits that are tried as the third of two."""
-_ALIKE = 3
+_ALIKE = 8
 """Edits of one effect that are kept."""
 _EXCHANGED = 0.5
 """What it costs to take a term out and put another in."""
 
 Flags = Any
 """An array of truth values."""
+Chosen = tuple[int, ...]
+"""Effects that together may make a program right."""
 Way = tuple[ProgramEdit, ...]
 """Edits that together may make a program right."""
 Tried = list[tuple[ProgramEdit, Array]]
@@ -50,6 +53,7 @@ class Effects:
         rows: the effects, (E, P), relative to the answer's size.
         own, goal: the answer as it is, and what is missing, (P,).
         near: what may be left of it.
+        likely: how far-fetched an edit is.
     """
 
     alike: list[list[ProgramEdit]]
@@ -57,6 +61,7 @@ class Effects:
     own: Array
     goal: Array
     near: float
+    likely: Callable[[ProgramEdit], float]
 
     def beside(self, other: Effects) -> Effects:
         """More numbers of the same answers, for those edits of which they are known."""
@@ -70,11 +75,12 @@ class Effects:
             np.concatenate([self.own, other.own]),
             np.concatenate([self.goal, other.goal]),
             self.near,
+            self.likely,
         )
 
-    @property
+    @cached_property
     def costs(self) -> Array:
-        return np.array([edits[0].cost for edits in self.alike])
+        return np.array([self.likely(edits[0]) for edits in self.alike])
 
     @property
     def right(self) -> Flags:
@@ -99,27 +105,28 @@ class Effects:
         some = np.flatnonzero(harmless & (gains > 0))
         return [int(k) for k in some[np.lexsort((self.costs[some], -gains[some]))]]
 
-    def edits(self, chosen: tuple[int, ...]) -> Iterator[Way]:
+    def edits(self, chosen: Chosen, most: int) -> Iterator[Way]:
         """The likeliest edits of these effects, and then the others of the same effects."""
-        yield from product(*(self.alike[k] for k in chosen))
+        yield from product(*(self.alike[k][:most] for k in chosen))
 
-    def likeliest(self, chosen: tuple[int, ...]) -> Way:
-        return tuple(self.alike[k][0] for k in chosen)
+    def cost(self, chosen: Chosen) -> float:
+        """How far-fetched the likeliest edits of these effects are together."""
+        swapped = {"extra term", "missing term"} <= {self.alike[k][0].kind for k in chosen}
+        return float(self.costs[[*chosen]].sum()) + (_EXCHANGED if swapped else 0.0)
 
-    def adding_up(self, count: int) -> list[Way]:
+    def adding_up(self, count: int) -> list[Chosen]:
         """Two or three edits whose effects add up to what is missing, the likeliest first."""
         rows, goal, allowance = self.rows, self.goal, TOLERANCES.effects_add_up
-        found: list[tuple[int, ...]] = []
+        found: list[Chosen] = []
         if count == 2:
             found += pairs_adding_up(rows, goal, allowance)
         else:
             for k in range(2, min(_TRIPLES, len(rows))):
                 pairs = pairs_adding_up(rows[:k], goal - rows[k], allowance)
                 found += [(k, one, two) for one, two in pairs]
-        ways = [self.likeliest(chosen) for chosen in found]
-        return sorted(ways, key=way_cost)
+        return sorted(found, key=self.cost)
 
-    def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Way]:
+    def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Chosen]:
         """Edits of factors of one product of matrices, as the answer is."""
         own = self.own.reshape(-1, *shape)
         wanted = own + self.goal.reshape(own.shape)
@@ -134,16 +141,18 @@ class Effects:
         each = each[usable]
         # T1 inv(T) T2 = W where T2 = (T inv(T1)) W
         undone = own @ np.linalg.inv(each)
-        found: list[tuple[int, ...]] = []
+        found: list[Chosen] = []
         firsts = (
             [((), wanted)] if count == 2 else [((k,), undone[k] @ wanted) for k in range(len(each))]
         )
         for before, goal in firsts:
             found += [(*before, i, j) for i, j in _meeting(undone @ goal, each, self.near)]
-        ways = [self.likeliest(tuple(int(usable[k]) for k in chosen)) for chosen in found]
-        return sorted((way for way in ways if len({*way}) == count), key=way_cost)
+        apart = [
+            tuple(int(usable[k]) for k in chosen) for chosen in found if len({*chosen}) == count
+        ]
+        return sorted(apart, key=self.cost)
 
-    def pairs(self) -> list[tuple[int, ...]]:
+    def pairs(self) -> list[Chosen]:
         """Pairs that nothing speaks against, those first that explain most of the numbers."""
         some = slice(0, _PAIRED)
         right, still, rows = self.right[some], self.still[some], self.rows[some]
@@ -165,7 +174,7 @@ class Effects:
         alone = still[one, k] | still[two, k]
         return np.asarray(np.where(alone, self.wrong[k], sums | products), dtype=float)
 
-    def triples(self) -> list[tuple[int, ...]]:
+    def triples(self) -> list[Chosen]:
         """Two that make numbers right, with a third that nothing speaks against."""
         costs = self.costs
         leading = [k for k in self.gaining if k < _PAIRED][:_LEADING]
@@ -216,19 +225,13 @@ def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
             continue
         key = (np.round(effect, 7) + 0.0).tobytes()
         kept.setdefault(key, ([], effect))[0].append(edit)
-    alike = [(sorted(edits, key=lambda e: e.cost)[:_ALIKE], row) for edits, row in kept.values()]
-    alike.sort(key=lambda pair: pair[0][0].cost)
+    alike = [(sorted(edits, key=search.likely)[:_ALIKE], row) for edits, row in kept.values()]
+    alike.sort(key=lambda pair: search.likely(pair[0][0]))
     return Effects(
         [edits for edits, _row in alike],
         np.array([row for _edits, row in alike]).reshape(len(alike), own.size),
         (own / scale).ravel(),
         ((search.wanted[search.first] - own) / scale).ravel(),
         max(TOLERANCES.tried_further, search.allowed),
+        search.likely,
     )
-
-
-def way_cost(way: Way) -> float:
-    """How far-fetched edits are together."""
-    kinds = {edit.kind for edit in way}
-    swapped = _EXCHANGED if {"extra term", "missing term"} <= kinds else 0.0
-    return sum(edit.cost for edit in way) + swapped

@@ -6,23 +6,31 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import numpy as np
 
+from kinlab.doctor.glossary.meaning import meaning_of
+from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.several.effects import Effects, Way, effects_of, way_cost
+from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 _VERIFIED = 60
-"""Combinations that are tried in the program, the likeliest first."""
-_KNOWN = 3
-"""Repairs from which the likeliest is taken."""
+"""Combinations of which edits of the same effects are tried, too."""
+_SIBLINGS, _EVERY = 3, 8
+"""Edits of one effect that are tried with others: at first, and of a pair that is right."""
 _FURTHER = 40
 """Combinations that are tried once one has made the program right."""
-_STEPS = 4
+_RIVALS = 6
+"""Repairs of which it is looked what they leave right."""
+_ALIKE = 0.15
+"""Cost beyond the first's of repairs that nothing else tells from it."""
+_NAMED = 3
+"""Repairs that are kept."""
+_STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _DEEPEST = 2
-"""Edits that may stand already when more are looked for."""
+"""Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
 """The shape of an answer that is a product of matrices."""
 
@@ -34,30 +42,30 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return sorted(_found(search), key=lambda repair: way_cost(repair.edits))
+        return _found(search)
 
 
 def _found(search: LineSearch) -> list[ProgramRepair]:
     known = effects_of(search, search.tried)
     if known is None or not known.alike:
         return []
+    pose = search.wanted.shape[1:] == _POSE
     tried = _Tried(search)
-    found = tried.first(known.adding_up(2)) or tried.first(_in_a_row(search, known, 2))
+    found = tried.likeliest(known, known.adding_up(2))
+    if not found and pose:
+        found = tried.likeliest(known, known.in_a_row(2, _POSE))
     if found:
         return found
-    wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
+    wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
     joined = known if wider is None else known.beside(wider)
-    found = tried.dear(joined, joined.pairs(), search.most // 3)
-    if not found and len(search.stand) < _DEEPEST:
-        found = _one_after_another(search, joined)
+    found = tried.likeliest(joined, joined.pairs())
+    found = found or _one_after_another(search, joined)
     if not found and not search.stand:
-        found = tried.first(known.adding_up(3)) or tried.first(_in_a_row(search, known, 3))
-        found = found or tried.dear(joined, joined.triples(), search.most // 6)
+        found = tried.likeliest(known, known.adding_up(3))
+        if not found and pose:
+            found = tried.likeliest(known, known.in_a_row(3, _POSE))
+        found = found or tried.likeliest(joined, joined.triples())
     return found
-
-
-def _in_a_row(search: LineSearch, known: Effects, count: int) -> list[Way]:
-    return known.in_a_row(count, _POSE) if search.wanted.shape[1:] == _POSE else []
 
 
 def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair]:
@@ -67,7 +75,9 @@ def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair
         try:
             with changed(search.trial, (edit,)):
                 here = search.beside((*search.stand, edit))
-                found = here.singles() or _found(here)
+                found = here.singles()
+                if not found and len(here.stand) < _DEEPEST:
+                    found = _found(here)
         except NoProgramError:
             continue
         if found:
@@ -81,35 +91,76 @@ class _Tried:
     def __init__(self, search: LineSearch) -> None:
         self.search = search
 
-    def first(self, ways: Iterable[Way]) -> list[ProgramRepair]:
-        """What the likeliest of a few combinations make of the program."""
-        found: list[ProgramRepair] = []
-        for _turn, way in zip(range(_VERIFIED), ways, strict=False):
-            found += self._verified(way)
-            if len(found) == _KNOWN:
-                break
-        return found
+    def likeliest(self, known: Effects, ranked: list[Chosen]) -> list[ProgramRepair]:
+        """What combinations make of it, as many as some work allows.
 
-    def dear(self, known: Effects, ranked: list[tuple[int, ...]], most: int) -> list[ProgramRepair]:
-        """What many make of it, as many as so much work allows."""
-        found: list[ProgramRepair] = []
-        left, work = len(ranked), 0
+        Beside one that makes it right others are looked at: what has the same effects, what comes
+        next, and pairs that explain as much.
+        """
+        most = self.search.most // 4
+        fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
-            for way in known.edits(chosen) if turn < _VERIFIED else [known.likeliest(chosen)]:
-                work += max(self.search.cost_of(edit) for edit in way)
-                found += self._verified(way)
-                if found:
+            for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
+                most -= self._cost(way)
+                if self._repair(way) is not None:
+                    fitting = [way]
                     break
-            if found and left == len(ranked):
-                left = turn + _FURTHER
-            if work > most or turn >= left or len(found) >= _KNOWN:
+            if fitting or most < 0:
                 break
-        return found
+        if not fitting:
+            return []
+        further = [*ranked[turn + 1 : turn + 1 + _FURTHER], *known.pairs()[:_FURTHER]]
+        rivals = [*known.edits(chosen, _EVERY)]
+        rivals += [way for one in dict.fromkeys(further) for way in known.edits(one, _SIBLINGS)]
+        for way in dict.fromkeys(rivals):
+            most -= self._cost(way)
+            if most < -self.search.most // 8:
+                break
+            if way != fitting[0] and self._fits(way):
+                fitting.append(way)
+        return self._ranked(fitting)
 
-    def _verified(self, way: Way) -> list[ProgramRepair]:
+    def _cost(self, way: Way) -> int:
+        return max(self.search.cost_of(edit) for edit in way)
+
+    def _repair(self, way: Way) -> ProgramRepair | None:
+        """The repair, if edits make the program right."""
         try:
             with changed(self.search.trial, way):
-                repair = self.search.verdict((*self.search.stand, *way))
+                return self.search.verdict((*self.search.stand, *way))
         except NoProgramError:
-            return []
-        return [] if repair is None else [repair]
+            return None
+
+    def _fits(self, way: Way) -> bool:
+        """Whether edits make the program right at the first states."""
+        try:
+            with changed(self.search.trial, way):
+                values = self.search.values(self.search.first)
+        except NoProgramError:
+            return False
+        return values is not None and bool(self.search.right(values).all())
+
+    def _ranked(self, ways: list[Way]) -> list[ProgramRepair]:
+        """Those first that leave most of the program as a textbook has it."""
+        search = self.search
+        costs = {way: sum(map(search.likely, way)) for way in ways}
+        ranked = sorted(costs, key=lambda way: costs[way])
+        near = [way for way in ranked if costs[way] <= costs[ranked[0]] + _ALIKE][:_RIVALS]
+        if len(near) > 1 and search.evidence.known:
+            rights = {way: search.left_right(way) + sum(map(self._own, way)) for way in near}
+            near.sort(key=lambda way: (-rights[way], costs[way]))
+        found: list[ProgramRepair] = []
+        for way in [*near, *(way for way in ranked if way not in near)]:
+            repair = self._repair(way)
+            found += [] if repair is None else [repair]
+            if len(found) == _NAMED:
+                break
+        return found
+
+    def _own(self, edit: ProgramEdit) -> bool:
+        """Whether a number that is nothing of the arm's becomes one of its own."""
+        known = self.search.evidence.known
+        if edit.part != DATA or edit.numbers is None:
+            return False
+        old, new = (meaning_of(known, [np.array(x)] * len(known)) for x in edit.numbers)
+        return (old is None or bool(old.form)) and new is not None and not new.form
