@@ -105,7 +105,7 @@ def in_text(
     poly, names = derived.held(poly, named), names_for(derived, arguments)
     names = replace(names, loads=tuple(named))
     right = derived.tree(poly)
-    forms = [_split(form) for form in _forms(derived, poly)]
+    forms = [list(form.terms) for form in _forms(derived, poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
     own = {name: values[:_POINTS] for name, values in here.items()}
     # names that are not there may be there as their numbers: whole ones too
@@ -350,9 +350,8 @@ def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[st
     """A coefficient's size, as a product of parameters where the derived formula has one."""
     size = abs(term.coefficient)
     parameters = set(names.parameters)
-    for piece in _split(right):
-        factors = piece.args if piece.op == "mul" else (piece,)
-        front = tree.mul(tree.num(1), *(f for f in factors if tree.names(f) <= parameters))
+    for piece in right.terms:
+        front = tree.mul(tree.num(1), *(f for f in piece.factors if tree.names(f) <= parameters))
         value = abs(float(np.ravel(tree.evaluate(front, at))[0]))
         if tree.names(front) and abs(value - size) <= 1e-8 * size:
             return f"{front} = {size:.10g}".replace("-", "", 1)
@@ -409,10 +408,6 @@ def _forms(derived: Derivation, poly: Poly) -> list[Node]:
     made = [derived.tree(poly), derived.grouped(poly), derived.collected(poly)]
     made += derived.factored(poly)
     return list(dict.fromkeys(made))
-
-
-def _split(entry: Node) -> list[Node]:
-    return list(entry.args) if entry.op == "add" else [entry]
 
 
 def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:

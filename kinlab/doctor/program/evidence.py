@@ -65,7 +65,7 @@ class Grounds:
         self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
         for part, tree in enumerate(trial.trees):
             self._look(part, tree, observed)
-            for node in ast.walk(tree):
+            for node in nodes(tree):
                 seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
                 if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
                     own = float(seen.values[0])
@@ -137,7 +137,7 @@ class Grounds:
 
     def _right_alone(self, node: ast.expr, observed: Observed) -> None:
         if self._of(node, observed) is not None:
-            self.right |= {id(inner) for inner in ast.walk(node)}
+            self.right |= {id(inner) for inner in nodes(node)}
 
     def _is_whole(self, node: ast.expr, observed: Observed) -> bool:
         """Whether a value is nearly one of the things that an arm has one of: also a little beside

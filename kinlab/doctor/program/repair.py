@@ -104,6 +104,7 @@ class LineSearch:
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
         self._few = self._at(self.first)
+        self._near = max(TOLERANCES.tried_further, allowed) * self.scale
         self._prepare()
 
     def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
@@ -145,6 +146,13 @@ class LineSearch:
             for part in self.program.parts
             for node in nodes(part.tree)
         )
+
+    def at(self, case: Case, wanted: Array) -> LineSearch:
+        """The same program asked at other states, all of which are its first."""
+        other = copy.copy(self)
+        other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
+        other._few = other._at(other.first)
+        return other
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
         """The search for more, while edits stand in the program."""
@@ -307,9 +315,8 @@ class LineSearch:
 
     def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - (self.wanted[self.first] if wanted is None else wanted[self.first]))
-        near = gap <= max(TOLERANCES.tried_further, self.allowed) * self.scale
-        return near.all(axis=0).ravel()
+        gap = np.abs(values - (self._few[1] if wanted is None else wanted[self.first]))
+        return (gap <= self._near).all(axis=0).ravel()
 
     def verdict(
         self, several: tuple[ProgramEdit, ...], values: Array | None = None

@@ -93,7 +93,7 @@ def _among(value: float, known: Array) -> bool:
 
 def _alone(tree: ast.AST) -> Iterator[ast.AST]:
     """The numbers that names are set to as they are, or that stand in lists."""
-    for node in ast.walk(tree):
+    for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
         while waiting:
             one = waiting.pop()

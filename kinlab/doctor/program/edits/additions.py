@@ -298,12 +298,12 @@ def _factors_beside(here: Here) -> set[str]:
             break
         own = above
     sets = [
-        {ast.unparse(n) for n in ast.walk(summand) if isinstance(n, ast.Name | ast.Attribute)}
+        {ast.unparse(n) for n in nodes(summand) if isinstance(n, ast.Name | ast.Attribute)}
         for one in terms
         for summand in _summands(one)
         if not isinstance(summand, ast.Constant)
     ]
-    inside = {ast.unparse(n) for n in ast.walk(here.node) if isinstance(n, ast.Name)}
+    inside = {ast.unparse(n) for n in nodes(here.node) if isinstance(n, ast.Name)}
     return set.intersection(*sets) - inside if sets else set()
 
 
