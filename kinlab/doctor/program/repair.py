@@ -66,6 +66,8 @@ _MULTIPLES = (0.5, 2.0, 0.1, 10.0)
 """Times a number that somebody types for it."""
 _SOLVED = 1_200_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
+_STANDING = 2
+"""Edits beside which some number would do too easily."""
 _TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
@@ -207,7 +209,7 @@ class LineSearch:
                     best = min(best, self.likely(edit))
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
-            if not found or best > _NUMBER:
+            if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
         return found
 
