@@ -147,7 +147,8 @@ def _explained(
     if written and off and silent is None:
         causes, partial = slips_in(case, off, written)
     visible = bool(causes) and len(causes[0].kinds) <= 1
-    read = same and not written and (silent is not None or not signs)
+    bare = signs and _bare_signs(engine)
+    read = same and not written and (silent is not None or not bare)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
     if program is not None and program.digits is not None:

@@ -56,6 +56,12 @@ _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
+_ANGLES = 12
+"""Into how many parts of pi a number may fall."""
+_MULTIPLES = (0.5, 2.0, 0.1, 10.0)
+"""Times a number that somebody types for it."""
+_SOLVED = 1_200_000
+"""Work beyond that for single edits in which wrong numbers are solved for."""
 _TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
@@ -270,6 +276,8 @@ class LineSearch:
         every = [*numbers(self.trial, self.observed)]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
         for place in every:
+            if self.work > self.most + _SOLVED:
+                break
             value = self._solved(place)
             if value is not None:
                 edit = place.edit(value)
@@ -281,15 +289,27 @@ class LineSearch:
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
-        own = self.values(self.first)
+        old = float(place.value)
+        found = self._by_secants(place)
+        most = _DIGITS if isinstance(place.value, float) else _WHOLE
+        tries = [] if found is None else [float(f"{found:.{k}e}") for k in range(most - 1)]
+        if found is not None and abs(found) > 1 / _ANGLES:
+            tries.insert(0, round(found * _ANGLES / np.pi) * np.pi / _ANGLES)
+        for value in tries or [k * old for k in _MULTIPLES]:
+            values = self._with(place, value)
+            if value != old and values is not None and self.right(values).all():
+                return value
+        return None
+
+    def _by_secants(self, place: NumberPlace) -> float | None:
+        """The number with which the first states come nearest, where that is found."""
+        wanted, old, own = self.wanted[self.first], float(place.value), self.values(self.first)
         if own is None:
             return None
-        wanted, old = self.wanted[self.first], float(place.value)
         at, before, step = old, (own - wanted).ravel(), 0.1 * abs(old) or 0.1
         least, worse = np.inf, 0
         for _turn in range(_TURNS):
-            with changed(self.trial, (place.edit(at + step),)):
-                values = self.values(self.first)
+            values = self._with(place, at + step)
             if values is None or not np.isfinite(values).all():
                 return None
             after = (values - wanted).ravel()
@@ -302,16 +322,15 @@ class LineSearch:
             at, before, step = at + step, after, -float(after @ slope) / flat
             if abs(step) <= 1e-9 * max(abs(at), 1e-3):
                 break
-        if abs(at + step) <= 1e-9 * max(abs(old), 1e-3):
-            step = -at
-        most = _DIGITS if isinstance(place.value, float) else _WHOLE
-        for digits in range(1, most):
-            value = float(f"{at + step:.{digits - 1}e}")
-            with changed(self.trial, (place.edit(value),)):
-                values = self.values(self.first)
-            if value != old and values is not None and self.right(values).all():
-                return value
-        return None
+        found = float(at + step)
+        return 0.0 if abs(found) <= 1e-9 * max(abs(old), 1e-3) else found
+
+    def _with(self, place: NumberPlace, value: float) -> Array | None:
+        """The answers at the first states with another number."""
+        edit = place.edit(value)
+        self.work += self.cost_of(edit)
+        with changed(self.trial, (edit,)):
+            return self.values(self.first)
 
     def right(self, values: Array, wanted: Array | None = None) -> Any:
         """Which entries of answers at the first states are right."""

@@ -161,7 +161,7 @@ def _branch(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> Pro
 
 
 def _inside(node: object, of: ast.AST) -> bool:
-    return any(one is node for one in ast.walk(of))
+    return any(one is node for one in nodes(of))
 
 
 def _right(edits: tuple[ProgramEdit, ...], search: LineSearch) -> bool:

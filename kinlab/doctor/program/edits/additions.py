@@ -66,12 +66,10 @@ class Scope:
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
-        loaded = {
-            n.id
-            for one in trial.trees
-            for n in nodes(one)
-            if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)
-        }
+        every = {name for one in trial.trees for name in _loaded(one)}
+        local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
+        local |= {n.id for n in nodes(tree) if isinstance(n, ast.Name)} - {*_loaded(tree)}
+        self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner)
@@ -87,7 +85,10 @@ class Scope:
         self.turned = {
             n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
         }
-        self.unused = {name for name in self.shapes if name not in loaded}
+        here = {*_loaded(tree)}
+        self.unused = {
+            name for name in self.shapes if name not in (here if name in local else every)
+        }
         for name, shape in self.shapes.items():
             if name in self.counters:
                 continue
@@ -190,7 +191,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
     if not negative and (first or not operated):
-        given = isinstance(here.above[-2], ast.Assign) if isinstance(parent, ast.Tuple) else whole
+        outer = here.above[-2] if isinstance(parent, ast.Tuple) else parent
+        given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
         cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
@@ -336,6 +338,28 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
+
+
+def _loaded(tree: ast.AST) -> Iterator[str]:
+    """The names that are used."""
+    for node in nodes(tree):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
+            yield node.id
+
+
+def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
+    """What a part is given, by the names that it has for it."""
+    names = [one.arg for one in trial.trees[part].args.args]
+    owned = trial.program.parts[part].owner is not None
+    found: dict[str, Shape] = {}
+    for tree in trial.trees if part else ():
+        for node in nodes(tree):
+            if isinstance(node, ast.Call) and called(node) == trial.program.parts[part].name:
+                for name, value in zip(names[owned:], node.args, strict=False):
+                    seen = observed.of(value)
+                    if seen is not None and seen.shape is not None and not seen.whole:
+                        found.setdefault(name, seen.shape)
+    return found
 
 
 def _is_number(value: object) -> bool:

@@ -99,7 +99,7 @@ def _updates(
     """What a loop uses, and does not set anew: ``T = T @ A``, ``p = p + R @ d``, ``w = w_next``."""
     inside = {name for one in loop.body for name in _sets(one)}
     counted = {n.id for n in nodes(loop) if isinstance(n, ast.Name) and n.id in scope.counters}
-    used = {name for one in loop.body for name in _uses(one)}
+    used = _uses(tree)
     before = {name for one in nodes(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
     for name in sorted((used & before) - inside - counted):
         shape = scope.shapes.get(name)
