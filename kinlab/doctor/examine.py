@@ -139,6 +139,8 @@ def _explained(
     if signs:
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
+        if engine.ndim == 1:  # of one entry, not even for rows that are exchanged
+            tried = [reading for reading in tried if reading.kind == "sign"]
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
     causes: list[Cause] = [silent] if silent is not None else []

@@ -69,3 +69,9 @@ def test_the_sign_of_a_text_is_told_where_nothing_is_derived():
         assert f"g3: {typed} should be {right} (sign)" in said
         assert f"correct: g3 = {right}" in said
         assert "or:" not in said
+
+
+def test_one_entry_of_bare_ones_says_nothing_of_rows():
+    """A one for a zero: the entry of another row is one, but so are half of all entries."""
+    assert "exchanged" not in told("double_pendulum", "jacobian[5,0]", "1")
+    assert "sign" in told("planar2r", "J31", "-1")

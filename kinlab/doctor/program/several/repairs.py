@@ -56,7 +56,7 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
         found = tried.likeliest(known, known.in_a_row(2, _POSE))
     if found:
         return found
-    wider = None if search.stand else AtRest(search).effects(known, search.most // 3)
+    wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
     joined = known if wider is None else known.beside(wider)
     found = tried.likeliest(joined, joined.pairs())
     found = found or _one_after_another(search, joined)
