@@ -28,7 +28,9 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     """Every number of the data with another sign, doubled, halved, or taken for degrees."""
     for leaf in _leaves(trial):
         if leaf.value:
-            yield leaf.edit(-leaf.value, "sign", 1.05)
+            # a name for a negative number: lengths and masses are none
+            negative = leaf.value < 0 and not leaf.place
+            yield leaf.edit(-leaf.value, "sign", 0.99 if negative else 1.05)
             yield leaf.edit(2 * leaf.value, "factor", 1.2)
             yield leaf.edit(leaf.value / 2, "factor", 1.2)
             yield leaf.edit(leaf.value * pi / 180, "degrees", 1.15)
@@ -55,7 +57,7 @@ def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
             changes = (FieldChange(trial.space, one, last), FieldChange(trial.space, other, first))
             told = (f"{one} = {first:.6g}, {other} = {last:.6g}",
                     f"{one} = {last:.6g}, {other} = {first:.6g}")  # fmt: skip
-            yield ProgramEdit(DATA, changes, "entries swapped", 1.17, one, exchanged=told)
+            yield ProgramEdit(DATA, changes, "entries swapped", 1.12, one, exchanged=told)
 
 
 def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[ProgramEdit]:

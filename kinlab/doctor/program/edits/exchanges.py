@@ -31,7 +31,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     for one, other in combinations(names[:_MOST], 2):
         if shapes[one] == shapes[other] and one[0] == other[0]:
             both = _Renamed({one: uses[other][0], other: uses[one][0]})
-            cost = 1.1 + 0.01 * (len(uses[one]) + len(uses[other]))
+            cost = 1.08 + 0.02 * (len(uses[one]) + len(uses[other]))
             yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
     for text in names:
         if len(uses[text]) > 1:
