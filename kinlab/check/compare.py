@@ -206,14 +206,19 @@ def error_sizes(engine: Array, scale: float = 0.0) -> Array:
     return sizes
 
 
-def some_rows(has: tuple[int, ...], wants: tuple[int, ...], name: str) -> str:
-    """What to ask for instead, where answers (N, ...) hold some rows of a quantity."""
+def rows_alone(has: tuple[int, ...], wants: tuple[int, ...], name: str) -> tuple[str, str] | None:
+    """What to ask for instead, where answers (N, ...) hold the first or the last rows."""
     if len(has) != len(wants) or len(has) < 2 or has[2:] != wants[2:] or "[" in name:
-        return ""
+        return None
     rows, of = has[1], wants[1]
-    if not 0 < rows < of:
+    return (f"{name}[:{rows}]", f"{name}[{of - rows}:]") if 0 < rows < of else None
+
+
+def _some_rows(has: tuple[int, ...], wants: tuple[int, ...], name: str) -> str:
+    alone = rows_alone(has, wants, name)
+    if alone is None:
         return ""
-    first, last = f"{name}[:{rows}]", f"{name}[{of - rows}:]"
+    (first, last), rows, of = alone, has[1], wants[1]
     return f"the first {rows} of its {of} rows are the quantity {first!r}, the last {last!r}"
 
 
@@ -225,7 +230,7 @@ def _read(answer: Any, engine: Array, name: str, quantity: Quantity) -> Array:
             "numbers"
         )
     if values.shape != engine.shape:
-        meant = some_rows(values.shape, engine.shape, quantity.name)
+        meant = _some_rows(values.shape, engine.shape, quantity.name)
         raise AnswerShapeError(
             f"function {name!r} answered with shape {values.shape[1:]}; {quantity.name!r} has "
             f"shape {engine.shape[1:]} ({quantity.about}){meant and '; '}{meant}"

@@ -145,6 +145,8 @@ class Diagnosis(Answer):
         """What is explained, the worst entry and its state, where the cause is unknown."""
         if self.agrees or self.causes:
             return ()
+        if self._other_shape:
+            return (self._shapes, *self.partial)
         worst = _("Worst entry {entry} at {state}").format(
             entry=self._worst, state=self._at_worst(200)
         )
@@ -197,6 +199,23 @@ class Diagnosis(Answer):
         return self.function if alone else shown_entry(self.worst_entry)
 
     @property
+    def _other_shape(self) -> bool:
+        if self.hand is None or self.engine is None:
+            return False
+        return np.shape(self.hand) != np.shape(self.engine)
+
+    @property
+    def _shapes(self) -> str:
+        told = _("it answers with {hand}, {quantity} has {engine}")
+        hand, engine = (_numbers(np.shape(np.asarray(x))) for x in (self.hand, self.engine))
+        return told.format(quantity=self._names["quantity"], hand=hand, engine=engine)
+
+    @property
+    def title(self) -> str:
+        """What was examined, as people say it: M11, M12 for entries of a matrix in a text."""
+        return ", ".join(map(shown_entry, self.function.split(", ")))
+
+    @property
     def _names(self) -> dict[str, str]:
         """What was compared, as people say it: entries counted from 1."""
         found = _ENTRY.fullmatch(self.quantity)
@@ -205,7 +224,7 @@ class Diagnosis(Answer):
             place = ", ".join(str(int(k) + 1) for k in found[2].split(","))
             place = f"({place})" if "," in place else place
             quantity = _("entry {place} of {quantity}").format(place=place, quantity=found[1])
-        return {"function": self.function, "quantity": quantity, "robot": self.robot}
+        return {"function": self.title, "quantity": quantity, "robot": self.robot}
 
     def introduction(self) -> Introduction:
         """The verdict, what is wrong, and what is right."""
@@ -229,6 +248,8 @@ class Diagnosis(Answer):
             ]
             lines += [_("or: {slip}").format(slip=text) for text in self.others]
             return Introduction(verdict, tuple(lines), mood="bad")
+        if self._other_shape:
+            return Introduction(verdict, (self._shapes, *self.partial), mood="unsure")
         lines = [*self.proved]
         lines += [_("explained: {slip}").format(slip=text) for text in self.partial]
         lines.append(
@@ -288,6 +309,12 @@ def shown_entry(label: str) -> str:
     places = [str(int(k) + 1) for k in found[2].split(",")]
     letter = ENTRY_LETTERS.get(found[1])
     return letter + "".join(places) if letter else f"{found[1]}({','.join(places)})"
+
+
+def _numbers(shape: tuple[int, ...]) -> str:
+    if not shape:
+        return _("a single number")
+    return _("{count} numbers").format(count=" x ".join(map(str, shape)))
 
 
 def _finite(value: float) -> float | None:

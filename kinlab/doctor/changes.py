@@ -7,7 +7,7 @@ other convention), the arguments (degrees), the engine's question (another frame
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -160,13 +160,15 @@ def entries(case: Case, engine: Array) -> Iterator[AnswerEntry]:
     scale = error_sizes(engine)
     if engine.ndim == 1:
         index = chosen if isinstance(chosen, tuple) else ()
-        yield AnswerEntry(_label(name, index), index, (), case.hand, engine, scale)
+        yield AnswerEntry(label_of(name, index), index, (), case.hand, engine, scale)
         return
     for local in np.ndindex(engine.shape[1:]):
         at = (slice(None), *local)
         index = chosen[local]
-        yield AnswerEntry(_label(name, index), index, local, case.hand[at], engine[at], scale)
+        yield AnswerEntry(label_of(name, index), index, local, case.hand[at], engine[at], scale)
 
 
-def _label(name: str, index: tuple[int, ...]) -> str:
-    return f"{name}[{','.join(map(str, index))}]" if index else name
+def label_of(name: str, index: Iterable[Any]) -> str:
+    """``mass_matrix[0,1]``; the name alone where the index is empty."""
+    places = ",".join(map(str, index))
+    return f"{name}[{places}]" if places else name

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array, first_largest, seed_of, whole
-from kinlab.check.compare import relative_errors, some_rows
+from kinlab.check.compare import relative_errors, rows_alone
 from kinlab.check.diagnosis import Cause, Diagnosis
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor import verdicts
@@ -49,6 +49,8 @@ from kinlab.tolerances import TOLERANCES
 
 _NAMED = 8
 """Causes that are kept."""
+_SLIPS = 2
+"""Slips in a function's values above which one number of the robot that is another is likelier."""
 _FAR = 0.15
 """Cost beyond the likeliest cause's from which another of the same evidence is not told."""
 _FETCHED = 1.35
@@ -96,8 +98,9 @@ def examine(
     if excuse is not None and not near:
         right = Diagnosis(quantity, label, name, True, worst)
         return replace(right, form=excuse.form, remarks=excuse.remarks)
-    if not same and (meant := some_rows(values.shape, engine.shape, quantity)):
-        partial = (meant,)
+    if not same and (alone := rows_alone(values.shape, engine.shape, quantity)):
+        said = _("to compare these rows alone, ask for {first} (the first) or {last} (the last)")
+        partial = (said.format(first=alone[0], last=alone[1]),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
@@ -182,7 +185,8 @@ def _explained(
         if not written and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
             causes += found
-    listed = all({*c.kinds} == {"coefficient"} for c in causes)
+    # one number of the robot that is another may look like a slip in every term it stands in
+    listed = all({*c.kinds} == {"coefficient"} or len(c.kinds) > _SLIPS for c in causes)
     if listed and same and not written and not signs:
         changed = list(other_numbers(case))
         causes = [*singly(case, changed)] or rough or causes

@@ -54,6 +54,8 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
             settled[place] = entry.engine
     if right and remarks:
         return case, Excuse("rounded", tuple(dict.fromkeys(remarks)))
+    if not right and (weighed := rounding.gravity_rounded(case, engine, False)) is not None:
+        return case, Excuse("rounded", weighed)  # 5.88 for m2*g*l2: it was worked out with 9.8
     return replace(case, hand=settled), None
 
 

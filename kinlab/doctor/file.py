@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, label_of
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
@@ -163,8 +163,17 @@ def _read_better(
     return _also_said(second, notes)
 
 
-def require_sound(file: FormulaFile, robot: Robot) -> None:
+def twice(entry: str, other: str) -> str:
+    """What is told of two entries for one place: tau2 and a second line of [tau1, tau2]."""
+    one, two = shown_entry(entry), shown_entry(other)
+    return f"{one} is given twice{'' if one == two else f', also as {two}'}; keep one"
+
+
+def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
     """Refuses what :func:`examine_formulas` would refuse, without judging anything.
+
+    Returns:
+        The entries by the place that they claim: ``{"fk[0,3]": "x"}``.
 
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
@@ -173,6 +182,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> None:
     wanted, titles = _claims(file, robot)
     for plain, formulas in wanted.items():
         _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
+    return titles
 
 
 def _claims(
@@ -189,7 +199,9 @@ def _claims(
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None
         if any(isinstance(k, slice) for k in index):
             raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
-        label = f"{plain}[{','.join(map(str, index))}]" if index else plain
+        label = label_of(plain, index)
+        if label in titles:
+            raise ExpressionError(f"{file.path}: {twice(entry, titles[label])}")
         node = in_robot_names(text, file, robot, entry)
         wanted.setdefault(plain, {})[label] = written_as(entry, node, file, robot)
         titles[label] = entry
@@ -215,24 +227,19 @@ def _answers(
         case = named_alone(case, named)
         engine = case.answer(())
     shape = engine.shape[1:]
-    labels = [f"{plain}[{','.join(map(str, k))}]" for k in np.ndindex(shape)] if shape else [plain]
+    labels = [label_of(plain, k) for k in np.ndindex(shape)]
     for label in formulas:
         if label not in labels:
             raise ExpressionError(
                 f"{file.path}: {titles[label]}: {label} does not exist; {plain} has shape {shape}"
             )
     if plain in _MIRRORED:
-        mirrored = {
-            f"{plain}[{j},{i}]": formulas[f"{plain}[{i},{j}]"]
-            for i, j in np.ndindex(shape)
-            if f"{plain}[{i},{j}]" in formulas
-        }
+        turned = {label_of(plain, k): label_of(plain, k[::-1]) for k in np.ndindex(shape)}
+        mirrored = {label: formulas[other] for label, other in turned.items() if other in formulas}
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
-    values = {
-        label: _values(text, case, file, _entry_of(label, titles))
-        for label, text in formulas.items()
-    }
+    entries = {label: _entry_of(label, titles) for label in formulas}
+    values = {label: _values(x, case, file, entries[label]) for label, x in formulas.items()}
     return case, engine, labels, formulas, values
 
 
@@ -302,7 +309,7 @@ def _entry_of(label: str, titles: dict[str, str]) -> str:
     if label in titles:
         return titles[label]
     plain, index = split_name(label)
-    return titles[f"{plain}[{index[1]},{index[0]}]"]
+    return titles[label_of(plain, index[::-1])]
 
 
 def _values(text: Written, case: Case, file: FormulaFile, entry: str) -> Array:

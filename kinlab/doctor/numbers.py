@@ -253,19 +253,13 @@ def _data(table: DHTable) -> Iterator[tuple[DHTable, tuple[str, ...]]]:
         ("{:.4f}", N_("the robot's numbers to 4 decimals")),
     ):
         cut = np.vectorize(lambda x, form=form: float(form.format(x)), otypes=[float])
-        links: list[Any] = [
-            replace(
-                link,
-                a=float(cut(link.a)),
-                d=float(cut(link.d)),
-                mass=float(cut(link.mass)),
-                com=cut(link.com),
-                inertia=cut(link.inertia),
-            )
-            for link in table.links
-        ]
+        links: list[Any] = []
         try:
             with already_said():
+                for link in table.links:
+                    a, d, mass = map(float, cut([link.a, link.d, link.mass]))
+                    com, inertia = cut(link.com), cut(link.inertia)
+                    links.append(replace(link, a=a, d=d, mass=mass, com=com, inertia=inertia))
                 other = replace(table, links=links)
         except KinlabError:
             continue

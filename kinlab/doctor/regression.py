@@ -43,7 +43,7 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
         Their own joint functions; their waves with every product of speeds; all waves. Each
         product once, its factors in the order of :func:`kinlab.formulas.tree.ordered`.
     """
-    own = [_joint_part(term, names) for entry in derived for term in _terms(entry)]
+    own = [_joint_part(term, names) for entry in derived for term in entry.terms]
     met = [wave for part in own for wave in _waves(part)]
     anything = [tree.call(f, angle) for angle in names.angles for f in ("cos", "sin")]
     speeds: list[Node] = [tree.num(1)]
@@ -62,7 +62,7 @@ def dictionaries(derived: list[Node], names: Names) -> list[list[Node]]:
 
 def joint_functions(derived: list[Node], names: Names) -> list[Node]:
     """The joint functions of derived entries, each once."""
-    parts = (_joint_part(term, names) for entry in derived for term in _terms(entry))
+    parts = (_joint_part(term, names) for entry in derived for term in entry.terms)
     return list(dict.fromkeys(tree.ordered(part) for part in parts))
 
 
@@ -122,30 +122,21 @@ def _few(columns: Array, difference: Array, scale: float) -> list[int] | None:
 def _needed(columns: Array, chosen: list[int], difference: Array, scale: float) -> list[int] | None:
     """The chosen columns with a share in the difference, if together they are all of it."""
     factors, *_ = np.linalg.lstsq(columns[:, chosen], difference, rcond=None)
-    if (
-        np.max(np.abs(columns[:, chosen] @ factors - difference))
-        > TOLERANCES.no_share * 0.1 * scale
-    ):
+    rest = np.max(np.abs(columns[:, chosen] @ factors - difference))
+    if rest > TOLERANCES.no_share * 0.1 * scale:
         return None
     share = np.abs(factors) > TOLERANCES.no_share * np.max(np.abs(factors))
     return [k for k, s in zip(chosen, share, strict=True) if s]
 
 
-def _terms(entry: Node) -> tuple[Node, ...]:
-    return entry.args if entry.op == "add" else (entry,)
-
-
 def _joint_part(term: Node, names: Names) -> Node:
-    factors = term.args if term.op == "mul" else (term,)
     parameters = set(names.parameters)
-    return tree.mul(
-        tree.num(1), *(f for f in factors if f.op != "num" and not tree.names(f) <= parameters)
-    )
+    moving = (f for f in term.factors if f.op != "num" and not tree.names(f) <= parameters)
+    return tree.mul(tree.num(1), *moving)
 
 
 def _waves(part: Node) -> list[Node]:
-    factors = part.args if part.op == "mul" else (part,)
-    waves = [f for f in factors if any(name[:2] != "qd" for name in tree.names(f))]
+    waves = [f for f in part.factors if any(name[:2] != "qd" for name in tree.names(f))]
     return [tree.mul(*waves)] if waves else []
 
 

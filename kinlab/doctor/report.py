@@ -19,13 +19,10 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
+from kinlab.doctor.changes import label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import (
-    examine_formulas,
-    require_sound,
-    robot_of,
-)
+from kinlab.doctor.file import examine_formulas, require_sound, robot_of, twice
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import quantity_of
@@ -157,6 +154,7 @@ def _of_sound(
         lost = Unread(path, problem)
     bad = []
     left = document
+    claimed: dict[str, str] = {}
     for entry in entries_of(document):
         try:
             one = formula_file(alone(document, entry), path)
@@ -164,7 +162,12 @@ def _of_sound(
                 robot = robot_of(one)
             except KinlabError as missing:
                 return [], [Unread(path, missing)]
-            require_sound(one, robot)
+            places = require_sound(one, robot)
+            again = [label for label in places if label in claimed]
+            if again:
+                said = twice(places[again[0]], claimed[again[0]])
+                raise ExpressionError(f"{path}: {said}")
+            claimed |= places
         except KinlabError as problem:
             bad.append(Unread(f"{path}: {entry}", problem))
             left = with_entries(left, set(entries_of(left)) - {entry})
@@ -265,8 +268,7 @@ def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
     for place in places:
         poly = derived.polys[place] if place else np.asarray(derived.polys).item()
         if len(poly) <= _SHORT:
-            label = f"{plain}[{','.join(map(str, place))}]" if place else plain
-            right[label] = str(derived.collected(poly))
+            right[label_of(plain, place)] = str(derived.collected(poly))
     return right
 
 
@@ -274,7 +276,7 @@ def _entries(found: Diagnosis, file: FormulaFile, robot: Robot) -> Iterator[tupl
     """The file's entries that a diagnosis is about, with the places they claim."""
     for entry in file.formulas:
         plain, index = split_name(quantity_of(entry, robot.table))
-        label = f"{plain}[{','.join(map(str, index))}]" if index else plain
+        label = label_of(plain, index)
         if found.quantity in (plain, label):
             yield entry, label
 

@@ -93,11 +93,11 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
     return Robot.from_dh(replace(table, links=links)), tuple(said)
 
 
-def gravity_rounded(case: Case, engine: Array) -> tuple[str, ...] | None:
-    """A function with another g that is the robot's rounded: 9.8, 10."""
+def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str, ...] | None:
+    """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10."""
     g = np.array(case.robot.model.gravity.linear)
     size = float(np.linalg.norm(g))
-    if not size or case.hand.shape != engine.shape:
+    if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
     none = replace(case, robot=with_gravity(case.robot, 0 * g)).answer(())
     weight, rest = engine - none, case.hand - none
@@ -108,6 +108,7 @@ def gravity_rounded(case: Case, engine: Array) -> tuple[str, ...] | None:
     one = _decimal(share * size)
     if (
         one is None
+        or (one.whole and not whole)
         or share <= 0
         or abs(one.value - size) > one.reach * (1 + TOLERANCES.same_relation)
         or not same_values(rest, share * weight, engine)

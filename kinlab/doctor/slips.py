@@ -29,17 +29,8 @@ _FLOOD = 8
 """Slips in all entries together above which a list of them is no diagnosis."""
 _TIED = 5
 """Slips of one entry that are kept as alternatives."""
-_UNDONE = {
-    "sign",
-    "transposed",
-    "row order",
-    "inverse",
-    "rotation transposed",
-    "joint order",
-    "row sign",
-    "column sign",
-    "rows swapped",
-}
+_UNDONE = {"sign", "transposed", "row order", "inverse", "rotation transposed", "joint order"}
+_UNDONE |= {"row sign", "column sign", "rows swapped"}
 """Readings of the answer that are their own inverse."""
 
 
@@ -94,23 +85,17 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
     if derived is None:
-        return []
+        slip = terms.turned(text) if text is not None else None
+        error = entry.error(-entry.hand, entry.engine)
+        return [slip.with_error(error)] if slip and error <= TOLERANCES.formula_agrees else []
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
     arguments = case.quantity.arguments
     if text is not None:
         found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
-        found = terms.in_function(
-            entry.label,
-            entry.hand,
-            entry.engine,
-            derived,
-            poly,
-            arguments,
-            case.arguments,
-            others[:12],
-        )
+        of = (derived, poly, arguments, case.arguments)
+        found = terms.in_function(entry.label, entry.hand, entry.engine, *of, others[:12])
     good = []
     for slip in found:
         left = entry.engine if slip.repaired else entry.hand

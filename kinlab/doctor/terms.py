@@ -16,7 +16,7 @@ from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, together
-from kinlab.doctor.text.numbers_off import as_meant, beside_rounded
+from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -105,7 +105,7 @@ def in_text(
     poly, names = derived.held(poly, named), names_for(derived, arguments)
     names = replace(names, loads=tuple(named))
     right = derived.tree(poly)
-    forms = [_split(form) for form in _forms(derived, poly)]
+    forms = [list(form.terms) for form in _forms(derived, poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
     own = {name: values[:_POINTS] for name, values in here.items()}
     # names that are not there may be there as their numbers: whole ones too
@@ -224,15 +224,35 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
 
 def _mended(written: Written, found: Mended, here: dict[str, Array]) -> Slip:
     form = _("{entry}: {slip} ({kind})")
-    told = _("; ").join(
-        form.format(entry=written.entry, slip=c.sentence(written.told), kind=_(c.kind))
+    slips = [
+        form.format(entry=shown_entry(written.entry), slip=c.sentence(written.told), kind=_(c.kind))
         for c in found.changes
-    )
+    ]
+    repaired = replace(written, text=found.text)
+    told = _("; ").join((*slips, *rounded_in(repaired, here)))
     kinds = tuple(c.kind for c in found.changes)
-    values = replace(written, text=found.text).values(here)
+    values = repaired.values(here)
     text = written.restored(found.text)
     typed = written.typing.corrected(text) if written.typing is not None else ""
     return Slip(written.entry, kinds, told, text, found.cost, values, True, typed=typed)
+
+
+def turned(written: Written) -> Slip:
+    """The sign of a whole text, which needs no derivation: of an arm with many joints, too."""
+    plain, body = written.text.strip(), written.text.strip().removeprefix("-")
+    new = (body if body != plain else f"-{plain}") if _ONE_TERM.fullmatch(body) else f"-({plain})"
+    pieces = {"old": written.told(plain), "new": written.told(new)}
+    told = _("{old} should be {new}").format(**pieces)
+    said = _("{entry}: {slip} ({kind})").format(
+        entry=shown_entry(written.entry), slip=told, kind=_("sign")
+    )
+    text = written.restored(new)
+    typed = written.typing.corrected(text) if written.typing is not None else ""
+    return Slip(written.entry, ("sign",), said, text, 1.0, np.empty(0), True, typed=typed)
+
+
+_ONE_TERM = re.compile(r"[^-+]*(?:\([^()]*\)[^-+]*)*")
+"""A product without a sign in front, whatever stands between its parentheses."""
 
 
 def in_function(
@@ -290,6 +310,8 @@ def _by_effect(
     for form, repair in sorted(repairs, key=lambda pair: pair[1].cost):
         told = _("; ").join(_told_function(label, form, e) for e in repair.edits)
         kinds = tuple(_TURNED.get(e.kind, e.kind) for e in repair.edits)
+        if tree.names(form) and not tree.names(repair.result):
+            continue  # a bare number: any formula becomes one if enough is left out
         values = tree.evaluate(repair.result, everywhere)
         if all(s.sentence != told for s in slips):
             slips.append(Slip(label, kinds, told, str(right), repair.cost, values, False))
@@ -328,9 +350,8 @@ def _as_parameters(term: regression.Term, right: Node, names: Names, at: dict[st
     """A coefficient's size, as a product of parameters where the derived formula has one."""
     size = abs(term.coefficient)
     parameters = set(names.parameters)
-    for piece in _split(right):
-        factors = piece.args if piece.op == "mul" else (piece,)
-        front = tree.mul(tree.num(1), *(f for f in factors if tree.names(f) <= parameters))
+    for piece in right.terms:
+        front = tree.mul(tree.num(1), *(f for f in piece.factors if tree.names(f) <= parameters))
         value = abs(float(np.ravel(tree.evaluate(front, at))[0]))
         if tree.names(front) and abs(value - size) <= 1e-8 * size:
             return f"{front} = {size:.10g}".replace("-", "", 1)
@@ -347,7 +368,7 @@ def _told_function(label: str, form: Node, edit: Edit) -> str:
         said = _("{entry}: the factor {old} is missing in {term}")
     elif edit.kind == "extra factor":
         said = _("{entry}: the factor {old} is missing")
-    elif edit.kind == "factor" and edit.new == tree.mul(tree.num(2), old):
+    elif edit.kind == "factor" and tree.names(old) and edit.new == tree.mul(tree.num(2), old):
         said = _("{entry}: {old} is there twice")
     elif term:
         said = _("{entry}: it has {new} where the engine has {old} in {term} ({kind})")
@@ -387,10 +408,6 @@ def _forms(derived: Derivation, poly: Poly) -> list[Node]:
     made = [derived.tree(poly), derived.grouped(poly), derived.collected(poly)]
     made += derived.factored(poly)
     return list(dict.fromkeys(made))
-
-
-def _split(entry: Node) -> list[Node]:
-    return list(entry.args) if entry.op == "add" else [entry]
 
 
 def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:

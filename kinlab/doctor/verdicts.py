@@ -13,12 +13,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.rounding import (
-    coefficients,
-    coefficients_rounded,
-    data_rounded,
-    same_values,
-)
+from kinlab.doctor.rounding import coefficients, coefficients_rounded, data_rounded, same_values
 from kinlab.doctor.terms import anywhere, as_rods, names_for
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
@@ -150,13 +145,11 @@ def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
         return Excuse("unusual", (_("C*qd is right, but C is not Christoffel's"),))
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
-    skew = same_values(rest, np.zeros_like(rest), slope, slack)
-    if skew:
+    said = _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
+    if same_values(rest, np.zeros_like(rest), slope, slack):
         said = _(
             "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
         )
-    else:
-        said = _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
     return Excuse("unusual", (said,))
 
 

@@ -59,6 +59,16 @@ class Node:
     args: tuple[Node, ...] = ()
     value: Any = None
 
+    @property
+    def terms(self) -> tuple[Node, ...]:
+        """The terms of a sum; of anything else itself."""
+        return self.args if self.op == "add" else (self,)
+
+    @property
+    def factors(self) -> tuple[Node, ...]:
+        """The factors of a product; of anything else itself."""
+        return self.args if self.op == "mul" else (self,)
+
     def __str__(self) -> str:
         return to_text(self)
 
@@ -75,7 +85,7 @@ def sym(name: str) -> Node:
 
 def add(*args: Node) -> Node:
     """A sum; sums inside it are opened, zeros go."""
-    flat = [b for a in args for b in (a.args if a.op == "add" else (a,))]
+    flat = [term for a in args for term in a.terms]
     flat = [a for a in flat if not (a.op == "num" and a.value == 0)]
     if not flat:
         return num(0)
@@ -87,7 +97,7 @@ def mul(*args: Node) -> Node:
 
     Zero times what may have no real value (log(q1), 1/q1) stays as it is.
     """
-    flat = [b for a in args for b in (a.args if a.op == "mul" else (a,))]
+    flat = [factor for a in args for factor in a.factors]
     factor = reduce(lambda x, y: x * y, (a.value for a in flat if a.op == "num"), Fraction(1))
     rest = [a for a in flat if a.op != "num"]
     if factor == 0 and all(everywhere(a) for a in rest):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hand_programs import PROGRAMS, lines_named, repaired
+from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped
 
 import kinlab as kl
 from kinlab.doctor.examine import prepare
@@ -65,6 +65,25 @@ def test_slips_that_are_apart(robot, quantity, text, slips) -> None:
     found, good = asked(text, robot, quantity)
     assert good, found.sentence
     assert len(found.causes[0].kinds) == 2
+
+
+@pytest.mark.campaign
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_no_repair_of_two_slips_is_false(name) -> None:
+    program, told = PROGRAMS[name], 0
+    for seed in range(5000, 5012):
+        first = slipped(program.text, seed)
+        both = slipped(first[0], seed + 100) if first else None
+        if both is None:
+            continue
+        try:
+            found, good = asked(both[0], program.robot, program.quantity)
+        except Exception:  # noqa: BLE001  what does not run is no program
+            continue
+        if found.causes and names_a_line(found.causes[0].sentence):
+            assert good, (seed, found.sentence)
+            told += 1
+    assert told >= 2
 
 
 def test_what_edited_runs_write_into_data_is_undone() -> None:

@@ -344,3 +344,36 @@ def test_a_length_near_a_right_angle_is_none():
     (found,) = judged(x="1.57*cos(q1) + 0.4*cos(q1 + q2)")
     assert "1.57 should be 0.5" in found.causes[0].sentence
     assert "pi" not in found.causes[0].sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "formula"),
+    [
+        ("g1", "17.15*c1 + 5.88*c12"),
+        ("tau2", "0.24*(qdd1 + qdd2) + 0.3*c2*qdd1 + 0.3*s2*qd1^2 + 5.88*c12"),
+    ],
+)
+def test_coefficients_worked_out_with_a_rounded_g_are_right(entry, formula):
+    found = kl.diagnose("planar2r", entry, formula)
+    assert (found.agrees, found.form) == (True, "rounded")
+    assert found.remarks == ("g = 9.8 stands for 9.81",)
+
+
+@pytest.mark.parametrize(
+    "formula", ["17.15*c1 + 5.886*c12", "17.15*c1 - 5.88*c12", "17.5*c1 + 6*c12"]
+)
+def test_coefficients_of_two_gs_are_not(formula):
+    assert not kl.diagnose("planar2r", "g1", formula).agrees
+
+
+@pytest.mark.parametrize("formula", ["1.5*9.81*0.4*c12*180/pi", "m2*g*l2*c12*pi/180"])
+def test_a_fraction_that_does_not_belong_goes_as_a_whole(formula):
+    found = kl.diagnose("planar2r", "g2", formula)
+    assert f"the factor {formula.split('c12*')[1]} does not belong" in found.sentence
+
+
+def test_what_a_rounded_number_of_a_corrected_formula_stands_for_is_told():
+    said = str(kl.diagnose("planar2r", "M11", "1.12 - 0.6*c2"))
+    assert "correct: M11 = 1.12 + 0.6*c2" in said
+    assert "1.12 stands for" in said
+    assert "= 1.115" in said

@@ -473,6 +473,11 @@ def test_a_number_is_not_called_a_multiple_of_the_right_one(answer, kind):
     assert (found.kinds, found.points) == ((kind,), {"factor": 3.0, "sign": 2.0}.get(kind, 0.0))
 
 
+def test_nothing_but_zero_is_no_known_confusion():
+    found = marked({"q1": "0"}, "cause")["q1"]
+    assert (found.kinds, found.cause) == (("no value",), "it gives zero everywhere, or no number")
+
+
 def test_a_line_that_answers_no_question_is_told(tmp_path):
     sheet = sheet_of(SHEET, "s")
     (tmp_path / "a.txt").write_text("student: ada\nx = l1*c1 + l2*c12\ntau7 = 3\n")

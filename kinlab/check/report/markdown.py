@@ -99,7 +99,7 @@ def _formula(group: Group) -> list[str]:
 
 def _entry(found: Diagnosis) -> list[str]:
     mark = "" if found.agrees else f" **{_('DIFFERS')}**"
-    lines = [f"### {code(found.function)}{mark}", ""]
+    lines = [f"### {code(found.title)}{mark}", ""]
     of = _("{quantity} of {robot}")
     lines += [of.format(quantity=code(found.quantity), robot=words(found.robot)), ""]
     for left, right in found.given:

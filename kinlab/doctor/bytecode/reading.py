@@ -58,13 +58,8 @@ def definition(made: Made, name: str) -> ast.FunctionDef:
     head += [ast.Nonlocal(outer)] if outer else []
     if (text := docstring(code)) is not None:
         head.insert(0, ast.Expr(ast.Constant(text)))
-    tree = ast.FunctionDef(
-        name,
-        _arguments(made),
-        head + (body or [ast.Pass()]),
-        made.decorators,
-        made.notes.get("return"),
-    )
+    body, notes = head + (body or [ast.Pass()]), made.notes
+    tree = ast.FunctionDef(name, _arguments(made), body, made.decorators, notes.get("return"))
     line = code.co_firstlineno
     last = max((span_of(n) or (line, line))[1] for n in nodes(tree))
     at(tree, (line, max(line, last), 0, 0))
@@ -79,16 +74,10 @@ def _arguments(made: Made) -> ast.arguments:
     rest = args[plain + only :]
     star = rest.pop(0) if code.co_flags & inspect.CO_VARARGS else None
     twice = rest.pop(0) if code.co_flags & inspect.CO_VARKEYWORDS else None
-    keywords = args[plain : plain + only]
-    return ast.arguments(
-        args[: code.co_posonlyargcount],
-        args[code.co_posonlyargcount : plain],
-        star,
-        keywords,
-        [made.keywords.get(arg.arg) for arg in keywords],
-        twice,
-        made.defaults,
-    )
+    first, keywords = code.co_posonlyargcount, args[plain : plain + only]
+    given = [made.keywords.get(arg.arg) for arg in keywords]
+    both = args[:first], args[first:plain]
+    return ast.arguments(*both, star, keywords, given, twice, made.defaults)
 
 
 class Reader:

@@ -17,7 +17,7 @@ import math
 import warnings
 from types import CodeType, FunctionType
 
-from kinlab.doctor.bytecode.expressions import Made
+from kinlab.doctor.bytecode.expressions import Made, literal
 from kinlab.doctor.bytecode.instructions import UnreadError, alike
 from kinlab.doctor.bytecode.reading import definition
 from kinlab.doctor.bytecode.syntax import nodes
@@ -54,19 +54,14 @@ def recovered(function: FunctionType) -> ast.FunctionDef | None:
 
 def _literals(values: tuple[object, ...]) -> list[ast.expr] | None:
     """The values as literals, or None if one is not."""
-    nodes: list[ast.expr] = []
-    for value in values:
-        plain = isinstance(value, (bool, int, float, str, type(None), tuple))
-        if not plain or (isinstance(value, float) and not math.isfinite(value)):
-            return None
-        if isinstance(value, tuple):
-            inner = _literals(value)
-            if inner is None:
-                return None
-            nodes.append(ast.Tuple(inner, ast.Load()))
-        else:
-            nodes.append(ast.parse(repr(value), mode="eval").body)
-    return nodes
+    return [literal(value, None) for value in values] if all(map(_plain, values)) else None
+
+
+def _plain(value: object) -> bool:
+    if isinstance(value, tuple):
+        return all(map(_plain, value))
+    known = isinstance(value, (bool, int, float, str, type(None)))
+    return known and not (isinstance(value, float) and not math.isfinite(value))
 
 
 def _compiled(tree: ast.FunctionDef, code: CodeType) -> CodeType | None:

@@ -25,6 +25,9 @@ from kinlab.doctor.derivations.words import (
 )
 from kinlab.host.language import N_, _
 
+_LINES = 2
+"""Lines of a loop up to which it is called by what they make."""
+
 
 def everywhere(of: Program) -> Iterator[Step]:
     """What stands in every line, or in every column, taken otherwise."""
@@ -240,6 +243,8 @@ def _short_loops(of: Program, axes: Mapping[int, tuple[int, ...]], n: int) -> It
         yield from _not_carried(loop, lines, n)
         for joint in (1, n):
             does = _("leaves link {number} out of the loop that gives {line}: it is one too short")
+            if len(told_of) > _LINES:  # of so many, what is asked may be another
+                does = _("leaves link {number} out of the loop over the links: it is one too short")
             said = does.format(number=joint, line=together(told_of[-2:]))
             yield Step("loop", said, tuple(edits), 1.12, joint)
 

@@ -12,6 +12,7 @@ from typing import Any
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
+from kinlab.doctor.changes import label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import examine_formulas
@@ -229,7 +230,7 @@ def _places(
         return [label for label in labels if _is_place(label)], ()
     for entry, written in file.formulas.items():
         plain, index = split_name(quantity_of(entry, robot.table))
-        label = f"{plain}[{','.join(map(str, index))}]" if index else plain
+        label = label_of(plain, index)
         right = best.corrected.get(entry, best.corrected.get(label)) if best else None
         paths: frozenset[Any] = frozenset()
         if right:

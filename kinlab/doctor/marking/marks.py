@@ -9,7 +9,7 @@ import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, TypeVar
 
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.marking.words import told
@@ -74,11 +74,9 @@ def right_outcome(
     """A right answer: as the sheet has it, or right in another way, which may cost something."""
     kind = next((form for form in ("unusual", "rounded") if form in forms), "")
     share = question.slips.get(kind, 0.0) if kind else 0.0
-    points, kinds = round(question.points * (1.0 - share), 6), (kind,) if kind else ()
-    verdict = _GRADES[kind]
-    return Outcome(
-        question.id, verdict, points, question.points, kinds, formulas=formulas, remark=remark
-    )
+    got, most = round(question.points * (1.0 - share), 6), question.points
+    about: dict[str, Any] = {"kinds": (kind,) if kind else (), "formulas": formulas}
+    return Outcome(question.id, _GRADES[kind], got, most, remark=remark, **about)
 
 
 def wrong_outcome(
@@ -90,17 +88,9 @@ def wrong_outcome(
     formulas: tuple[tuple[str, str], ...] = (),
 ) -> Outcome:
     """A wrong answer: what is left of its points, and all that can be told of it."""
-    return Outcome(
-        question.id,
-        WRONG,
-        points,
-        question.points,
-        kinds,
-        place=place,
-        cause=told(kinds),
-        answer=answer,
-        formulas=formulas,
-    )
+    said = told(kinds)
+    most = question.points
+    return Outcome(question.id, WRONG, points, most, kinds, (), place, said, answer, formulas)
 
 
 def points_left(question: Question, kinds: Iterable[str]) -> float:
@@ -151,11 +141,7 @@ class Mark(Told):
         return round(math.fsum(outcome.of for outcome in self.outcomes), 6)
 
     def __getitem__(self, question: str) -> Outcome:
-        for outcome in self.outcomes:
-            if outcome.question == question:
-                return outcome
-        names = [outcome.question for outcome in self.outcomes]
-        raise NameUnknownError(f"question {question!r} is unknown; {near(question, names)}")
+        return _called("question", question, {one.question: one for one in self.outcomes})
 
     def __str__(self) -> str:
         said = _("{student}: {points:g} of {of:g} points")
@@ -163,13 +149,10 @@ class Mark(Told):
         for one in self.outcomes:
             told = (one.place, one.cause, *one.answer, one.remark)
             reason = _("; ").join(text for text in told if text)
-            said = (
-                _("  {question}: {verdict}, {points:g} of {of:g}: {reason}")
-                if reason
-                else _("  {question}: {verdict}, {points:g} of {of:g}")
-            )
-            verdict = _(one.verdict)
-            fields = {"question": one.question, "verdict": verdict, "reason": reason}
+            said = _("  {question}: {verdict}, {points:g} of {of:g}")
+            if reason:
+                said = _("  {question}: {verdict}, {points:g} of {of:g}: {reason}")
+            fields = {"question": one.question, "verdict": _(one.verdict), "reason": reason}
             lines.append(said.format(points=one.points, of=one.of, **fields))
         return "\n".join(lines)
 
@@ -189,11 +172,7 @@ class Marks:
     feedback: str
 
     def __getitem__(self, student: str) -> Mark:
-        for mark in self.marks:
-            if mark.student == student:
-                return mark
-        names = [mark.student for mark in self.marks]
-        raise NameUnknownError(f"student {student!r} is unknown; {near(student, names)}")
+        return _called("student", student, {mark.student: mark for mark in self.marks[::-1]})
 
     def __len__(self) -> int:
         return len(self.marks)
@@ -237,6 +216,15 @@ class Marks:
             for m in self.marks
         )
         return f"<p><b>{html.escape(str(self))}</b></p><table>{rows}</table>"
+
+
+T = TypeVar("T")
+
+
+def _called(what: str, name: str, known: Mapping[str, T]) -> T:
+    if name not in list(known):  # a list asks for no hash
+        raise NameUnknownError(f"{what} {name!r} is unknown; {near(name, known)}")
+    return known[name]
 
 
 def points(got: float, of: float) -> str:

@@ -70,22 +70,20 @@ def _cell(text: str) -> str:
 
 def gradescope(marks: Marks, mark: Mark) -> dict[str, Any]:
     """A student's results as Gradescope's autograder reads them."""
-    tests = []
-    for number, (question, outcome) in enumerate(
-        zip(marks.sheet.questions, mark.outcomes, strict=True), 1
-    ):
-        tests.append(
-            {
-                "number": str(number),
-                "name": f"{question.id}: {question.text}",
-                "score": outcome.points,
-                "max_score": outcome.of,
-                "status": "passed" if outcome.right else "failed",
-                "output": told(outcome),
-                "output_format": "text",
-                "visibility": "visible",
-            }
-        )
+    pairs = zip(marks.sheet.questions, mark.outcomes, strict=True)
+    tests = [
+        {
+            "number": str(number),
+            "name": f"{question.id}: {question.text}",
+            "score": outcome.points,
+            "max_score": outcome.of,
+            "status": "passed" if outcome.right else "failed",
+            "output": told(outcome),
+            "output_format": "text",
+            "visibility": "visible",
+        }
+        for number, (question, outcome) in enumerate(pairs, 1)
+    ]
     return {
         "score": mark.total,
         "output": mark.note,

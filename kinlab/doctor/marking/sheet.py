@@ -49,17 +49,7 @@ _LIMIT = 1 << 20
 _QUESTIONS = 100
 _ID = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,31}")
 _SHEET = ("title", "robot", "feedback", "samples", "seed", "slips", "variation", "questions")
-_QUESTION = (
-    "id",
-    "text",
-    "title",
-    "entry",
-    "quantity",
-    "answer",
-    "points",
-    "slips",
-    "tolerance",
-)
+_QUESTION = ("id", "text", "title", "entry", "quantity", "answer", "points", "slips", "tolerance")
 
 
 class SheetError(FileError):

@@ -6,6 +6,7 @@ import hashlib
 import re
 from dataclasses import replace
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -45,15 +46,12 @@ def _varied(robot: Robot, variation: Variation, student: str) -> Robot:
     chosen = variation.names or tuple(
         name for name in words.values if name not in ("g", "gx", "gy", "gz")
     )
-    values = {}
-    for name, value in words.values.items():
-        if name in chosen:
-            shared = _TENSOR.sub(r"I\1", name)  # a tensor stays one of a body
-            share = 2.0 * _fraction(variation.seed, student, shared) - 1.0
-            share = 1.0 + variation.spread * share
-            values[name] = float(f"{value * share:.{_DIGITS}g}")
-        else:
-            values[name] = value
+    values = dict(words.values)
+    for name in set(chosen) & set(values):
+        shared = _TENSOR.sub(r"I\1", name)  # a tensor stays one of a body
+        share = 2.0 * _fraction(variation.seed, student, shared) - 1.0
+        share = 1.0 + variation.spread * share
+        values[name] = float(f"{values[name] * share:.{_DIGITS}g}")
     return Robot.from_dh(_with_numbers(robot.table, words, values))
 
 
@@ -67,11 +65,8 @@ def _with_numbers(table: DHTable, words: Vocabulary, values: dict[str, float]) -
     def entry(key: str, old: float) -> float:
         if key not in words.entries:
             return old
-        total = sum(
-            (factor * (exact(values[name]) if name else 1) for factor, name in words.entries[key]),
-            start=exact(0.0),
-        )
-        return float(total)
+        parts = (f * (exact(values[name]) if name else 1) for f, name in words.entries[key])
+        return float(sum(parts, start=exact(0.0)))
 
     links: list[DHLink] = []
     for i, link in enumerate(table.links, 1):
@@ -81,20 +76,13 @@ def _with_numbers(table: DHTable, words: Vocabulary, values: dict[str, float]) -
                 value = entry(f"inertia{i}{one}{_AXES[m]}", tensor[k, m])
                 tensor[k, m] = tensor[m, k] = value
         com = np.asarray(link.com, dtype=float)
-        links.append(
-            replace(
-                link,
-                a=entry(f"a{i}", link.a),
-                d=entry(f"d{i}", link.d),
-                mass=entry(f"mass{i}", link.mass),
-                armature=entry(f"armature{i}", link.armature),
-                com=[entry(f"com{i}{axis}", float(com[k])) for k, axis in enumerate(_AXES)],
-                inertia=tensor,
-            )
-        )
-    ends = {}
+        plain = ("a", "d", "mass", "armature")
+        numbers: dict[str, Any] = {n: entry(f"{n}{i}", getattr(link, n)) for n in plain}
+        place = [entry(f"com{i}{axis}", float(com[k])) for k, axis in enumerate(_AXES)]
+        links.append(replace(link, com=place, inertia=tensor, **numbers))
+    ends: dict[str, Any] = {}
     for which in ("base", "tool"):
         frame = np.array(getattr(table, which), dtype=float)
         frame[:3, 3] = [entry(f"{which}{a}", frame[k, 3]) for k, a in enumerate(_AXES)]
         ends[which] = frame
-    return replace(table, links=links, base=ends["base"], tool=ends["tool"])
+    return replace(table, links=links, **ends)

@@ -113,32 +113,14 @@ KINDS: dict[str, str] = {
 """Kinds of slips, as a sheet may name them, with what is said of them."""
 
 OTHERS = (
-    N_("centripetal term"),
-    N_("tangential term"),
-    N_("tensor not rotated"),
-    N_("tensor transposed"),
-    N_("own joint"),
-    N_("theta sign"),
-    N_("products of inertia"),
-    N_("Christoffel"),
-    N_("unread"),
-    N_("missing entries"),
-    N_("another quantity"),
-    N_("exchanged"),
-    N_("rotation left out"),
-    N_("rotated twice"),
-    N_("only one term"),
-    N_("no value"),
-    N_("gravity added"),
-    N_("arguments exchanged"),
-    N_("quadrant"),
-    N_("supplementary angle"),
-    N_("root"),
-    N_("branches mixed"),
-    N_("constant angle"),
-    N_("singular matrix"),
-    N_("one number"),
-)
+    N_("centripetal term"), N_("tangential term"), N_("tensor not rotated"),
+    N_("tensor transposed"), N_("own joint"), N_("theta sign"),
+    N_("products of inertia"), N_("Christoffel"), N_("unread"), N_("missing entries"),
+    N_("another quantity"), N_("exchanged"), N_("rotation left out"),
+    N_("rotated twice"), N_("only one term"), N_("no value"), N_("gravity added"),
+    N_("arguments exchanged"), N_("quadrant"), N_("supplementary angle"), N_("root"),
+    N_("branches mixed"), N_("constant angle"), N_("singular matrix"), N_("one number"),
+)  # fmt: skip
 """Kinds that a sheet cannot name: steps of the textbooks' derivations, and what is no slip."""
 
 
@@ -146,6 +128,7 @@ _SAID = {
     **KINDS,
     "unread": N_("could not be read"),
     "missing entries": N_("entries are missing"),
+    "no value": N_("it gives zero everywhere, or no number"),
 }
 
 

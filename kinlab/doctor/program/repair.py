@@ -147,17 +147,17 @@ class LineSearch:
             for node in nodes(part.tree)
         )
 
+    def at(self, case: Case, wanted: Array) -> LineSearch:
+        """The same program asked at other states, all of which are its first."""
+        other = copy.copy(self)
+        other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
+        other._few = other._at(other.first)
+        return other
+
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
         other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // _SHARE
-        return other
-
-    def elsewhere(self, case: Case, wanted: Array) -> LineSearch:
-        """The search with other states, all of them its first, for the program's values there."""
-        other = copy.copy(self)
-        other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
-        other._few = other._at(other.first)
         return other
 
     def singles(self) -> list[ProgramRepair]:

@@ -17,6 +17,7 @@ from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.scaled import believed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import Trial
 from kinlab.host.language import N_, _
@@ -123,7 +124,8 @@ def lines(
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
-        yield WrongLines([cause_of(one, search) for one in repairs], search.written_out)
+        told = [one for one in (believed(repair, search) for repair in repairs) if one]
+        yield WrongLines([cause_of(one, search) for one in told], search.written_out)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:

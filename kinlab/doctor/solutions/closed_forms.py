@@ -157,32 +157,17 @@ PUMA = {
 """Craig's 4.7, and the same with the second axis the other way."""
 
 LINES = (
-    N_("the cosine of q2"),
-    N_("the sine of q2"),
-    N_("the angle q1"),
-    N_("the angle q2"),
-    N_("the angle q3"),
-    N_("the angle q4"),
-    N_("the angle q5"),
-    N_("the angle q6"),
-    N_("the distance of the tool"),
-    N_("the angle between the links"),
-    N_("the angle at the base"),
-    N_("the wrist's x"),
-    N_("the wrist's y"),
-    N_("the way of the slide"),
-    N_("the distance from the first axis"),
-    N_("the height above the shoulder"),
-    N_("the cosine of q3"),
-    N_("the sine of q3"),
-    N_("the length of the second link up to the tool"),
-    N_("Craig's K"),
-    N_("the angle q2 + q3"),
-    N_("the sine of q5"),
-    N_("the cosine of q5"),
-    N_("the sine of q6"),
-    N_("the cosine of q6"),
-)
+    N_("the cosine of q2"), N_("the sine of q2"), N_("the angle q1"),
+    N_("the angle q2"), N_("the angle q3"), N_("the angle q4"), N_("the angle q5"),
+    N_("the angle q6"), N_("the distance of the tool"),
+    N_("the angle between the links"), N_("the angle at the base"), N_("the wrist's x"),
+    N_("the wrist's y"), N_("the way of the slide"),
+    N_("the distance from the first axis"), N_("the height above the shoulder"),
+    N_("the cosine of q3"), N_("the sine of q3"),
+    N_("the length of the second link up to the tool"), N_("Craig's K"),
+    N_("the angle q2 + q3"), N_("the sine of q5"), N_("the cosine of q5"),
+    N_("the sine of q6"), N_("the cosine of q6"),
+)  # fmt: skip
 """What the lines are, to be translated."""
 
 _SIDES = ("elbow", "front", "side", "wrist")

@@ -16,7 +16,7 @@ import numpy as np
 from kinlab.arrays import Array, first_largest
 from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import Cause, Diagnosis
-from kinlab.check.quantities.inverse import TASKS, Task, as_solutions, reached
+from kinlab.check.quantities.inverse import TASKS, as_solutions, reached
 from kinlab.doctor import verdicts
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derivations.joined import (
@@ -90,7 +90,7 @@ def judged(
     label = case.quantity.domain.label(robot)
     worst = _worst(found)
     if not found.wrong.any() and found.right.any(axis=1).all():
-        remarks = (*_branches_told(found), *_answers_beyond(found, task))
+        remarks = (*_branches_told(found), *_answers_beyond(found))
         return Diagnosis(quantity, label, name, True, float(np.max(worst)), remarks=remarks)
     furthest = float(np.max(worst))
     study = studied(case, written) if written else None
@@ -101,7 +101,9 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        own = replace(case, hand=np.asarray(_compared(case, hand, engine)))
+        assert case.quantity.read is not None
+        # of each target the solution that is furthest off, where the tool is
+        own = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
         looking = own.looked_through(engine, TOLERANCES.formula_agrees)
         edited: list[Cause] = next((some.causes for some in looking if some.causes), [])
         causes = _causes(found, engine)
@@ -126,12 +128,6 @@ def judged(
         form="near" if not causes and _rounded_perhaps(found, furthest) else "",
         proved=() if causes else tuple(_counted(found)),
     )
-
-
-def _compared(case: Case, hand: Any, engine: Array) -> Any:
-    """Of each target the solution that is furthest off, where the tool is."""
-    assert case.quantity.read is not None
-    return case.quantity.read(case.robot, hand, engine)
 
 
 def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
@@ -207,7 +203,7 @@ def _distinct(found: Solutions) -> Any:
     return out
 
 
-def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
+def _answers_beyond(found: Solutions) -> Iterator[str]:
     """Where nothing can reach, a formula that answers all the same."""
     if found.case.again is None or slides(found.case.robot).any():
         return
@@ -215,7 +211,6 @@ def _answers_beyond(found: Solutions, task: Task) -> Iterator[str]:
     far = {n: x if n == "phi" else _BEYOND * x for n, x in few.items() if n != "pose"}
     if not far:
         return
-    del task
     try:
         with np.errstate(all="ignore"):
             answers = np.asarray(found.case.again(far), dtype=float)
@@ -308,7 +303,6 @@ def _by_offset(found: Solutions, engine: Array) -> Iterator[Cause]:
     wrong: Any = found.wrong[:, off]
     if not np.all(wrong | ~found.given[:, off]):
         return
-    places = ", ".join(str(k + 1) for k in np.flatnonzero(off))
     for joint in np.flatnonzero(~slides(found.case.robot)).tolist():
         for name, angle in _OFFSETS:
             q = found.q.copy()
@@ -316,16 +310,22 @@ def _by_offset(found: Solutions, engine: Array) -> Iterator[Cause]:
             other = _solutions(found.case, q, engine)
             if other.wrong.any() or not other.right.any(axis=1).all():
                 continue
-            told = _("q{joint} is off by a constant: with {angle} added it is right").format(
-                joint=joint + 1, angle=name
-            )
-            if not off.all():
-                told = _("{what} (in solution {places}; the others are right)").format(
-                    what=told, places=places
-                )
-            yield Cause(
-                told, ("constant angle",), (f"q{joint + 1}",), float(np.max(_worst(other))), 1.0
-            )
+            told = _("q{joint} is off by a constant: with {angle} added it is right")
+            told = _in_rows(told.format(joint=joint + 1, angle=name), off)
+            error = float(np.max(_worst(other)))
+            yield Cause(told, ("constant angle",), (f"q{joint + 1}",), error, 1.0)
+
+
+def _in_rows(told: str, off: Any) -> str:
+    """What is told, and of which solutions where it is not of all, (m,)."""
+    if off.all():
+        return told
+    said = _("{what} (in solution {places}; the others are right)")
+    return said.format(what=told, places=_rows(off))
+
+
+def _rows(off: Any) -> str:
+    return ", ".join(str(k + 1) for k in np.flatnonzero(off))
 
 
 def _by_mixing(found: Solutions) -> Iterator[Cause]:
@@ -342,11 +342,10 @@ def _by_mixing(found: Solutions) -> Iterator[Cause]:
         own.append(np.max(np.maximum(gap[..., :n], gap[..., n:]), axis=0) <= TOLERANCES.same_branch)
     # (branches, rows, joints)
     if own and np.any(own, axis=0).all():
-        places = ", ".join(str(k + 1) for k in np.flatnonzero(off))
         told = _(
             "the formula joins angles of different branches: each angle is right on a branch of "
             "its own (in solution {places}; the others are right)"
-        ).format(places=places)
+        ).format(places=_rows(off))
         yield Cause(told, ("branches mixed",), ("",), 0.0, 1.0)
 
 
@@ -357,7 +356,8 @@ def _by_derivation(
 
     Nothing where a row stays unexplained.
     """
-    off = [k for k in range(found.q.shape[1]) if found.wrong[:, k].any()]
+    wrong = found.wrong.any(axis=0)
+    off = np.flatnonzero(wrong).tolist()
     forms = list(closed_forms(found.case, limited))
     explained: list[dict[str, Found]] = []
     for k in off:
@@ -375,35 +375,24 @@ def _by_derivation(
         return []
     common = [said for said in explained[0] if all(said in ways for ways in explained)]
     formula = _("the formula {does}")
-    every = len(off) == found.q.shape[1]
     if common:
-        chosen = [(formula.format(does=said), [explained[0][said]]) for said in common]
+        said_of = {said: _in_rows(formula.format(does=said), wrong) for said in common}
+        chosen = [(said_of[said], [explained[0][said]]) for said in common]
     else:
         best = [min(ways.items(), key=lambda x: x[1].cost) for ways in explained]
         told = [
             _("solution {number}: {what}").format(number=k + 1, what=formula.format(does=said))
             for k, (said, _one) in zip(off, best, strict=True)
         ]
-        chosen, every = [(_("; ").join(told), [one for _said, one in best])], True
-    out = []
-    for said, founds in chosen:
-        sentence = said
-        if not every:
-            places = ", ".join(str(k + 1) for k in off)
-            sentence = _("{what} (in solution {places}; the others are right)").format(
-                what=said, places=places
-            )
-        steps = [step for one in founds for step in one.steps]
-        out.append(
-            Cause(
-                sentence,
-                tuple(step.kind for step in steps),
-                tuple(joint_of(step) for step in steps),
-                max(one.error for one in founds),
-                sum(one.cost for one in founds),
-            )
-        )
-    return out
+        chosen = [(_("; ").join(told), [one for _said, one in best])]
+    return [_as_cause(said, founds) for said, founds in chosen]
+
+
+def _as_cause(told: str, founds: list[Found]) -> Cause:
+    steps = [step for one in founds for step in one.steps]
+    kinds = tuple(step.kind for step in steps)
+    error, cost = max(one.error for one in founds), sum(one.cost for one in founds)
+    return Cause(told, kinds, tuple(joint_of(step) for step in steps), error, cost)
 
 
 def _of_row(

@@ -97,14 +97,10 @@ def differences(table: DHTable, bodies: Bodies) -> tuple[DHTable, list[Cause]]:
         if abs(one.mass - link.mass) > TOLERANCES.same_body * max(one.mass, link.mass) + slack:
             causes.append(mass_cause(one))
             changes["mass"] = one.mass
-        massive = one.mass > 0.0
-        if (
-            massive
-            and np.max(np.abs(com - np.asarray(link.com)))
-            > 1e-9 * size + slack * (table.n + 1) * size
-        ):
+        near = slack * (table.n + 1) * size
+        if one.mass > 0.0 and np.max(np.abs(com - np.asarray(link.com))) > 1e-9 * size + near:
             clean = _tidy(com)
-            causes.append(com_cause(replace(one, com=clean, slack=slack * (table.n + 1) * size)))
+            causes.append(com_cause(replace(one, com=clean, slack=near)))
             changes["com"] = clean
         limit = slack * (table.n + 1) * max(1.0, float(np.max(np.abs(inertia)))) + (
             TOLERANCES.same_body * float(np.max(np.abs(inertia)))
@@ -154,15 +150,7 @@ def _together(causes: list[Cause], n: int) -> list[Cause]:
         named = _(", ").join(map(str, rows))
         if rows == tuple(range(rows[0], rows[-1] + 1)):
             told = _("rows {first} to {last}: {slip}")
-        out.append(
-            Cause(
-                rows,
-                cause.column,
-                [c.written for c in same],
-                [c.meant for c in same],
-                cause.kind,
-                told.format(rows=named, first=rows[0], last=rows[-1], slip=cause.short),
-                cause.cost,
-            )
-        )
+        told = told.format(rows=named, first=rows[0], last=rows[-1], slip=cause.short)
+        written, meant = [c.written for c in same], [c.meant for c in same]
+        out.append(Cause(rows, cause.column, written, meant, cause.kind, told, cause.cost))
     return out

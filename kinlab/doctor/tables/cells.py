@@ -102,7 +102,7 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
     for row, turn, slide in ((z_row, THETA, D), (x_row, ALPHA, A)):
         if not 0 <= row < chain.n:
             continue
-        angle, length, rest = _screw(motion, AXIS_OF[turn])
+        angle, length, rest = screw(motion, AXIS_OF[turn])
         if rest > target.steady * target.size:
             continue
         changes = {}
@@ -119,7 +119,7 @@ def _readings_at(first: Reading, frame: int, motion: Array, target: Target) -> l
     return [one for one in found if target.met(one.chain)]
 
 
-def _screw(motion: Array, axis: int) -> tuple[float, float, float]:
+def screw(motion: Array, axis: int) -> tuple[float, float, float]:
     """Angle about and length along a coordinate axis, and how far the motion is from them."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
     angle = float(np.arctan2(motion[v, u] - motion[u, v], motion[u, u] + motion[v, v]))
@@ -177,9 +177,8 @@ def _whole_row(first: Reading, row: int, motion: Array, target: Target) -> list[
     """The row that a constant motion makes of a row: two cells of it, or a row written twice."""
     chain = first.chain
     step = row_transform(chain.modified, chain.cells[row])
-    solved = row_of(
-        chain.modified, motion @ step if chain.modified else step @ motion, target.steady
-    )
+    moved = motion @ step if chain.modified else step @ motion
+    solved = row_of(chain.modified, moved, target.steady)
     if solved is None:
         return []
     written = chain.cells[row]
@@ -293,7 +292,7 @@ def _turned(chain: Chain, target: Target) -> list[Reading]:
         motion[:, :3, 3] = 0.0
         if spread(motion[None], 1.0)[0] > target.steady:
             continue
-        angle, _length, rest = _screw(np.mean(motion, axis=0), AXIS_OF[column])
+        angle, _length, rest = screw(np.mean(motion, axis=0), AXIS_OF[column])
         if rest <= target.steady and abs(angle) > target.steady:
             value = wrapped(float(chain.cells[row, column]) + angle)
             found.append(changed(Reading(chain), {(row, column): value}, target.slack))

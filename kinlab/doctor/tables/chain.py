@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any
 
 import numpy as np
 
@@ -71,6 +71,12 @@ class Chain:
         new.__dict__.update(self.__dict__, **changes)
         return new
 
+    def permuted(self, order: list[int]) -> Chain:
+        """The rows of these numbers, with their joints, in this order."""
+        source = tuple(self.source[k] for k in order)
+        taken = {name: getattr(self, name)[order] for name in ("cells", "prismatic", "sign")}
+        return self.but(source=source, **taken)
+
     def with_cell(self, row: int, column: int, value: float) -> Chain:
         """The chain with one cell (0-based) replaced."""
         cells = self.cells.copy()
@@ -90,38 +96,17 @@ class Chain:
         """The table with this chain's rows in place of its own."""
         links = []
         for i, origin in enumerate(self.source):
-            a, alpha, d, theta = (float(x) for x in self.cells[i])
-            joint: Literal["revolute", "prismatic"]
-            joint = "prismatic" if self.prismatic[i] else "revolute"
-            link = table.links[origin] if origin is not None else DHLink(joint=joint)
-            same = link.joint == joint
-            links.append(
-                replace(
-                    link,
-                    joint=joint,
-                    a=a,
-                    alpha=alpha,
-                    d=d,
-                    theta=theta,
-                    flip=bool(self.sign[i] < 0),
-                    name=_name(link, i, self.source),
-                    lower=link.lower if same else None,
-                    upper=link.upper if same else None,
-                )
-            )
+            numbers: dict[str, Any] = dict(zip(COLUMNS, map(float, self.cells[i]), strict=True))
+            numbers["joint"] = "prismatic" if self.prismatic[i] else "revolute"
+            link = table.links[origin] if origin is not None else DHLink(joint=numbers["joint"])
+            if link.joint != numbers["joint"]:
+                numbers |= {"lower": None, "upper": None}
+            if self.source.count(origin) > 1:
+                numbers["name"] = None
+            links.append(replace(link, flip=bool(self.sign[i] < 0), **numbers))
         convention = Convention.MODIFIED if self.modified else Convention.STANDARD
-        return replace(
-            table,
-            convention=convention,
-            links=links,
-            base=_rigid(self.base),
-            tool=_rigid(self.tool),
-        )
-
-
-def _name(link: DHLink, i: int, source: tuple[int | None, ...]) -> str | None:
-    """A row's name, unless the row stands twice."""
-    return None if source.count(source[i]) > 1 else link.name
+        ends: dict[str, Any] = {"base": _rigid(self.base), "tool": _rigid(self.tool)}
+        return replace(table, convention=convention, links=links, **ends)
 
 
 def _rigid(pose: Array) -> Array:
@@ -176,12 +161,8 @@ def _modified(
     a, ca, sa, d, c, s = a[k], ca[k], sa[k], d[k], c[k], s[k]
     part = np.zeros((*c.shape, 3, 4))
     part[..., 0, 0], part[..., 0, 1], part[..., 0, 3] = c, -s, a
-    part[..., 1, 0], part[..., 1, 1], part[..., 1, 2], part[..., 1, 3] = (
-        s * ca,
-        c * ca,
-        -sa,
-        -sa * d,
-    )
+    part[..., 1, 0], part[..., 1, 1] = s * ca, c * ca
+    part[..., 1, 2], part[..., 1, 3] = -sa, -sa * d
     part[..., 2, 0], part[..., 2, 1], part[..., 2, 2], part[..., 2, 3] = s * sa, c * sa, ca, ca * d
     steps[k, ..., :3, :] = part
 
@@ -209,15 +190,8 @@ def inverse(poses: Array) -> Array:
 
 def row_transform(modified: bool, row: Array) -> Array:
     """Transform of one row a, alpha, d, theta at q = 0, (4, 4)."""
-    one = Chain(
-        modified,
-        np.asarray(row, dtype=float)[None],
-        np.array([False]),
-        np.ones(1),
-        np.eye(4),
-        np.eye(4),
-        (None,),
-    )
+    cells, plain = np.asarray(row, dtype=float)[None], np.eye(4)
+    one = Chain(modified, cells, np.array([False]), np.ones(1), plain, plain, (None,))
     out: Array = tool_poses(one, np.zeros((1, 1)))[0]
     return out
 

@@ -153,24 +153,13 @@ def _told(
 ) -> TableDiagnosis:
     """The result from what the search found; none found is a result too."""
     chain = Chain.of(table)
-    common: dict[str, Any] = {
-        "mine": table,
-        "reference": reference.name,
-        "states": len(reference.target.q),
-        "error_before": before,
-        "tolerance": reference.target.tolerance,
-        "notes": tuple(notes),
-    }
+    common = reference.facts(table, before, notes)
     if not found:
         sure = table_zeros.sure_rows(chain, reference)
         doubt = tuple(i for i in range(1, table.n + 1) if i not in sure)
-        return TableDiagnosis(
-            agrees=False,
-            sentence=_unknown(sure, doubt, reference),
-            certain_rows=sure,
-            rows_in_question=doubt,
-            **common,
-        )
+        rows_: dict[str, Any] = {"certain_rows": sure, "rows_in_question": doubt}
+        said = _unknown(sure, doubt, reference)
+        return TableDiagnosis(agrees=False, sentence=said, **rows_, **common)
     options = _with_bodies(table, reference, found, bodies)
     if len(found[0].causes) == 1 and len(options[0][2]) > 1 and table.n == reference.n:
         # bodies that are wrong in many rows speak against the one kinematic slip
@@ -180,16 +169,14 @@ def _told(
     if len(dynamic) > MOST or (len(causes) > MOST and not many):
         rows = sorted({row for cause in dynamic for row in cause.rows})
         kinematic = tuple(c for c in causes if c not in dynamic)
-        said = (
-            _("{kinematics}; {columns} differ in rows {rows}, more than one or two slips explain")
-            if rows
-            else _("{kinematics}; {columns} differ, more than one or two slips explain")
-        )
-        said = said.format(
-            kinematics=joined(kinematic) if kinematic else _("the kinematics agree"),
-            columns=listed(sorted({c.column for c in dynamic})),
-            rows=listed(rows) if rows else "",
-        )
+        said = _("{kinematics}; {columns} differ, more than one or two slips explain")
+        if rows:
+            said = _(
+                "{kinematics}; {columns} differ in rows {rows}, more than one or two slips explain"
+            )
+        found_ = joined(kinematic) if kinematic else _("the kinematics agree")
+        columns = listed(sorted({c.column for c in dynamic}))
+        said = said.format(kinematics=found_, columns=columns, rows=listed(rows) if rows else "")
         return TableDiagnosis(
             agrees=False,
             sentence=said,
@@ -203,14 +190,12 @@ def _told(
     wrong = {row for cause in causes for row in cause.rows}
     whole = any(c.row is None and c.column in ("convention", "units", "order") for c in causes)
     rest = tuple(i for i in range(1, repaired.n + 1) if i not in wrong and not whole)
+    told = joined(causes)
     if not causes:
-        told = _("{table} and {reference} are the same arm").format(
-            table=table.name, reference=reference.name
-        )
+        told = _("{table} and {reference} are the same arm")
+        told = told.format(table=table.name, reference=reference.name)
         if reference.chain is not None:
             differences = _gauge(chain, reference.chain)
-    else:
-        told = joined(causes)
     return TableDiagnosis(
         agrees=not causes,
         sentence=told,
@@ -300,8 +285,7 @@ def _frames_told(causes: tuple[Cause, ...], chain: Chain) -> tuple[str, ...]:
         row = cause.rows[0]
         if row > chain.n or bool(chain.prismatic[row - 1]) != (cause.column == "d"):
             return ()
-        gap = float(cause.meant) - float(cause.written)
-        gap *= float(chain.sign[row - 1])
+        gap = (float(cause.meant) - float(cause.written)) * float(chain.sign[row - 1])
         if cause.column == "theta":
             gap = float(np.degrees(np.angle(np.exp(1j * gap))))
             said = _("zero of joint {joint} differs by {gap:.9g} deg")

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.tables.cells import changed
+from kinlab.doctor.tables.cells import changed, screw
 from kinlab.doctor.tables.chain import (
     ALPHA,
     AXIS_OF,
@@ -94,45 +94,23 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
     least = _chi(full, target, sigma)
     room = rank + 5.0 * np.sqrt(2.0 * rank)
     written = _chi(chain, target, sigma) - least
-    common: dict[str, Any] = {
-        "mine": table,
-        "reference": reference.name,
-        "states": len(target.q),
-        "error_before": target.error(chain),
-        "tolerance": target.tolerance,
-        "notes": tuple(notes),
-    }
-    clear = {
-        "sigma_position": float(sigma[0]),
-        "sigma_angle_deg": float(np.degrees(sigma[1])),
-    }
+    common = reference.facts(table, target.error(chain), notes)
+    rows = tuple(range(1, table.n + 1))
+    clear = {"sigma_position": float(sigma[0]), "sigma_angle_deg": float(np.degrees(sigma[1]))}
+    common["clear"], names = clear, {"table": table.name, "reference": reference.name}
     if written <= room:
-        return TableDiagnosis(
-            agrees=True,
-            sentence=_("{table} agrees with {reference} within their noise").format(
-                table=table.name, reference=reference.name
-            ),
-            repaired=table,
-            same_arm=True,
-            clear=clear,
-            certain_rows=tuple(range(1, table.n + 1)),
-            **common,
-        )
+        said = _("{table} agrees with {reference} within their noise").format(**names)
+        right: dict[str, Any] = {"repaired": table, "same_arm": True, "certain_rows": rows}
+        return TableDiagnosis(agrees=True, sentence=said, **right, **common)
     effect = float(np.sqrt((written + numbers) / numbers))
     fits = _fitted(candidates, chain, target, sigma)
     good = [fit for fit in fits if fit.chi - least <= room]
     clear["effect"] = effect
     if not good or written < _CLEAR**2 + room:
-        return TableDiagnosis(
-            agrees=False,
-            sentence=_(
-                "{table} is not the arm of {reference}, beyond the noise; no single slip explains "
-                "it"
-            ).format(table=table.name, reference=reference.name),
-            rows_in_question=tuple(range(1, table.n + 1)),
-            clear=clear,
-            **common,
-        )
+        said = _(
+            "{table} is not the arm of {reference}, beyond the noise; no single slip explains it"
+        ).format(**names)
+        return TableDiagnosis(agrees=False, sentence=said, rows_in_question=rows, **common)
     best = min(fit.chi + 2.0 * fit.unknowns for fit in good)
     equal = [fit for fit in good if fit.chi + 2.0 * fit.unknowns - best <= _AS_GOOD]
     equal.sort(key=lambda fit: (round(fit.reading.cost, 6), round(fit.chi, 6)))
@@ -148,9 +126,8 @@ def judge(table: DHTable, reference: Reference, notes: Sequence[str]) -> TableDi
         alternatives=tuple(fit.reading.causes for fit in equal[1:]),
         repaired=first.chain.apply(table),
         error_after=target.error(first.chain),
-        clear=clear,
         rows_in_question=tuple(sorted(wrong)),
-        certain_rows=tuple(i for i in range(1, table.n + 1) if wrong and i not in wrong),
+        certain_rows=tuple(i for i in rows if wrong and i not in wrong),
         **common,
     )
 
@@ -165,12 +142,8 @@ def _candidates(plain: Reading, target: Target) -> list[Reading]:
         for column in (A, ALPHA, D, THETA):
             frame = poses[:, chain.frame_of(row, column)]
             motion = np.mean(inverse(frame) @ world @ frame, axis=0)
-            k = AXIS_OF[column]
-            u, v = (k + 1) % 3, (k + 2) % 3
-            if column in (ALPHA, THETA):
-                change = float(np.arctan2(motion[v, u] - motion[u, v], motion[u, u] + motion[v, v]))
-            else:
-                change = float(motion[k, 3])
+            angle, length, _off = screw(motion, AXIS_OF[column])
+            change = angle if column in (ALPHA, THETA) else length
             start = chain.with_cell(row, column, float(chain.cells[row, column]) + change)
             solved = _solve_cell(start, row, column, target)
             found.append(Reading(start.with_cell(row, column, solved)))
@@ -288,14 +261,8 @@ def _rest(poses: Array, target: Target) -> Array:
     out = np.zeros((*poses.shape[:-2], 6))
     out[..., :3] = target.poses[..., :3, 3] - poses[..., :3, 3]
     rotation = target.poses[..., :3, :3] @ np.swapaxes(poses[..., :3, :3], -1, -2)
-    sine = 0.5 * np.stack(
-        [
-            rotation[..., 2, 1] - rotation[..., 1, 2],
-            rotation[..., 0, 2] - rotation[..., 2, 0],
-            rotation[..., 1, 0] - rotation[..., 0, 1],
-        ],
-        axis=-1,
-    )
+    turned = rotation - np.swapaxes(rotation, -1, -2)
+    sine = 0.5 * np.stack([turned[..., 2, 1], turned[..., 0, 2], turned[..., 1, 0]], axis=-1)
     cosine = 0.5 * (np.trace(rotation, axis1=-2, axis2=-1) - 1.0)
     size = np.linalg.norm(sine, axis=-1)
     angle = np.arctan2(size, cosine)

@@ -210,7 +210,7 @@ def _order(chain: Chain) -> Iterator[Reading]:
         one, two = (i + 1, j + 1), (j + 1, i + 1)
         cost = 1.0 if j == i + 1 else 1.1
         cause = Cause(one, "order", one, two, "exchanged", told, cost)
-        yield Reading(_permuted(chain, order), (cause,))
+        yield Reading(chain.permuted(order), (cause,))
         cells = chain.cells[order]  # the joints and bodies stayed where they are
         yield Reading(chain.with_cells(cells), (replace(cause, cost=cost + 0.02),))
     for i, j in product(range(n), repeat=2):
@@ -219,20 +219,11 @@ def _order(chain: Chain) -> Iterator[Reading]:
             order.insert(j, i)
             told = _("row {row} belongs at place {place}").format(row=i + 1, place=j + 1)
             cause = Cause((i + 1, j + 1), "order", i + 1, j + 1, "displaced", told, 1.3)
-            yield Reading(_permuted(chain, order), (cause,))
+            yield Reading(chain.permuted(order), (cause,))
     if n > 3:
         told, way = _("the rows stand in reversed order"), ("tool to base", "base to tool")
         cause = Cause(None, "order", *way, "reversed", told, 1.3)
-        yield Reading(_permuted(chain, list(range(n))[::-1]), (cause,))
-
-
-def _permuted(chain: Chain, order: list[int]) -> Chain:
-    return chain.but(
-        cells=chain.cells[order],
-        prismatic=chain.prismatic[order],
-        sign=chain.sign[order],
-        source=tuple(chain.source[k] for k in order),
-    )
+        yield Reading(chain.permuted(list(range(n))[::-1]), (cause,))
 
 
 def _joints(chain: Chain) -> Iterator[Reading]:

@@ -124,12 +124,8 @@ class TableDiagnosis(Rows):
                 "noise {position:.3g} mm, {angle:.3g} deg; the slip is {effect:.3g} times the "
                 "noise, the next best cause leaves {next:.3g} times the noise"
             )
-        return told.format(
-            position=1000 * c["sigma_position"],
-            angle=c["sigma_angle_deg"],
-            effect=c.get("effect"),
-            next=c.get("runner_up"),
-        )
+        size = {"position": 1000 * c["sigma_position"], "angle": c["sigma_angle_deg"]}
+        return told.format(**size, effect=c.get("effect"), next=c.get("runner_up"))
 
     def columns(self) -> dict[str, Any]:
         """Slip by slip: row and column, what is written and what is meant."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from kinlab.doctor.tables.cells import differences, row_text, spread
@@ -20,14 +18,11 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
     for row in range(chain.n + 1):
         for slides in (False, True):
             for sign in (1.0, -1.0):
-                new = Chain(
-                    chain.modified,
-                    np.insert(chain.cells, row, 0.0, axis=0),
-                    np.insert(chain.prismatic, row, slides),
-                    np.insert(chain.sign, row, sign),
-                    chain.base,
-                    chain.tool,
-                    (*chain.source[:row], None, *chain.source[row:]),
+                new = chain.but(
+                    cells=np.insert(chain.cells, row, 0.0, axis=0),
+                    prismatic=np.insert(chain.prismatic, row, slides),
+                    sign=np.insert(chain.sign, row, sign),
+                    source=(*chain.source[:row], None, *chain.source[row:]),
                 )
                 frame = row if chain.modified else row + 1
                 gap, _last = differences(frames(new, target.few.q)[None], target.few)
@@ -36,28 +31,18 @@ def inserted(chain: Chain, target: Target) -> list[Reading]:
                 solved = row_of(chain.modified, np.mean(gap[0, :, frame], axis=0), target.steady)
                 if solved is None:
                     continue
-                for column in range(4):
-                    value = float(solved[column])
+                for column, value in enumerate(map(float, solved)):
                     angle = column in (ALPHA, THETA)
-                    new = new.with_cell(
-                        row, column, wrapped(value) if angle else tidy_length(value, 0.0)
-                    )
+                    tidy = wrapped(value) if angle else tidy_length(value, 0.0)
+                    new = new.with_cell(row, column, tidy)
                 if not target.met(new):
                     continue
-                left_out = (
-                    _("row {row} is left out: prismatic, {meant}")
-                    if slides
-                    else _("row {row} is left out: revolute, {meant}")
-                )
-                cause = Cause(
-                    row + 1,
-                    "order",
-                    None,
-                    new.cells[row],
-                    "left out",
-                    left_out.format(row=row + 1, meant=row_text(new.cells[row])),
-                    1.0 if sign > 0 else 1.4,
-                )
+                told = _("row {row} is left out: revolute, {meant}")
+                if slides:
+                    told = _("row {row} is left out: prismatic, {meant}")
+                told = told.format(row=row + 1, meant=row_text(new.cells[row]))
+                cost = 1.0 if sign > 0 else 1.4
+                cause = Cause(row + 1, "order", None, new.cells[row], "left out", told, cost)
                 found.append(Reading(new, (cause,)))
     return found
 
@@ -67,30 +52,14 @@ def removed(chain: Chain) -> list[Reading]:
     found = []
     for row in range(chain.n):
         keep = [k for k in range(chain.n) if k != row]
-        new = replace(
-            chain,
-            cells=chain.cells[keep],
-            prismatic=chain.prismatic[keep],
-            sign=chain.sign[keep],
-            source=tuple(chain.source[k] for k in keep),
-        )
-        twins = [
-            k
-            for k in (row - 1, row + 1)
-            if 0 <= k < chain.n and np.array_equal(chain.cells[k], chain.cells[row])
-        ]
+        new = chain.permuted(keep)
+        beside = [k for k in (row - 1, row + 1) if 0 <= k < chain.n]
+        twins = [k for k in beside if np.array_equal(chain.cells[k], chain.cells[row])]
         told = _("row {row} is too many").format(row=row + 1)
         if twins:
             told = _("row {row} repeats row {other}").format(row=row + 1, other=twins[0] + 1)
         cost = 1.0 if twins and twins[0] < row else 1.1 if twins else 1.5
-        cause = Cause(
-            row + 1,
-            "order",
-            chain.cells[row],
-            None,
-            "doubled" if twins else "too many",
-            told,
-            cost,
-        )
+        kind = "doubled" if twins else "too many"
+        cause = Cause(row + 1, "order", chain.cells[row], None, kind, told, cost)
         found.append(Reading(new, (cause,)))
     return found

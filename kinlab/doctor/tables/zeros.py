@@ -54,12 +54,7 @@ def _with_tool(turned: Chain, reference: Reference) -> list[Chain]:
     """The last joint's zero from the tool's pose, or else another tool."""
     if reference.target.met(turned):
         return [turned]
-    found = [
-        r
-        for r in one_change([Reading(turned)], reference.target)
-        if all(c.column in ("theta", "d", "tool") for c in r.causes)
-    ]
-    found = [r for r in found if _zeros_only(r)]
+    found = [r for r in one_change([Reading(turned)], reference.target) if _zeros_only(r)]
     found.sort(key=lambda r: (r.causes[0].column == "tool", r.cost))
     return [r.chain for r in found[:1]]
 
@@ -68,8 +63,9 @@ def _zeros_only(one: Reading) -> bool:
     for cause in one.causes:
         if cause.column == "tool":
             continue
-        slides = bool(one.chain.prismatic[cause.rows[0] - 1])
-        if slides != (cause.column == "d"):
+        if cause.column not in ("theta", "d"):
+            return False
+        if bool(one.chain.prismatic[cause.rows[0] - 1]) != (cause.column == "d"):
             return False
     return True
 
@@ -101,9 +97,8 @@ def _on(one: ReferenceAxes, two: ReferenceAxes, i: int) -> bool:
     if one.slides[i]:
         return True
     gap = np.cross(one.point[i] - two.point[i], two.direction[i])
-    return bool(
-        np.max(np.abs(gap)) < TOLERANCES.same_line * max(1.0, float(np.max(np.abs(two.point))))
-    )
+    size = max(1.0, float(np.max(np.abs(two.point))))
+    return bool(np.max(np.abs(gap)) < TOLERANCES.same_line * size)
 
 
 def _change(mine: ReferenceAxes, axes: ReferenceAxes, i: int) -> float | None:

@@ -220,6 +220,7 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         )
         span = (at, end, "")
         line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
+        _as_fraction(line, place, left, right)
         return
     told, pieces = line.told(
         place,
@@ -232,6 +233,24 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     ):
         kind = "factor" if isinstance(gone.node, ast.Constant) else "extra factor"
         line.edit(place, kept.value, span, kind, 1.3, told, pieces | {"factor": factor})
+
+
+def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
+    """A fraction of two numbers behind a term that does not belong there: ``*180/pi``."""
+    if not isinstance(left.node, ast.BinOp) or not isinstance(left.node.op, ast.Mult):
+        return
+    front, above = line.siblings[id(left)]
+    numbers = (above.node, right.node)
+    if not all(isinstance(x, ast.Constant) or ast.unparse(x) == "pi" for x in numbers):
+        return
+    start, end = front.span[1], place.span[1]
+    told, pieces = line.told(
+        place,
+        N_("the factor {factor} does not belong"),
+        N_("the factor {factor} does not belong in {term}"),
+    )
+    pieces |= {"factor": line.source[above.span[0] : end]}
+    line.edit(place, front.value, (start, end, ""), "factor", 1.1, told, pieces)
 
 
 def _as_factor(line: Line, place: Place) -> None:

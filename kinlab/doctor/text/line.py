@@ -235,8 +235,7 @@ class Line:
         """What may be missing between parentheses: parts of the derived terms."""
         found: dict[str, Array] = {}
         for term in self.terms:
-            factors = term.args if term.op == "mul" else (term,)
-            plain = [f for f in factors if f.op != "num"]
+            plain = [f for f in term.factors if f.op != "num"]
             for mask in range(1, 2 ** min(len(plain), 6)):
                 part = [f for k, f in enumerate(plain) if mask >> k & 1]
                 for front in (1, 2):

@@ -137,10 +137,9 @@ def coefficients(right: Node) -> tuple[list[Node], ...]:
     """
     fronts: dict[Node, list[Node]] = {}
     within: list[Node] = []
-    for term in right.args if right.op == "add" else (right,):
-        factors = term.args if term.op == "mul" else (term,)
-        moving = [f for f in factors if any(name[0] == "q" for name in tree.names(f))]
-        still = [f for f in factors if f not in moving]
+    for term in right.terms:
+        moving = [f for f in term.factors if any(name[0] == "q" for name in tree.names(f))]
+        still = [f for f in term.factors if f not in moving]
         fronts.setdefault(tree.mul(tree.num(1), *moving), []).append(tree.mul(tree.num(1), *still))
         for count in range(1, len(still)):
             within += [tree.mul(tree.num(1), *some) for some in combinations(still, count)]

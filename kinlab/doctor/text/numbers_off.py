@@ -6,6 +6,7 @@ that are what was written, rounded, stay as they are; the others are put right.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -13,11 +14,12 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.line import Change, Line
-from kinlab.doctor.text.meanings import Meanings, coefficients
+from kinlab.doctor.text.meanings import Meanings, coefficients, stands_for
 from kinlab.doctor.text.mend import Mended, mended, together
 from kinlab.doctor.text.stand_ins import FREE, fitted, stand_ins, told_apart
 from kinlab.doctor.text.written import Literal, Written
 from kinlab.formulas import tree
+from kinlab.formulas.text import parse
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 from kinlab.tolerances import TOLERANCES
@@ -27,6 +29,8 @@ _MOST = 3
 _LIKE = 3.0
 """Times that a number may be off and still be the same number mistaken."""
 
+
+_EXACT = re.compile(r"\bexact_\d+_\d+\b")
 
 Part = tuple[Mapping[str, Array], Array]
 """States at which a formula is one of its parts alone, and the values wanted there."""
@@ -140,6 +144,19 @@ def _with_exact(text: Written, exact: Mapping[int, str]) -> Written:
         symbols[name], numbers[name] = exact[k], line[start:end]
         line = line[:start] + name + line[end:]
     return replace(text, text=line, symbols=symbols, numbers=numbers)
+
+
+def rounded_in(text: Written, at: Mapping[str, Array]) -> list[str]:
+    """What the numbers stand for that are exact by a name and shown as written, in words."""
+    meanings, said = Meanings.at(at), []
+    for name in dict.fromkeys(_EXACT.findall(text.text)):
+        meant = parse(text.symbols[name])
+        value = float(np.ravel(tree.evaluate(meant, dict(at)))[0])
+        if abs(value - float(text.numbers[name])) > TOLERANCES.formula_agrees * abs(value):
+            letters = bool(tree.names(meant))
+            shown = f"{text.symbols[name]} = {value:.7g}" if letters else meanings.named(value)
+            said.append(stands_for(text.numbers[name], shown))
+    return list(dict.fromkeys(said))
 
 
 def _with_right_parts(text: Written, parts: Sequence[Part]) -> Written:

@@ -14,54 +14,15 @@ from typing import Any
 
 Reply = dict[str, Any]
 
-_BLOCKED = (
-    "socket.",
-    "subprocess.",
-    "os.exec",
-    "os.fork",
-    "os.posix_spawn",
-    "os.spawn",
-    "os.system",
-    "os.kill",
-    "os.killpg",
-    "os.remove",
-    "os.rename",
-    "os.rmdir",
-    "os.mkdir",
-    "os.symlink",
-    "os.link",
-    "os.chmod",
-    "os.chown",
-    "os.truncate",
-    "os.putenv",
-    "shutil.",
-    "ctypes.",
-    "pty.",
-    "ftplib.",
-    "urllib.",
-    "http.",
-    "smtplib.",
-    "webbrowser.",
-    "signal.",
-    "gc.",
-    "sys._getframe",
-    "sys.setprofile",
-    "sys.settrace",
-    "mmap.",
-)
-MODULES = (
-    "kinlab",
-    "pinocchio",
-    "ctypes",
-    "_ctypes",
-    "socket",
-    "_socket",
-    "subprocess",
-    "multiprocessing",
-    "cffi",
-    "_posixsubprocess",
-    "resource",
-)
+_BLOCKED: tuple[str, ...] = ("socket.", "subprocess.", "shutil.", "ctypes.", "pty.", "mmap.")
+_BLOCKED += ("signal.", "gc.", "ftplib.", "urllib.", "http.", "smtplib.", "webbrowser.")
+_BLOCKED += ("os.exec", "os.fork", "os.posix_spawn", "os.spawn", "os.system", "os.kill")
+_BLOCKED += ("os.killpg", "os.remove", "os.rename", "os.rmdir", "os.mkdir", "os.symlink")
+_BLOCKED += ("os.link", "os.chmod", "os.chown", "os.truncate", "os.putenv")
+_BLOCKED += ("sys._getframe", "sys.setprofile", "sys.settrace")
+"""How the names of events begin that are refused."""
+MODULES: tuple[str, ...] = ("kinlab", "pinocchio", "ctypes", "_ctypes", "cffi", "resource")
+MODULES += ("socket", "_socket", "subprocess", "_posixsubprocess", "multiprocessing")
 _MOST = 100_000
 """Numbers in one answer."""
 

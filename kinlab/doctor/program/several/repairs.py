@@ -6,6 +6,10 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+import numpy as np
+
+from kinlab.doctor.glossary.meaning import meaning_of
+from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
@@ -143,7 +147,7 @@ class _Tried:
         ranked = sorted(costs, key=lambda way: costs[way])
         near = [way for way in ranked if costs[way] <= costs[ranked[0]] + _ALIKE][:_RIVALS]
         if len(near) > 1 and search.evidence.known:
-            rights = {way: search.left_right(way) for way in near}
+            rights = {way: search.left_right(way) + sum(map(self._own, way)) for way in near}
             near.sort(key=lambda way: (-rights[way], costs[way]))
         found: list[ProgramRepair] = []
         for way in [*near, *(way for way in ranked if way not in near)]:
@@ -152,3 +156,11 @@ class _Tried:
             if len(found) == _NAMED:
                 break
         return found
+
+    def _own(self, edit: ProgramEdit) -> bool:
+        """Whether a number that is nothing of the arm's becomes one of its own."""
+        known = self.search.evidence.known
+        if edit.part != DATA or edit.numbers is None:
+            return False
+        old, new = (meaning_of(known, [np.array(x)] * len(known)) for x in edit.numbers)
+        return (old is None or bool(old.form)) and new is not None and not new.form

@@ -13,9 +13,10 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.derivations.parts import MOVING
 from kinlab.doctor.program.places import ProgramEdit
-from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.repair import LineSearch
 from kinlab.doctor.program.several.effects import Effects
 from kinlab.doctor.program.trial import NoProgramError
+from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.tolerances import TOLERANCES
 
@@ -39,7 +40,7 @@ class AtRest:
                 wanted = np.asarray(replace(case, arguments=stacks).answer(()), dtype=float)
         except (KinlabError, np.linalg.LinAlgError, ValueError):
             return
-        self.search = search.elsewhere(replace(case, arguments=stacks), wanted)
+        self.search = search.at(replace(case, arguments=stacks), wanted)
         self.differences = any(name in MOVING for name in stacks)
         self.goal = self._parts(wanted)
         size = np.abs(self.goal).max(axis=tuple(range(1, wanted.ndim)), keepdims=True)
@@ -67,12 +68,15 @@ class AtRest:
             return None
         alike: list[list[ProgramEdit]] = []
         rows: list[Array] = []
+        trial = self.search.trial
+        variants = Variants(trial, [edits[0] for edits in known.alike])
         for edits in known.alike:
-            most -= self.search.cost_of(edits[0])
+            edit = edits[0]
+            most -= self.search.cost_of(edit)
             if most < 0:
                 break
             try:
-                with changed(self.search.trial, (edits[0],)):
+                with trial.changed({edit.part}, edit.changes, variants.of(edit)):
                     values = self._values()
             except NoProgramError:
                 continue

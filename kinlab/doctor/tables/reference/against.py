@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -84,6 +85,17 @@ class Reference:
     def n(self) -> int:
         """Number of joints."""
         return int(self.target.q.shape[1])
+
+    def facts(self, mine: DHTable, before: float, notes: Sequence[str]) -> dict[str, Any]:
+        """What every diagnosis of a table says of the comparison; ``before``: its error."""
+        return {
+            "mine": mine,
+            "reference": self.name,
+            "states": len(self.target.q),
+            "error_before": before,
+            "tolerance": self.target.tolerance,
+            "notes": tuple(notes),
+        }
 
 
 def read_mine(mine: DHTable | Robot | str | Path) -> DHTable:
