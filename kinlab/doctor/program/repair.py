@@ -32,7 +32,7 @@ from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
 
-_WORK = 60_000_000
+_WORK = 35_000_000
 """Operations of numbers, or what amounts to them, that may be done for single edits."""
 _NODE = 30
 """What compiling one node amounts to."""
@@ -52,6 +52,8 @@ _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
 _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
+_MORE = 6
+"""States at which what is right at the first ones is tried before all of them."""
 _CLEARLY = 0.5
 """Share of a program's largest error that shows it to be wrong at a state."""
 _WATCHED = 2
@@ -360,13 +362,16 @@ class LineSearch:
         values = self.values(self.first) if values is None else values
         if values is None or not self.right(values).all():
             return None
-        values = self.values(range(len(self.wanted)))
-        if values is None:
-            return None
-        gap = np.abs(values - self.wanted).reshape(len(values), -1).max(axis=1, initial=0.0)
-        error = float(np.max(gap / self.sizes))
-        if not error <= self.allowed:
-            return None
+        error = 0.0
+        for count in (min(_MORE, len(self.wanted)), len(self.wanted)):
+            self.work += self.observed.work[0] * count // len(self.watched)
+            values = self.values(range(count))
+            if values is None:
+                return None
+            gap = np.abs(values - self.wanted[:count]).reshape(count, -1).max(axis=1, initial=0.0)
+            error = float(np.max(gap / self.sizes[:count]))
+            if not error <= self.allowed:
+                return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
 
     def values(self, which: Sequence[int]) -> Array | None:

@@ -187,7 +187,10 @@ class Trial:
     def function(self, *state: Any) -> Any:
         """The program at one state."""
         self._turns = 0
-        return self.placed(0)(*self.bound, *state)
+        try:
+            return self.placed(0)(*self.bound, *state)
+        except SystemExit as end:  # an edit led to where the user's program ends itself
+            raise RuntimeError("the program ended itself") from end
 
     def _turn(self) -> bool:
         self._turns += 1
