@@ -89,6 +89,10 @@ class Case:
 
     def answer(self, readings: tuple[Confusion, ...]) -> Array:
         """What the engine says under the readings; entries outside the index are cut away."""
+        return self.read_as(self.asked(readings), readings)
+
+    def asked(self, readings: tuple[Confusion, ...]) -> Array:
+        """What the engine is made to say by the readings that come before its answer."""
         robot, arguments, engine = self.robot, self.arguments, self.engine
         for reading in readings:
             if reading.stage == "robot":
@@ -97,7 +101,10 @@ class Case:
                 arguments = reading.apply(arguments)
             elif reading.stage == "engine":
                 engine = reading.apply(engine)
-        values = engine(robot, arguments)
+        return engine(robot, arguments)
+
+    def read_as(self, values: Array, readings: tuple[Confusion, ...]) -> Array:
+        """The engine's answer under the readings of an answer; entries outside the index go."""
         for reading in readings:
             if reading.stage == "answer":
                 values = reading.apply(values)

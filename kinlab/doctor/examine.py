@@ -100,7 +100,7 @@ def examine(
         return replace(right, form=excuse.form, remarks=excuse.remarks)
     if not same and (alone := rows_alone(values.shape, engine.shape, quantity)):
         said = _("to compare these rows alone, ask for {first} (the first) or {last} (the last)")
-        partial = (said.format(first=alone[0], last=alone[1]),)
+        partial = (said.format(first=repr(alone[0]), last=repr(alone[1])),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
     close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))

@@ -30,7 +30,7 @@ def test_a_bare_number_is_no_formula_with_every_factor_left_out():
 def test_another_shape_is_told_in_numbers():
     said = told("planar2r", "jacobian", lambda q: np.zeros((2, 2)))
     assert "it answers with 2 x 2 numbers, jacobian has 6 x 2 numbers" in said
-    assert "ask for jacobian[:2] (the first) or jacobian[4:] (the last)" in said
+    assert "ask for 'jacobian[:2]' (the first) or 'jacobian[4:]' (the last)" in said
     assert "shape at" not in said
     assert "inf" not in said
     assert "it answers with a single number" in told("planar2r", "gravity_torques", lambda q: 3.0)

@@ -8,6 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.changes import Case, Confusion
@@ -33,6 +34,7 @@ def in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
     few = case.few(_SCREEN)
     if case.arguments and getattr(case.robot, "n", 0) > _WHOLE_ONLY:
         tried = [reading for reading in tried if not reading.place]
+    known: Known = {}
     answers = [r for r in tried if r.stage == "answer"]
     before = [r for r in tried if r.stage != "answer"]
     yield from _found(
@@ -40,7 +42,7 @@ def in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
         (
             (one, two)
             for one, two in combinations(answers, 2)
-            if _apart(one, two) and _seems(few, (one, two))
+            if _apart(one, two) and _seems(few, (one, two), known)
         ),
     )
     for k, first in enumerate(before):
@@ -50,7 +52,8 @@ def in_pairs(case: Case, tried: list[Confusion]) -> Iterator[Cause]:
         partners = [r for r in (*before[k + 1 :], *answers) if _apart(first, r)]
         if first.place:  # two links at once: that is another arm
             partners = [r for r in partners if not (r.stage == "robot" and r.place)]
-        chosen = ((first, second) for second in partners if _seems(changed, (*rest, second)))
+        known = {}
+        chosen = [(first, second) for second in partners if _seems(changed, (*rest, second), known)]
         yield from _found(case, chosen)
 
 
@@ -64,8 +67,12 @@ def _begun(few: Case, first: Confusion) -> tuple[Case | None, tuple[Confusion, .
         return None, ()
 
 
-def _seems(few: Case, chosen: tuple[Confusion, ...]) -> bool:
-    return _matches(few, chosen) is not None
+Known = dict[tuple[Confusion, ...], Array]
+"""The engine's answers of one case, by the readings that come before them."""
+
+
+def _seems(few: Case, chosen: tuple[Confusion, ...], known: Known) -> bool:
+    return _matches(few, chosen, known) is not None
 
 
 def _apart(one: Confusion, two: Confusion) -> bool:
@@ -79,11 +86,17 @@ def _found(case: Case, chosen: Iterable[tuple[Confusion, ...]]) -> Iterator[Caus
             yield _as_cause(readings_, error)
 
 
-def _matches(case: Case, chosen: tuple[Confusion, ...]) -> float | None:
+def _matches(case: Case, chosen: tuple[Confusion, ...], known: Known | None = None) -> float | None:
     """The error that is left under the readings, or None where they do not apply."""
+    before = tuple(reading for reading in chosen if reading.stage != "answer")
     try:
         with np.errstate(all="ignore"):
-            answer = case.answer(chosen)
+            if known is None:
+                answer = case.answer(chosen)
+            else:
+                if before not in known:
+                    known[before] = case.asked(before)
+                answer = case.read_as(known[before].copy(), chosen)
     except (KinlabError, np.linalg.LinAlgError, IndexError):
         return None  # no such robot, no inertia, or no such entry (6 by n transposed)
     if answer.shape != case.hand.shape:

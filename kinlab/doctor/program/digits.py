@@ -16,8 +16,8 @@ from kinlab.doctor.text.written import literal
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
-_WORK = 600_000
-"""Expressions that may be evaluated."""
+_WORK = 15_000_000
+"""Operations of numbers, or what amounts to them, that may be done."""
 _FEWEST = 3
 """Digits from which on a number may be another one rounded."""
 _MOST = 7

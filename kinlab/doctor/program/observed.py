@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,12 @@ from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
 
 _KEPT = 64
 """Values of one expression that are kept."""
+_OF_ARRAYS = 60
+"""What an operation of arrays amounts to, beside one of numbers."""
+_CALL = 3
+"""What a call amounts to, those that a call of numpy makes among them."""
+_OWN_CALL = 200
+"""What a call of an own function amounts to, whose answer may be known: it is looked up."""
 
 Shape = tuple[int, ...]
 
@@ -38,6 +46,43 @@ class Seen:
     entries: Shape | None = None
 
 
+def _amount(seen: Seen | None, node: ast.AST) -> int:
+    """What evaluating an expression as often as it was amounts to."""
+    if seen is None:
+        return 0
+    arrays = isinstance(node, ast.BinOp) and seen.shape != ()
+    return seen.count * (_OF_ARRAYS if arrays else 1)
+
+
+def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
+    """What the calls that each part makes amount to: they are counted while it runs."""
+    codes = {
+        trial.placed(k).__code__: k
+        for k in range(len(trial.trees))
+        if hasattr(trial.placed(k), "__code__")
+    }
+    amounts, running = [0] * len(trial.trees), [0]
+
+    def count(frame: FrameType, event: str, _argument: Any) -> None:
+        if event in ("call", "c_call"):
+            part = codes.get(frame.f_code) if event == "call" else None
+            amounts[running[-1]] += _CALL if part is None else _OWN_CALL
+            if part is not None:
+                running.append(part)
+        elif event == "return" and frame.f_code in codes and len(running) > 1:
+            running.pop()
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        with quietly():
+            for state in states:
+                trial.function(*state)
+    finally:
+        sys.setprofile(before)
+    return amounts
+
+
 class Observed:
     """The expressions of a program by their nodes in the trees of a trial."""
 
@@ -48,7 +93,7 @@ class Observed:
         self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         self.work: dict[int, int] = {}
-        """Expressions evaluated at all the states by what depends on a part, by its number."""
+        """What running what depends on a part at all the states amounts to, by its number."""
         try:
             for k, (tree, part) in enumerate(zip(trial.trees, parts, strict=True)):
                 trial.place(k, made(_watched(tree, k), part, trial.space))
@@ -58,9 +103,10 @@ class Observed:
         finally:
             for k, function in enumerate(originals):
                 trial.place(k, function)
+        calls = _calls(trial, states)
         own = [
-            sum(self._seen[id(node)].count for node in nodes(tree) if id(node) in self._seen)
-            for tree in trial.trees
+            calls[k] + sum(_amount(self._seen.get(id(node)), node) for node in nodes(tree))
+            for k, tree in enumerate(trial.trees)
         ]
         self.work = {k: sum(own[j] for j in trial.above[k]) for k in trial.above}
 

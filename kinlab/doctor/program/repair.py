@@ -32,8 +32,10 @@ from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
 
-_WORK = 2_600_000
-"""Expressions that may be evaluated, and nodes compiled, for single edits."""
+_WORK = 60_000_000
+"""Operations of numbers, or what amounts to them, that may be done for single edits."""
+_NODE = 30
+"""What compiling one node amounts to."""
 _SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _NUMBERS = 4
@@ -50,6 +52,8 @@ _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
 _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
+_CLEARLY = 0.5
+"""Share of a program's largest error that shows it to be wrong at a state."""
 _WATCHED = 2
 """States at which a program is watched."""
 _DEAR = 0.06
@@ -62,6 +66,8 @@ _MULTIPLES = (0.5, 2.0, 0.1, 10.0)
 """Times a number that somebody types for it."""
 _SOLVED = 1_200_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
+_STANDING = 2
+"""Edits beside which some number would do too easily."""
 _TURNS = 8
 """Steps in which a wrong number is solved for."""
 _DIGITS = 6
@@ -108,10 +114,20 @@ class LineSearch:
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
+        self._add_a_wrong_one()
         self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
         self._few = self._at(self.first)
         self._near = max(TOLERANCES.tried_further, allowed) * self.scale
         self._prepare()
+
+    def _add_a_wrong_one(self) -> None:
+        """Sees to it that the program as it is fails at the first states, if it does anywhere."""
+        if self.case.hand.shape != self.wanted.shape:
+            return
+        gap = np.abs(self.case.hand - self.wanted).reshape(len(self.wanted), -1)
+        errors = gap.max(axis=1, initial=0.0) / self.sizes
+        if not np.max(errors[self.first]) > _CLEARLY * np.max(errors):
+            self.first.append(int(np.argmax(errors > _CLEARLY * np.max(errors))))
 
     def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
         """The arguments and the right answers at some states."""
@@ -193,7 +209,7 @@ class LineSearch:
                     best = min(best, self.likely(edit))
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
-            if not found or best > _NUMBER:
+            if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
         return found
 
@@ -255,9 +271,9 @@ class LineSearch:
         return edit.cost + self.evidence.against(edit)
 
     def cost_of(self, edit: ProgramEdit) -> int:
-        """Expressions that are evaluated, and nodes compiled, to try an edit."""
+        """What running and compiling the program amounts to, to try an edit."""
         run = self.observed.work[edit.part] * len(self.first) // len(self.watched)
-        return run + (self.nodes[edit.part] if edit.part >= 0 else 0)
+        return run + (_NODE * self.nodes[edit.part] if edit.part >= 0 else 0)
 
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
