@@ -57,7 +57,9 @@ def _loops(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterat
         loops = not isinstance(loop, ast.If)
         first, last = loop.body[0], loop.body[-1]
         outside: list[tuple[ast.stmt, list[ast.stmt], int, str, float]] = []
-        if len(loop.body) > 1 and (isinstance(last, ast.Return) if loops else True):
+        if len(loop.body) > 1 and (
+            isinstance(last, ast.Return if loops else ast.Assign | ast.AugAssign)
+        ):
             outside.append((last, loop.body[:-1], k + 1, "too deep", 1.0 if loops else 1.16))
         if len(loop.body) > 1 and loops and isinstance(last, _PLAIN):
             outside.append((last, loop.body[:-1], k + 1, "too deep", 1.16))
