@@ -166,7 +166,9 @@ def _read_better(
 def twice(entry: str, other: str) -> str:
     """What is told of two entries for one place: tau2 and a second line of [tau1, tau2]."""
     one, two = shown_entry(entry), shown_entry(other)
-    return f"{one} is given twice{'' if one == two else f', also as {two}'}; keep one"
+    if one == two:
+        return _("{one} is given twice; keep one").format(one=one)
+    return _("{one} is given twice, also as {two}; keep one").format(one=one, two=two)
 
 
 def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:

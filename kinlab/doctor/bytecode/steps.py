@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 import sys
 from collections.abc import Callable, Sequence
 from types import CodeType
@@ -32,8 +31,10 @@ from kinlab.doctor.bytecode.instructions import CodeStep, UnreadError
 NULL_ABOVE = sys.version_info >= (3, 13)
 """Whether the empty entry of a call lies above its function, not below."""
 
-_OPERATORS = "Add BitAnd FloorDiv LShift MatMult Mult Mod BitOr Pow RShift Sub Div BitXor"
-BINARY: list[type[ast.operator]] = [getattr(ast, name) for name in re.findall(r"\w+", _OPERATORS)]
+BINARY: list[type[ast.operator]] = [
+    ast.Add, ast.BitAnd, ast.FloorDiv, ast.LShift, ast.MatMult, ast.Mult, ast.Mod, ast.BitOr,
+    ast.Pow, ast.RShift, ast.Sub, ast.Div, ast.BitXor,
+]  # fmt: skip
 """In the order of BINARY_OP's argument; behind them stand the augmented ones, then ``[]``."""
 
 CONTEXTS = {"LOAD": ast.Load, "BINARY": ast.Load, "STORE": ast.Store, "DELETE": ast.Del}

@@ -17,8 +17,7 @@ module            what it holds
 ``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
-``scaled``        Whether a repair is believed: it holds for another arm too, and hides no other
-                  slip
+``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

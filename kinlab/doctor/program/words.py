@@ -11,21 +11,25 @@ from typing import Any
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.digits import nearly, to_the_digits
 from kinlab.doctor.program.named import named
-from kinlab.doctor.program.places import DATA, ProgramEdit, row_of
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
-from kinlab.doctor.program.scaled import believed
 from kinlab.doctor.program.several.repairs import several
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, quietly
 from kinlab.host.language import N_, _
+from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.tolerances import TOLERANCES
 
 _MOST = 3
 """Repairs that are told."""
 _NAMED = 2
 """Pieces of which it is said what they are."""
+_ROUNDINGS = ("round", "around", "round_")
+_STEP = 1e-2
+"""Share of a number below which another one is rather the step of a difference."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -295,3 +299,74 @@ def _text(node: ast.AST) -> str:
 
 def _typed(text: str) -> str:
     return re.sub(r" (\*\*|\*|/) ", r"\1", text)
+
+
+def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
+    """A repair as it may be told; None where it hides the slip.
+
+    A test that is changed until it never holds says only that its branch is wrong; the robot's own
+    g is not to be another; decimals of a rounding and the step of a difference are no formula.
+    """
+    edits = []
+    for edit in repair.edits:
+        if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
+            return None
+        edits.append(_branch(edit, repair, search) or edit)
+    rivals = [believed(one, search) for one in repair.rivals]
+    return replace(repair, edits=tuple(edits), rivals=tuple(one for one in rivals if one))
+
+
+def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
+    """Whether the number that should be another is the robot's own, of the same name."""
+    table = table_of(search.case.robot)
+    if edit.part != DATA or edit.place or edit.numbers is None or table is None:
+        return False
+    own = vocabulary(table).values.get(edit.node)
+    return own is not None and float(own) == edit.numbers[0]
+
+
+def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:
+    """Whether the edit is in the decimals of ``np.round``."""
+    if edit.part == DATA:
+        return False
+    for node in nodes(search.trial.trees[edit.part]):
+        if isinstance(node, ast.Call) and called(node) in _ROUNDINGS:
+            decimals = [*node.args[1:], *(word.value for word in node.keywords)]
+            if any(_inside(edit.node, one) for one in decimals):
+                return True
+    return False
+
+
+def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
+    """Whether a number is made small until only the noise of differences is left."""
+    if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
+        return False
+    old, new = map(abs, edit.numbers)
+    return bool(0 < new < _STEP * old)
+
+
+def _branch(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> ProgramEdit | None:
+    """The whole test, where the program is right too if it never holds, or always."""
+    if edit.part == DATA or edit.kind == "condition":
+        return None
+    for node in nodes(search.trial.trees[edit.part]):
+        if isinstance(node, ast.If | ast.IfExp) and _inside(edit.node, node.test):
+            for always in (False, True):
+                change = FieldChange(node, "test", ast.Constant(always))
+                other = ProgramEdit(edit.part, (change,), "condition", edit.cost, node.test)
+                whole = tuple(other if one is edit else one for one in repair.edits)
+                if _right(whole, search):
+                    return other
+    return None
+
+
+def _inside(node: object, of: ast.AST) -> bool:
+    return any(one is node for one in nodes(of))
+
+
+def _right(edits: tuple[ProgramEdit, ...], search: LineSearch) -> bool:
+    try:
+        with quietly(), changed(search.trial, edits):
+            return search.verdict(edits) is not None
+    except NoProgramError:
+        return False

@@ -98,20 +98,26 @@ def judged(
         # near the limit of reach a rounded acos may have no value
         most, remarks = float(np.max(worst[np.isfinite(worst)])), study.rounded
         return Diagnosis(quantity, label, name, True, most, form="rounded", remarks=remarks)
+    right = Diagnosis(quantity, label, name, True, furthest)
+    if study is None and furthest <= TOLERANCES.slips_leave:
+        return _to_its_digits(right)
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
         assert case.quantity.read is not None
         # of each target the solution that is furthest off, where the tool is
         own = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
-        looking = own.looked_through(engine, TOLERANCES.formula_agrees)
-        edited: list[Cause] = next((some.causes for some in looking if some.causes), [])
+        edited: list[Cause] = []
+        for some in own.looked_through(engine, TOLERANCES.formula_agrees):
+            if some.digits:
+                return replace(right, form="rounded", remarks=some.digits)
+            if edited := some.causes:
+                break
         causes = _causes(found, engine)
         causes = meant(edited, causes) if edited else causes
         causes = causes if study is None else believed(causes, study, case)
     if not causes and furthest <= TOLERANCES.slips_leave:
-        told = verdicts.of_digits(furthest).remarks
-        return Diagnosis(quantity, label, name, True, furthest, form="digits", remarks=told)
+        return _to_its_digits(right)
     k = first_largest(worst)
     row = int(np.argmax(np.where(found.wrong[k], found.errors[k], -1.0)))
     return Diagnosis(
@@ -128,6 +134,11 @@ def judged(
         form="near" if not causes and _rounded_perhaps(found, furthest) else "",
         proved=() if causes else tuple(_counted(found)),
     )
+
+
+def _to_its_digits(right: Diagnosis) -> Diagnosis:
+    said = verdicts.of_digits(right.error_before).remarks
+    return replace(right, form="digits", remarks=said)
 
 
 def _rounded_perhaps(found: Solutions, furthest: float) -> bool:
