@@ -163,7 +163,7 @@ def _of_sound(
             except KinlabError as missing:
                 return [], [Unread(path, missing)]
             places = require_sound(one, robot)
-            again = [label for label in places if label in claimed]
+            again = [label for label, name in places.items() if claimed.get(label, name) != name]
             if again:
                 said = twice(places[again[0]], claimed[again[0]])
                 raise ExpressionError(f"{path}: {said}")

@@ -305,8 +305,12 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     """A repair as it may be told; None where it hides the slip.
 
     A test that is changed until it never holds says only that its branch is wrong; the robot's own
-    g is not to be another; decimals of a rounding and the step of a difference are no formula.
+    g is not to be another; decimals of a rounding and the step of a difference are no formula; and
+    what takes a statement's own part away and adds the right one names nothing.
     """
+    for _statement, own in _by_statement(repair, search.trial):
+        if sum(edit.kind == "missing term" for edit in own) > 1:
+            return None
     edits = []
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
