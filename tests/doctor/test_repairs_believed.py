@@ -1,9 +1,12 @@
 """Edits that make a program right and are not its slip are not told."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.program.repair import LineSearch
 
 M1, M2, L1, L2, g = 2.0, 1.5, 0.5, 0.4, 9.81  # planar2r
 
@@ -62,3 +65,40 @@ def test_the_step_of_a_difference_is_no_slip():
 
     said = str(kl.diagnose("planar2r", "gravity_torques", differences))
     assert "step = 0.01` should be" not in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "makes_up"),
+    [(2.0, 0.6143, True), (2.0, 1.5, False), (2.0, 1 / 3, False), (0.7, 0.6143, False)],
+)
+def test_a_number_of_the_arm_does_not_become_one_of_nobodys(old, new, makes_up) -> None:
+    search = LineSearch.__new__(LineSearch)
+    search.case = SimpleNamespace(robot=kl.load("planar2r"))
+    assert search._makes_up(old, new) is makes_up
+
+
+def test_a_wrong_solution_is_not_left_out_by_giving_the_other_twice() -> None:
+    def solve(x, y):  # type: ignore[no-untyped-def]
+        inner = np.arccos((0.25 + 0.16 - x * x - y * y) / 0.4)
+        lean = np.arccos((x * x + y * y + 0.09) / np.hypot(x, y))
+        down = (np.arctan2(y, x) - lean, inner)
+        up = (np.arctan2(y, x) + lean, inner - np.pi)
+        return [down, up]
+
+    found = kl.diagnose("planar2r", "inverse_kinematics_xy", solve, samples=60)
+    assert found.proved or found.causes
+    told = [cause.sentence for cause in found.causes]
+    assert not any("[up, up]" in one or "[down, up]" in one for one in told)
+
+
+def test_what_is_left_is_no_difference_where_nothing_is_differenced() -> None:
+    """A number solved for to six digits leaves 1e-6: there is no step that would excuse it."""
+
+    def lost(q):  # type: ignore[no-untyped-def]
+        outer = 1.5 * 9.81 * 0.4 * np.cos(q[0] + q[1])
+        return np.array([2.123457 * 9.81 * np.cos(q[0]) + outer, outer])
+
+    found = kl.diagnose("planar2r", "gravity_torques", lost)
+    assert "finite differences" not in str(found) and all(
+        c.error_after < 1e-9 for c in found.causes
+    )

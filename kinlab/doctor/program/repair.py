@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Sequence
+import math
+from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
+from fractions import Fraction
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -18,7 +21,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.evidence import Grounds
@@ -30,6 +33,7 @@ from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _WORK = 35_000_000
@@ -54,6 +58,10 @@ _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
+_STEP = 1e-2
+"""The largest number that may be the step of a difference."""
+_SIMPLE = 12
+"""Denominator up to which a fraction may be meant."""
 _CLEARLY = 0.5
 """Share of a program's largest error that shows it to be wrong at a state."""
 _WATCHED = 2
@@ -107,7 +115,7 @@ class LineSearch:
 
     def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.program = program
-        self.case, self.wanted, self.allowed = case, wanted, allowed
+        self.case, self.wanted = case, wanted
         self.sizes = error_sizes(wanted)
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
@@ -117,10 +125,21 @@ class LineSearch:
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._add_a_wrong_one()
+        self.allowed = allowed if self._differences() else TOLERANCES.formula_agrees
         self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
         self._few = self._at(self.first)
-        self._near = max(TOLERANCES.tried_further, allowed) * self.scale
+        self._near = max(TOLERANCES.tried_further, self.allowed) * self.scale
         self._prepare()
+
+    def _differences(self) -> bool:
+        """Whether a number of the program may be the step of a difference."""
+        inner = (node for tree in self.trial.trees for node in nodes(tree))
+        values = [getattr(node, "value", None) for node in inner]
+        values += [self.trial.space[name] for name in self.program.data]
+        values += [value for part in self.program.parts for value in _defaults(part.function)]
+        words = {word for tree in self.trial.trees for word in _words(tree)}
+        steps = (isinstance(x, float) and 0 < abs(x) <= _STEP for x in values)
+        return any(steps) or any("eps" in word or word == "finfo" for word in words)
 
     def _add_a_wrong_one(self) -> None:
         """Sees to it that the program as it is fails at the first states, if it does anywhere."""
@@ -297,13 +316,24 @@ class LineSearch:
             if self.work > self.most + _SOLVED:
                 break
             value = self._solved(place)
-            if value is not None:
+            if value is not None and not self._makes_up(float(place.value), value):
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
                 if repair is not None:
                     found.append((against(edit), len(f"{value:.12g}"), repair))
         return [min(found, key=lambda one: one[:2])[2]] if found else []
+
+    def _makes_up(self, old: float, new: float) -> bool:
+        """Whether a number of the robot's own would become one of nobody's."""
+        table = table_of(self.case.robot)
+        if table is None:
+            return False
+        own = np.abs([float(x) for x in vocabulary(table).values.values()])
+        known = [bool(np.isclose(own, abs(x), rtol=1e-9, atol=0).any()) for x in (old, new)]
+        return known == [True, False] and not math.isclose(
+            new, Fraction(new).limit_denominator(_SIMPLE), rel_tol=1e-9
+        )
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -374,6 +404,15 @@ class LineSearch:
                 return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
 
+    def distinct(self) -> int:
+        """How many different answers there are at the first states; solutions are several."""
+        try:
+            answers = np.asarray(self._asked(None, *self._few[0]), dtype=float)
+        except (KinlabError, TypeError, ValueError):
+            return 0
+        rows = answers.reshape(len(answers), -1, answers.shape[-1]) if answers.ndim > 1 else answers
+        return sum(len(np.unique(np.round(one, 9), axis=0)) for one in rows)
+
     def values(self, which: Sequence[int]) -> Array | None:
         """The answers of the program as it stands now, None where it has none."""
         quantity, robot = self.case.quantity, self.case.robot
@@ -393,3 +432,13 @@ def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextMa
     """The program with edits in it."""
     parts = {edit.part for edit in several}
     return trial.changed(parts, [change for edit in several for change in edit.changes])
+
+
+def _defaults(function: FunctionType) -> list[Any]:
+    return [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
+
+
+def _words(tree: ast.AST) -> Iterator[str]:
+    for node in nodes(tree):
+        if isinstance(node, ast.Name | ast.Attribute):
+            yield node.id if isinstance(node, ast.Name) else node.attr

@@ -311,6 +311,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
+    if search.case.quantity.read is not None and _fewer(repair, search):
+        return None
     edits = []
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
@@ -318,6 +320,13 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         edits.append(_branch(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
     return replace(repair, edits=tuple(edits), rivals=tuple(one for one in rivals if one))
+
+
+def _fewer(repair: ProgramRepair, search: LineSearch) -> bool:
+    """Whether it leaves one solution out by giving another twice."""
+    before = search.distinct()
+    with quietly(), changed(search.trial, repair.edits):
+        return search.distinct() < before
 
 
 def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
