@@ -469,36 +469,29 @@ def test_every_kind_is_said_in_chinese(kind) -> None:
     assert not re.search(r"[A-Za-z]", told)
 
 
-def test_functions_of_numpy_that_are_imported_by_name_are_read() -> None:
-    source = "\n".join(
-        (
-            "from numpy import array, cos, cross, sin",
-            "def f(q):",
-            "    z = array([0.0, 0.0, 1.0])",
-            "    o2 = array([0.5 * cos(q[0]), 0.5 * sin(q[0]), 0.0])",
-            "    p = o2 + array([0.4 * cos(q[0] + q[1]), 0.4 * sin(q[0] + q[1]), 0.0])",
-            "    one, two = cross(z, p), cross(p - o2, z)",
-            "    return array([[one[0], two[0]], [one[1], two[1]], [1.0, 1.0]])",
-        )
-    )
-    space: dict = {}
-    exec(source, space)  # noqa: S102
+def test_functions_of_numpy_that_are_imported_by_name_are_read(student) -> None:
+    source = """from numpy import array, cos, cross, sin
+def f(q):
+    z = array([0.0, 0.0, 1.0])
+    o2 = array([0.5 * cos(q[0]), 0.5 * sin(q[0]), 0.0])
+    p = o2 + array([0.4 * cos(q[0] + q[1]), 0.4 * sin(q[0] + q[1]), 0.0])
+    one, two = cross(z, p), cross(p - o2, z)
+    return array([[one[0], two[0]], [one[1], two[1]], [1.0, 1.0]])
+"""
+    space = student(source, file=None)
     arm = kl.load("planar2r")
     found = kl.diagnose(arm, "planar_jacobian", space["f"], samples=40)
     assert found.causes[0].places[0] == "line 6", found
 
 
-def test_changes_that_stand_are_seen_through_what_else_is_changed() -> None:
-    source = "\n".join(
-        (
-            "def a(x): return 2.0 * x",
-            "def b(x): return a(x) + 1.0",
-            "def c(x): return 10.0 * x",
-            "def f(x): return b(x) + c(x)",
-        )
-    )
-    space: dict = {}
-    exec(source, space)  # noqa: S102
+def test_changes_that_stand_are_seen_through_what_else_is_changed(student) -> None:
+    source = """
+def a(x): return 2.0 * x
+def b(x): return a(x) + 1.0
+def c(x): return 10.0 * x
+def f(x): return b(x) + c(x)
+"""
+    space = student(source, file=None)
     trial = Trial(read(space["f"]))
 
     def other(name: str, old: float, new: float):

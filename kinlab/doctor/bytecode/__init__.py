@@ -10,6 +10,6 @@ module              what it holds
 ``reading``         Steps as statements: loops and branches by where paths part and meet
 ``recover``         The tree, proved by compiling it again
 ``steps``           What each step of the byte code does to that stack
-``syntax``          The nodes of a syntax tree, and the text of small ones
+``syntax``          The nodes, names and text of syntax trees
 ==================  ===============================================================================
 """

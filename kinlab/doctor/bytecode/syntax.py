@@ -1,4 +1,4 @@
-"""The nodes of a syntax tree, and the text of small ones: as the standard library, but faster."""
+"""The nodes, names and text of syntax trees: as the standard library has them, but faster."""
 
 from __future__ import annotations
 
@@ -19,6 +19,12 @@ def nodes(tree: ast.AST) -> list[ast.AST]:
             elif isinstance(value, list):
                 found += [one for one in value if isinstance(one, ast.AST)]
     return found
+
+
+def names(tree: ast.AST, context: type[ast.expr_context] = ast.expr_context) -> list[str]:
+    """The names in a tree, in the order of :func:`nodes`: all, or those that are read, or set."""
+    found = [node for node in nodes(tree) if isinstance(node, ast.Name)]
+    return [node.id for node in found if isinstance(node.ctx, context)]
 
 
 def copied(tree: Tree) -> Tree:

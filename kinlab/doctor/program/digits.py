@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes
+from kinlab.check.compare import relative_errors
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.repair import LineSearch, changed
 from kinlab.doctor.program.trial import quietly
@@ -34,12 +34,11 @@ _OVER = 3
 """Equations asked for each number that is solved for."""
 
 
-def nearly(case_hand: Array, wanted: Array) -> bool:
+def nearly(hand: Array, wanted: Array) -> bool:
     """Whether answers differ by so little that rounded numbers may be all of it."""
-    if case_hand.shape != wanted.shape or not np.isfinite(case_hand).all():
+    if hand.shape != wanted.shape:
         return False
-    gap = np.abs(case_hand - wanted).reshape(len(wanted), -1).max(axis=1, initial=0.0)
-    return bool(np.max(gap / error_sizes(wanted)) <= TOLERANCES.nearly_agrees)
+    return bool(np.max(relative_errors(hand, wanted)) <= TOLERANCES.nearly_agrees)
 
 
 def to_the_digits(search: LineSearch) -> tuple[str, ...]:
@@ -51,7 +50,7 @@ def to_the_digits(search: LineSearch) -> tuple[str, ...]:
     places = [place for place in numbers(search.trial, search.observed) if _typed(place)]
     size = int(np.prod(search.wanted.shape[1:], initial=1))
     count = min(len(search.wanted), -(-_OVER * len(places) // size) + 1)
-    run = max(search.observed.work.values()) // len(search.watched)
+    run = max(search.amounts.values()) // len(search.watched)
     if not places or len(places) * count * run > _WORK:
         return ()
     with quietly():
@@ -97,19 +96,13 @@ def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tupl
         edits = tuple(place.edit(value) for place, value in zip(places, meant, strict=True))
         with changed(search.trial, edits):
             there = search.values(which)
-            if there is not None and _right(search, there, which):
-                every = search.values(range(len(search.wanted)))
-                good = every is not None and _right(search, every, range(len(search.wanted)))
+            if there is not None and search.error_of(there, which) <= TOLERANCES.formula_agrees:
+                good = search.error(range(len(search.wanted))) <= TOLERANCES.formula_agrees
                 return _told(places, meant, matrix) if good else ()
         if there is None:
             return ()
         now = there.ravel()
     return ()
-
-
-def _right(search: LineSearch, values: Array, which: range) -> bool:
-    gap = np.abs(values - search.wanted[list(which)]).reshape(len(values), -1).max(axis=1)
-    return bool(np.max(gap / search.sizes[list(which)]) <= TOLERANCES.formula_agrees)
 
 
 def _told(places: list[NumberPlace], meant: list[float], matrix: Array) -> tuple[str, ...]:

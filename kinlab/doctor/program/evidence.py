@@ -13,12 +13,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 
 _SOUND = 0.2
@@ -108,7 +108,7 @@ class Grounds:
 
     def _uses(self, part: int, name: str) -> bool:
         tree = self.trial.trees[part]
-        return any(isinstance(node, ast.Name) and node.id == name for node in nodes(tree))
+        return name in names(tree)
 
     def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
         """Statements that give what a textbook has, and whether the part returns it."""
@@ -125,7 +125,7 @@ class Grounds:
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
             if near:
-                self.trusted |= {k for k in range(1, len(self.trial.trees)) if self._calls(node, k)}
+                self.trusted |= self._called(node) - {0}
             if isinstance(node, ast.Return) and observed.of(node.value) is not None:
                 told = senses or []
                 numbers = {one.number for one in told}
@@ -202,19 +202,19 @@ class Grounds:
 
     def _below(self) -> None:
         """Parts that only sound ones use are sound too; what a trusted one uses is trusted."""
-        trees = self.trial.trees
-        every = range(1, len(trees))
-        for _round in trees:
-            for k in every:
-                callers = [j for j in range(len(trees)) if j != k and self._calls(trees[j], k)]
+        called = [self._called(tree) for tree in self.trial.trees]
+        for _round in called:
+            for k in range(1, len(called)):
+                callers = [j for j, inside in enumerate(called) if j != k and k in inside]
                 if callers and all(j in self.sound for j in callers):
                     self.sound.add(k)
                 if any(j in self.sound | self.trusted for j in callers):
                     self.trusted.add(k)
 
-    def _calls(self, tree: ast.AST, part: int) -> bool:
-        name = self.trial.program.parts[part].name
-        return any(name == getattr(n, "id", getattr(n, "attr", "")) for n in nodes(tree))
+    def _called(self, tree: ast.AST) -> set[int]:
+        """The parts that are named in a tree."""
+        inside = named_in(tree)
+        return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
 
 
 def _factor(edit: ProgramEdit) -> float:

@@ -46,43 +46,6 @@ class Seen:
     entries: Shape | None = None
 
 
-def _amount(seen: Seen | None, node: ast.AST) -> int:
-    """What evaluating an expression as often as it was amounts to."""
-    if seen is None:
-        return 0
-    arrays = isinstance(node, ast.BinOp) and seen.shape != ()
-    return seen.count * (_OF_ARRAYS if arrays else 1)
-
-
-def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
-    """What the calls that each part makes amount to: they are counted while it runs."""
-    codes = {
-        trial.placed(k).__code__: k
-        for k in range(len(trial.trees))
-        if hasattr(trial.placed(k), "__code__")
-    }
-    amounts, running = [0] * len(trial.trees), [0]
-
-    def count(frame: FrameType, event: str, _argument: Any) -> None:
-        if event in ("call", "c_call"):
-            part = codes.get(frame.f_code) if event == "call" else None
-            amounts[running[-1]] += _CALL if part is None else _OWN_CALL
-            if part is not None:
-                running.append(part)
-        elif event == "return" and frame.f_code in codes and len(running) > 1:
-            running.pop()
-
-    before = sys.getprofile()
-    sys.setprofile(count)
-    try:
-        with quietly():
-            for state in states:
-                trial.function(*state)
-    finally:
-        sys.setprofile(before)
-    return amounts
-
-
 class Observed:
     """The expressions of a program by their nodes in the trees of a trial."""
 
@@ -92,8 +55,6 @@ class Observed:
         originals = [trial.placed(k) for k in range(len(parts))]
         self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
-        self.work: dict[int, int] = {}
-        """What running what depends on a part at all the states amounts to, by its number."""
         try:
             for k, (tree, part) in enumerate(zip(trial.trees, parts, strict=True)):
                 trial.place(k, made(_watched(tree, k), part, trial.space))
@@ -103,12 +64,6 @@ class Observed:
         finally:
             for k, function in enumerate(originals):
                 trial.place(k, function)
-        calls = _calls(trial, states)
-        own = [
-            calls[k] + sum(_amount(self._seen.get(id(node)), node) for node in nodes(tree))
-            for k, tree in enumerate(trial.trees)
-        ]
-        self.work = {k: sum(own[j] for j in trial.above[k]) for k in trial.above}
 
     def of(self, node: ast.AST) -> Seen | None:
         """What a node of a trial's trees was; None where it was never evaluated."""
@@ -134,6 +89,53 @@ class Observed:
         if len(seen.values) < _KEPT:
             seen.values.append(numbers.copy())
         return value
+
+
+def amounts(trial: Trial, observed: Observed, states: Sequence[tuple[Any, ...]]) -> dict[int, int]:
+    """What running at all the states what depends on a part amounts to, by its number.
+
+    Args:
+        trial: a program in which no edit stands.
+        observed: its expressions at these states.
+        states: one tuple of arguments for each.
+    """
+    own = _calls(trial, states)
+    for k, tree in enumerate(trial.trees):
+        own[k] += sum(_amount(observed.of(node), node) for node in nodes(tree))
+    return {k: sum(own[j] for j in above) for k, above in trial.above.items()}
+
+
+def _amount(seen: Seen | None, node: ast.AST) -> int:
+    """What evaluating an expression as often as it was amounts to."""
+    if seen is None:
+        return 0
+    arrays = isinstance(node, ast.BinOp) and seen.shape != ()
+    return seen.count * (_OF_ARRAYS if arrays else 1)
+
+
+def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
+    """What the calls that each part makes amount to: they are counted while it runs."""
+    codes = {trial.placed(k).__code__: k for k in range(len(trial.trees))}
+    found, running = [0] * len(trial.trees), [0]
+
+    def count(frame: FrameType, event: str, _argument: Any) -> None:
+        if event in ("call", "c_call"):
+            part = codes.get(frame.f_code) if event == "call" else None
+            found[running[-1]] += _CALL if part is None else _OWN_CALL
+            if part is not None:
+                running.append(part)
+        elif event == "return" and frame.f_code in codes and len(running) > 1:
+            running.pop()
+
+    before = sys.getprofile()
+    sys.setprofile(count)
+    try:
+        with quietly():
+            for state in states:
+                trial.function(*state)
+    finally:
+        sys.setprofile(before)
+    return found
 
 
 def _numbers(value: Any) -> Array | None:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 
 _Cache = type(functools.lru_cache(len))
 _HEAP = 1 << 9
@@ -246,7 +246,7 @@ def _remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
     known = {**function.__globals__, **_free(function)}
     named = inspect.signature(function, follow_wrapped=False).parameters.values()
     kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
-    own = {n.id for n in nodes(tree) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)}
+    own = {*names(tree, ast.Store)}
     own |= {n.arg for n in nodes(tree) if isinstance(n, ast.arg)} - kept
     for node in nodes(tree):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):

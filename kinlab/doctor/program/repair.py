@@ -1,7 +1,8 @@
 """The edits that make a program right: one, or several together.
 
 Each edit is tried at a few states; what is right there is tried at all of them. The work is
-counted in expressions, not in seconds, so that the answer is the same on every machine.
+counted in what its operations amount to, not in seconds, so that the answer is the same on every
+machine.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import ast
 import copy
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -19,17 +20,17 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes
+from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.evidence import Grounds
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.scaled import larger, scaled
-from kinlab.doctor.program.trial import NoProgramError, Trial, quietly
+from kinlab.doctor.program.trial import NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
@@ -137,7 +138,7 @@ class LineSearch:
         values = [getattr(node, "value", None) for node in inner]
         values += [self.trial.space[name] for name in self.program.data]
         values += [value for part in self.program.parts for value in _defaults(part.function)]
-        words = {word for tree in self.trial.trees for word in _words(tree)}
+        words = {word for tree in self.trial.trees for word in named_in(tree)}
         steps = (isinstance(x, float) and 0 < abs(x) <= _STEP for x in values)
         return any(steps) or any("eps" in word or word == "finfo" for word in words)
 
@@ -145,10 +146,10 @@ class LineSearch:
         """Sees to it that the program as it is fails at the first states, if it does anywhere."""
         if self.case.hand.shape != self.wanted.shape:
             return
-        gap = np.abs(self.case.hand - self.wanted).reshape(len(self.wanted), -1)
-        errors = gap.max(axis=1, initial=0.0) / self.sizes
-        if not np.max(errors[self.first]) > _CLEARLY * np.max(errors):
-            self.first.append(int(np.argmax(errors > _CLEARLY * np.max(errors))))
+        errors = relative_errors(self.case.hand, self.wanted)
+        clearly = errors > _CLEARLY * np.max(errors)
+        if clearly.any() and not clearly[self.first].any():
+            self.first.append(int(np.argmax(clearly)))
 
     def _at(self, which: Sequence[int]) -> tuple[list[Array], Array]:
         """The arguments and the right answers at some states."""
@@ -159,6 +160,7 @@ class LineSearch:
         stacks = self.case.arguments.values()
         self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
         self.observed = Observed(self.trial, self.states)
+        self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
 
@@ -293,15 +295,13 @@ class LineSearch:
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What running and compiling the program amounts to, to try an edit."""
-        run = self.observed.work[edit.part] * len(self.first) // len(self.watched)
+        run = self.amounts[edit.part] * len(self.first) // len(self.watched)
         return run + (_NODE * self.nodes[edit.part] if edit.part >= 0 else 0)
 
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
-        work = self.observed.work
-        return self.likely(edit) + _DEAR * float(
-            np.log10(max(1, work[edit.part]) / max(1, work[0]))
-        )
+        run, whole = max(1, self.amounts[edit.part]), max(1, self.amounts[0])
+        return self.likely(edit) + _DEAR * float(np.log10(run / whole))
 
     def _numbers(self) -> list[ProgramRepair]:
         """The single number, of the text or the data, with which the program is right.
@@ -394,15 +394,21 @@ class LineSearch:
             return None
         error = 0.0
         for count in (min(_MORE, len(self.wanted)), len(self.wanted)):
-            self.work += self.observed.work[0] * count // len(self.watched)
-            values = self.values(range(count))
-            if values is None:
-                return None
-            gap = np.abs(values - self.wanted[:count]).reshape(count, -1).max(axis=1, initial=0.0)
-            error = float(np.max(gap / self.sizes[:count]))
+            self.work += self.amounts[0] * count // len(self.watched)
+            error = self.error(range(count))
             if not error <= self.allowed:
                 return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
+
+    def error(self, which: range) -> float:
+        """The largest relative error at some states of the program as it stands now."""
+        values = self.values(which)
+        return np.inf if values is None else self.error_of(values, which)
+
+    def error_of(self, values: Array, which: range) -> float:
+        """The largest relative error of answers at some states."""
+        gap = np.abs(values - self.wanted[list(which)]).reshape(len(which), -1)
+        return float(np.max(gap.max(axis=1, initial=0.0) / self.sizes[list(which)]))
 
     def distinct(self) -> int:
         """How many different answers there are at the first states; solutions are several."""
@@ -436,9 +442,3 @@ def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextMa
 
 def _defaults(function: FunctionType) -> list[Any]:
     return [*(function.__defaults__ or ()), *(function.__kwdefaults__ or {}).values()]
-
-
-def _words(tree: ast.AST) -> Iterator[str]:
-    for node in nodes(tree):
-        if isinstance(node, ast.Name | ast.Attribute):
-            yield node.id if isinstance(node, ast.Name) else node.attr

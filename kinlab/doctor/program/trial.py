@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
 
@@ -248,21 +248,21 @@ def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> Fun
 def _callers(program: OwnProgram) -> dict[int, set[int]]:
     """For each part those whose answers depend on it, itself among them; -1 for the data."""
     every = range(len(program.parts))
-    names = [_names_in(part.tree) for part in program.parts]
-    calls = [{k for k in every if program.parts[k].name in inside} for inside in names]
+    named = [named_in(part.tree) for part in program.parts]
+    calls = [{k for k in every if program.parts[k].name in inside} for inside in named]
     above = {k: {k} for k in every}
     for _round in every:
         for k in every:
             above[k] |= {j for j in every if calls[j] & above[k]}
-    data = {k for k in every if names[k] & {*program.data}}
+    data = {k for k in every if named[k] & {*program.data}}
     owned = {k for k in every if program.parts[k].owner is not None}
     return {**above, -1: {j for k in data | owned for j in above[k] | {k}}}
 
 
-def _names_in(tree: ast.AST) -> set[str]:
-    found = nodes(tree)
-    names = {node.id for node in found if isinstance(node, ast.Name)}
-    return names | {node.attr for node in found if isinstance(node, ast.Attribute)}
+def named_in(tree: ast.AST) -> set[str]:
+    """The names in a tree, and those of the attributes in it."""
+    attributes = {node.attr for node in nodes(tree) if isinstance(node, ast.Attribute)}
+    return attributes | {*names(tree)}
 
 
 def _class_of(value: Any) -> type:

@@ -69,9 +69,7 @@ class Variants:
                 branches.append((edit, self._numbers[edit], *both))
         self._compile(part, branches)
 
-    def _compile(
-        self, part: int, branches: list[tuple[ProgramEdit, int, ast.stmt, ast.stmt]]
-    ) -> None:
+    def _compile(self, part: int, branches: list[Branch]) -> None:
         """All together; of those among which one is no program, each half for itself."""
         if len(branches) < 2:
             return

@@ -9,7 +9,7 @@ from types import ModuleType
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
@@ -55,20 +55,21 @@ class Scope:
         inner: set[str] = set()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
-                names = [n.id for n in nodes(node.target) if isinstance(n, ast.Name)]
+                set_here = names(node.target)
                 passed = dict(_passed(node.target, node.iter, observed))
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
-                self.counters += [n for n in names if n not in (*self.counters, *passed)]
+                self.counters += [n for n in set_here if n not in (*self.counters, *passed)]
                 if isinstance(node, ast.comprehension):
-                    inner |= {*names}
+                    inner |= {*set_here}
         for one in trial.trees:
             for node in nodes(one):
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
-        every = {name for one in trial.trees for name in _loaded(one)}
+        every = {name for one in trial.trees for name in names(one, ast.Load)}
+        here = {*names(tree, ast.Load)}
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
-        local |= {n.id for n in nodes(tree) if isinstance(n, ast.Name)} - {*_loaded(tree)}
+        local |= {*names(tree)} - here
         self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
@@ -82,10 +83,7 @@ class Scope:
                 known = _shape(value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
-        self.turned = {
-            n.id for one in self.angles.values() for n in nodes(one) if isinstance(n, ast.Name)
-        }
-        here = {*_loaded(tree)}
+        self.turned = {name for one in self.angles.values() for name in names(one)}
         self.unused = {
             name for name in self.shapes if name not in (here if name in local else every)
         }
@@ -134,9 +132,8 @@ class Scope:
             self.shapes.setdefault(node.id, seen.shape)
             if seen.whole and seen.shape == ():
                 return
-        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
         text = ast.unparse(node)
-        if names & inner or len(text) > _LONG:
+        if not inner.isdisjoint(names(node)) or len(text) > _LONG:
             return
         known = self.pieces.setdefault(seen.shape, {})
         own = known[text] = known.get(text) or copied(node)
@@ -149,8 +146,7 @@ class Scope:
             return 0.0 if node.id in self.unused else _UNUSED / 2
         if not self.unused:
             return _UNUSED
-        names = {n.id for n in nodes(node) if isinstance(n, ast.Name)}
-        return 0.0 if names & self.unused else _UNUSED
+        return _UNUSED if self.unused.isdisjoint(names(node)) else 0.0
 
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""
@@ -305,7 +301,7 @@ def _factors_beside(here: Here) -> set[str]:
         for summand in _summands(one)
         if not isinstance(summand, ast.Constant)
     ]
-    inside = {ast.unparse(n) for n in nodes(here.node) if isinstance(n, ast.Name)}
+    inside = {*names(here.node)}
     return set.intersection(*sets) - inside if sets else set()
 
 
@@ -338,13 +334,6 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
-
-
-def _loaded(tree: ast.AST) -> Iterator[str]:
-    """The names that are used."""
-    for node in nodes(tree):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
-            yield node.id
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:

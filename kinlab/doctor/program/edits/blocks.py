@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
@@ -100,7 +100,7 @@ def _updates(
 ) -> Iterator[ProgramEdit]:
     """What a loop uses, and does not set anew: ``T = T @ A``, ``p = p + R @ d``, ``w = w_next``."""
     inside = {name for one in loop.body for name in _sets(one)}
-    counted = {n.id for n in nodes(loop) if isinstance(n, ast.Name) and n.id in scope.counters}
+    counted = {*names(loop)} & {*scope.counters}
     used = _uses(tree)
     before = {name for one in nodes(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
     for name in sorted((used & before) - inside - counted):
@@ -108,11 +108,11 @@ def _updates(
         if shape is None:
             continue
         for text, piece in scope.pieces.get(shape, {}).items():
-            names = {n.id for n in nodes(piece) if isinstance(n, ast.Name)}
-            if text == name or not names & inside:
+            given = {*names(piece)}
+            if text == name or not given & inside:
                 continue
             own = ast.Name(name, ast.Load())
-            fresh = bool(names & scope.unused)
+            fresh = bool(given & scope.unused)
             ways: list[ast.expr] = [ast.BinOp(own, ast.Add(), piece)]
             if len(shape) == 2:
                 ways.insert(0, ast.BinOp(own, ast.MatMult(), piece))
@@ -128,14 +128,8 @@ def _updates(
 
 
 def _sets(node: ast.AST) -> set[str]:
-    return {
-        n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Store)
-    } | (
-        {node.target.id}
-        if isinstance(node, ast.AugAssign) and hasattr(node.target, "id")
-        else set()
-    )
+    return {*names(node, ast.Store)}
 
 
 def _uses(node: ast.AST) -> set[str]:
-    return {n.id for n in nodes(node) if isinstance(n, ast.Name) and isinstance(n.ctx, ast.Load)}
+    return {*names(node, ast.Load)}

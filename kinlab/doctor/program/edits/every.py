@@ -10,7 +10,7 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, names
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -148,7 +148,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             yield ProgramEdit(here.part, swap, "condition", 1.2, node)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign) and isinstance(here.holder, list):
-        for name in dict.fromkeys(n.id for t in node.targets for n in _names(t)):
+        for name in dict.fromkeys(name for one in node.targets for name in names(one)):
             if scope.shapes.get(name) == () and name in scope.turned:
                 load = ast.BinOp(ast.Name(name, ast.Load()), ast.Mult(), number(pi / 180))
                 after = ast.Assign([ast.Name(name, ast.Store())], load)
@@ -158,14 +158,10 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield here.instead(ast.Pass(), "extra statement", 1.22)
 
 
-def _names(tree: ast.AST) -> list[ast.Name]:
-    return [node for node in nodes(tree) if isinstance(node, ast.Name)]
-
-
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A counter one more or less wherever a line uses it: ``link(i, q[i])``."""
     value = here.node.value
-    used = [n.id for n in nodes(value) if isinstance(n, ast.Name)] if value else []
+    used = names(value) if value else []
     for counter in scope.counters:
         if used.count(counter) > 1:
             for step in (1, -1):

@@ -14,6 +14,7 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 _SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
 """Functions whose numbers are no quantities."""
+_SUMS = (ast.Add, ast.Sub)
 _PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
 _FEW = 8
 """Attributes and keys among which a wrong one is looked for early."""
@@ -86,17 +87,17 @@ _Factors = list[tuple[ast.operator, ast.expr]]
 
 def _together(node: ast.BinOp) -> Iterator[ast.expr]:
     """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
-    head, terms = _sum(node)
+    head, terms = _chain(node, _SUMS)
     for i in range(len(terms)):
         # of the terms from the i-th to the last, a factor of the first belongs to all
-        first, factors = _factors(terms[i - 1][1] if i else head)
+        first, factors = _chain(terms[i - 1][1] if i else head, _PRODUCTS)
         for k, (by, factor) in enumerate(factors):
             if isinstance(by, ast.Mult | ast.MatMult):
                 inner = _times(_times(factor, factors[k + 1 :]), terms[i:])
                 whole: ast.expr = ast.BinOp(_times(first, factors[:k]), by, inner)
                 yield _times(head, [*terms[: i - 1], (terms[i - 1][0], whole)]) if i else whole
     op, last = terms[-1]
-    first, factors = _factors(last)
+    first, factors = _chain(last, _PRODUCTS)
     for k in range(len(factors)):
         before, after = _times(first, factors[:k]), factors[k:]
         yield _times(ast.BinOp(node.left, op, before), after)
@@ -105,19 +106,10 @@ def _together(node: ast.BinOp) -> Iterator[ast.expr]:
             yield _times(head, [*terms[:-2], (terms[-2][0], inner)])
 
 
-def _sum(node: ast.expr) -> tuple[ast.expr, _Factors]:
-    """A sum as its first term and the others, each with its operator."""
+def _chain(node: ast.expr, ops: tuple[type[ast.operator], ...]) -> tuple[ast.expr, _Factors]:
+    """A sum or product as its first part and the others, each with its operator."""
     others: _Factors = []
-    while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
-        others.insert(0, (node.op, node.right))
-        node = node.left
-    return node, others
-
-
-def _factors(node: ast.expr) -> tuple[ast.expr, _Factors]:
-    """A product as its first factor and the others, each with its operator."""
-    others: _Factors = []
-    while isinstance(node, ast.BinOp) and isinstance(node.op, _PRODUCTS):
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ops):
         others.insert(0, (node.op, node.right))
         node = node.left
     return node, others

@@ -200,8 +200,9 @@ def _meeting(sought: Array, each: Array, near: float) -> list[tuple[int, int]]:
     """Which of the sought matrices are which of the others."""
     flat, others = sought.reshape(len(sought), -1), each.reshape(len(each), -1)
     weights = np.random.default_rng(5).uniform(0.5, 1.5, flat.shape[1])
-    line, order = flat @ weights, np.argsort(others @ weights, kind="stable")
-    along = (others @ weights)[order]
+    line, along = flat @ weights, others @ weights
+    order = np.argsort(along, kind="stable")
+    along = along[order]
     wide = 10 * near * flat.shape[1]
     low, high = np.searchsorted(along, line - wide), np.searchsorted(along, line + wide)
     return [
