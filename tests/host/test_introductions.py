@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import dataclasses
 import sys
+from functools import cache
 from html.parser import HTMLParser
 
 import numpy as np
@@ -38,6 +39,7 @@ def evil(q):
 evil.__name__ = EVIL
 
 
+@cache
 def answers():
     """One of each, with markup in every name that a user gives, and words of its verdict."""
     table = evil_table()
@@ -79,7 +81,22 @@ def answers():
     }
 
 
-ANSWERS = answers()
+NAMES = (
+    "Comparison", "Diagnosis", "DHTable", "Robot", "IKResult", "IKBatch", "IKBranches",
+    "SingularitySearch", "IsotropySearch", "ServoSizing", "SweepResult", "Singularity",
+    "SingularFamily", "IsotropicDesign", "PlanarBoundary", "Dexterity", "Ellipsoid",
+    "WorkspaceMap", "IKPath", "SolutionCount", "SolutionCounts", "SolutionMap", "TableDiagnosis",
+)  # fmt: skip
+"""The answers' names, so that collecting the tests computes none."""
+ROWS = (
+    "Comparison", "DHTable", "IKBatch", "IKBranches", "SingularitySearch", "IsotropySearch",
+    "ServoSizing", "SweepResult", "WorkspaceMap", "IKPath", "SolutionCounts", "TableDiagnosis",
+)  # fmt: skip
+
+
+def test_every_answer_is_named():
+    assert list(answers()) == list(NAMES)
+    assert [name for name, (answer, _) in answers().items() if isinstance(answer, Rows)] == [*ROWS]
 
 
 class Tags(HTMLParser):
@@ -98,9 +115,9 @@ class Tags(HTMLParser):
         self.text += data
 
 
-@pytest.mark.parametrize("name", ANSWERS)
+@pytest.mark.parametrize("name", NAMES)
 def test_the_verdict_comes_first_and_everything_is_escaped(name):
-    answer, verdict = ANSWERS[name]
+    answer, verdict = answers()[name]
     assert type(answer).__name__ == name
     lines = str(answer).splitlines()
     assert verdict in lines[0]
@@ -115,11 +132,9 @@ def test_the_verdict_comes_first_and_everything_is_escaped(name):
         assert EVIL in page.text
 
 
-@pytest.mark.parametrize(
-    "name", [n for n, (answer, _) in ANSWERS.items() if isinstance(answer, Rows)]
-)
+@pytest.mark.parametrize("name", ROWS)
 def test_rows_go_out_whole(name, tmp_path):
-    answer, _ = ANSWERS[name]
+    answer, _ = answers()[name]
     answer.to_csv(tmp_path / "rows.csv")
     with (tmp_path / "rows.csv").open(newline="") as file:
         head, *rows = csv.reader(file)
@@ -166,7 +181,7 @@ def test_the_columns_of_a_comparison_hold_the_state_of_the_largest_error():
 
 
 def test_a_sweep_is_a_dict():
-    result, _ = ANSWERS["SweepResult"]
+    result, _ = answers()["SweepResult"]
     held = dict(result)
     assert list(held) == ["position", "yoshikawa"]
     assert np.array_equal(
@@ -194,9 +209,9 @@ def test_long_tables_are_counted():
 def test_without_pandas_the_message_says_how(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "pandas", None)
     with pytest.raises(MissingExtraError, match=r"kinlab\[dataframes\]"):
-        ANSWERS["IKBranches"][0].to_dataframe()
+        answers()["IKBranches"][0].to_dataframe()
     with pytest.raises(FileError, match="cannot be written"):
-        ANSWERS["IKBranches"][0].to_csv(tmp_path / "no" / "rows.csv")
+        answers()["IKBranches"][0].to_csv(tmp_path / "no" / "rows.csv")
 
 
 def test_what_says_itself_is_shown_in_notebooks_too():

@@ -7,6 +7,7 @@ import re
 import sys
 import tomllib
 from collections.abc import Iterator
+from functools import cache
 from importlib.metadata import distributions
 from pathlib import Path
 
@@ -20,10 +21,12 @@ def module_of(path: Path) -> str:
     return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
 
 
-TREES = {
-    module_of(path): ast.parse(path.read_text(encoding="utf-8"))
-    for path in sorted(PACKAGE.rglob("*.py"))
-}
+@cache
+def trees() -> dict[str, ast.Module]:
+    return {
+        module_of(path): ast.parse(path.read_text(encoding="utf-8"))
+        for path in sorted(PACKAGE.rglob("*.py"))
+    }
 
 
 PACKAGES = {module_of(path) for path in PACKAGE.rglob("__init__.py")}
@@ -51,6 +54,7 @@ def imports(tree: ast.AST, late: bool = False) -> Iterator[tuple[str, bool]]:
             yield from imports(node, late or inside)
 
 
+@cache
 def owners() -> dict[str, set[str]]:
     """Installed distributions by the names they let one import."""
     found: dict[str, set[str]] = {}
@@ -62,18 +66,15 @@ def owners() -> dict[str, set[str]]:
     return found
 
 
-OWNERS = owners()
-
-
-def undeclared(trees: dict[str, ast.Module], required: set[str], optional: set[str]) -> list[str]:
+def undeclared(read: dict[str, ast.Module], required: set[str], optional: set[str]) -> list[str]:
     """Third-party imports that nothing declares, or that an extra does but are not lazy."""
     found = set()
-    for module, tree in trees.items():
+    for module, tree in read.items():
         for name, late in imports(tree):
             top = name.split(".")[0]
             if top == "kinlab" or top in sys.stdlib_module_names:
                 continue
-            dists = OWNERS.get(top, set())
+            dists = owners().get(top, set())
             if not dists & (required | optional if late else required):
                 found.add(f"{module}: {top} of {sorted(dists) or 'nobody'}")
     return sorted(found)
@@ -88,7 +89,7 @@ EXTRAS = {
 
 
 def test_every_import_is_declared():
-    assert undeclared(TREES, REQUIRED, EXTRAS) == []
+    assert undeclared(trees(), REQUIRED, EXTRAS) == []
 
 
 def test_the_scan_sees_what_is_not_declared():
@@ -121,13 +122,13 @@ def reached(tree: ast.AST) -> set[str]:
             if id(node) in guarded and node.module in BINDS_FUNCTIONS:
                 continue
             children = {f"{node.module}.{alias.name}" for alias in node.names}
-            found |= children if children <= TREES.keys() else {node.module, *children}
+            found |= children if children <= trees().keys() else {node.module, *children}
         elif isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             # a package's name in a string asks for a file in it
             found |= {node.value} - PACKAGES
-    return {name for name in found if name in TREES and name.count(".")}
+    return {name for name in found if name in trees() and name.count(".")}
 
 
 def circle(edges: dict[str, set[str]]) -> list[str]:
@@ -150,7 +151,7 @@ def circle(edges: dict[str, set[str]]) -> list[str]:
 
 def test_no_module_reaches_itself():
     # kinlab/__init__ names its public names' modules, all of which lie below it
-    edges = {module: reached(tree) - {module} for module, tree in TREES.items() if "." in module}
+    edges = {module: reached(tree) - {module} for module, tree in trees().items() if "." in module}
     assert circle(edges) == []
     assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c", "b"]
 
