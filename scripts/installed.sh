@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Builds the wheel and the sdist, checks what an index would show of them, installs each into a clean environment outside the tree, with
-# what it declares and nothing else, and runs four commands from there.
+# Builds the wheel and the sdist, checks what an index would show of them, installs each into a
+# clean environment outside the tree, with what it declares and nothing else, and runs four commands
+# from there.
 #
 # PYTHON names the interpreter that builds and makes the environment (default: .venv/bin/python;
-# it needs hatchling).
+# it needs hatchling and twine). CLEAN names the environment's folder, which then stays.
 set -euo pipefail
 
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -17,11 +18,12 @@ cd "$root"
 ls "$work/dist"
 "$python" -m twine check --strict "$work"/dist/*
 cd "$work"
-"$python" -m venv "$work/clean"
-clean="$work/clean/bin"
+folder=${CLEAN:-$work/clean}
+"$python" -m venv "$folder"
+clean="$folder/bin"
 
 try() {
-  "$clean/python" - "$work/clean" <<'EOF'
+  "$clean/python" - "$folder" <<'EOF'
 import importlib, pkgutil, sys, kinlab
 assert kinlab.__file__.startswith(sys.argv[1]), kinlab.__file__
 names = [m.name for m in pkgutil.walk_packages(kinlab.__path__, "kinlab.") if "__main__" not in m.name]
