@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
+from pathlib import Path
 
 import console
 import mujoco
@@ -87,17 +85,11 @@ def test_an_error_is_one_line_and_exit_code_2(arguments, message):
 
 
 def test_the_scripts_run(tmp_path):
-    from pathlib import Path
-
-    root = Path(__file__).resolve().parents[2]
-    environment = {**os.environ, "PYTHONPATH": str(root)}
+    scripts = Path(__file__).resolve().parents[2] / "scripts"
     for script, arguments, text in [
-        ("tour/five_bar_tour.py", ["--output", str(tmp_path)], "wrote"),
+        ("tour/five_bar_tour.py", ["--output", tmp_path], "wrote"),
         ("compare/compare_five_bar.py", ["--states", "40", "--points", "20000"], "agrees"),
     ]:
-        done = subprocess.run(
-            [sys.executable, str(root / "scripts" / script), *arguments],
-            capture_output=True, text=True, check=False, env=environment,
-        )  # fmt: skip
+        done = console.script(scripts / script, *arguments)
         assert done.returncode == 0, done.stderr
         assert text in done.stdout
