@@ -13,6 +13,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
+from kinlab.doctor.program.several.witnesses import Witnesses
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 _VERIFIED = 60
@@ -29,6 +30,8 @@ _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
+_WATCHING = 4
+"""Of the work for single edits, the part for watching statements."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
@@ -56,6 +59,9 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
         found = tried.likeliest(known, known.in_a_row(2, _POSE))
     if found:
         return found
+    found = _from_steps(search, known)
+    if found:
+        return found
     wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
     joined = known if wider is None else known.beside(wider)
     found = tried.likeliest(joined, joined.pairs())
@@ -68,13 +74,25 @@ def _found(search: LineSearch) -> list[ProgramRepair]:
     return found
 
 
+def _from_steps(search: LineSearch, known: Effects) -> list[ProgramRepair]:
+    """Edits with which statements are a textbook's, and then what is left."""
+    steps = Witnesses(search).steps(known, search.most // _WATCHING)
+    return _after(search, [step.edit for step in steps[:_STEPS]])
+
+
 def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair]:
     """Edits that make numbers right and spoil none, and then what is left."""
-    for k in known.gaining[:_STEPS]:
-        edit = known.alike[k][0]
+    return _after(search, [known.alike[k][0] for k in known.gaining[:_STEPS]])
+
+
+def _after(search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
+    """What is left once an edit stands, of several the first with which anything is found."""
+    for edit in firsts:
         try:
             with changed(search.trial, (edit,)):
                 here = search.beside((*search.stand, edit))
+                here.most = max(here.most, (search.most - search.work) // _STEPS)
+                here.look_again()
                 found = here.singles()
                 if not found and len(here.stand) < _DEEPEST:
                     found = _found(here)

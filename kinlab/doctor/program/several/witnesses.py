@@ -1,0 +1,162 @@
+"""What the statements of a program give while edits are tried: which are a textbook's.
+
+In a recursion two slips multiply, and neither edit alone makes a number of the answer right. But the
+angular velocity of a link, the axis of a joint, a force are right or wrong by themselves: an edit
+with which a statement gives what a textbook has, where it did not before, is a first step.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.several.effects import Effects
+from kinlab.doctor.program.trial import FieldChange, NoProgramError
+from kinlab.doctor.program.variants import Variants
+
+_FIRST = 1
+"""States at which statements are watched."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """An edit with which statements give what a textbook has.
+
+    Attributes:
+        edit: the edit.
+        gained: how many statements do that did not.
+        cost: how far-fetched it is.
+    """
+
+    edit: ProgramEdit
+    gained: int
+    cost: float
+
+
+class Witnesses:
+    """The statements of a wrong program, watched while edits are tried.
+
+    Args:
+        search: whose program is wrong.
+    """
+
+    def __init__(self, search: LineSearch) -> None:
+        self.search = search
+        self.grounds = copy.copy(search.evidence)
+        self.grounds.known = search.evidence.known[:_FIRST]
+        self.known: dict[tuple[Any, bytes], bool | None] = {}
+        self.told: dict[int, bool | None] = {}
+        self.places = [place for tree in search.trial.trees for place in _places(tree)]
+
+    def steps(self, known: Effects, most: int) -> list[Step]:
+        """The edits that make statements right and spoil none, as many as some work allows.
+
+        Those with which most are right come first.
+        """
+        trial = self.search.trial
+        if not self.grounds.known or not self.places:
+            return []
+        found: list[Step] = []
+        with trial.changed({*range(len(trial.trees))}, self._watched()):
+            before = self._right()
+            variants = Variants(trial, [self._with(edits[0]) for edits in known.alike])
+            for edits in known.alike:
+                edit = self._with(edits[0])
+                most -= self.cost_of(edit)
+                if most < 0:
+                    break
+                try:
+                    with trial.changed({edit.part}, edit.changes, variants.of(edit)):
+                        after = self._right()
+                except NoProgramError:
+                    continue
+                gained = sum(good is True and before.get(n) is False for n, good in after.items())
+                lost = sum(good is False and before.get(n) is True for n, good in after.items())
+                if gained and not lost:
+                    found.append(Step(edits[0], gained, known.likely(edits[0])))
+        return sorted(found, key=lambda step: (-step.gained, step.cost))
+
+    def cost_of(self, edit: ProgramEdit) -> int:
+        """What watching the program with an edit amounts to."""
+        own = len(self.search.first)
+        return self.search.cost_of(edit) * _FIRST // own if own else 0
+
+    def _watched(self) -> list[FieldChange]:
+        return [FieldChange(holder, field, _saw(n, FieldChange(holder, field, None).now))
+                for n, (holder, field) in enumerate(self.places)]  # fmt: skip
+
+    def _with(self, edit: ProgramEdit) -> ProgramEdit:
+        """The edit where the values that it sets are watched, too."""
+        numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
+        at = [numbers.get((id(c.holder), c.field)) for c in edit.changes]
+        if all(n is None for n in at):
+            return edit
+        return replace(edit, changes=tuple(
+            c if n is None or not isinstance(c.new, ast.expr) else replace(c, new=_saw(n, c.new))
+            for c, n in zip(edit.changes, at, strict=True)
+        ))  # fmt: skip
+
+    def _right(self) -> dict[int, bool | None]:
+        """Of each statement that ran whether all it gave is a textbook's; None where it is plain."""
+        search, self.told = self.search, {}
+        search.trial.space["_saw"] = self._see
+        try:
+            for state in search.states[:_FIRST]:
+                search.trial.function(*(x.copy() for x in state))
+        except Exception:  # noqa: BLE001  what edited programs may raise
+            return {}
+        return self.told
+
+    def _see(self, n: int, value: Any) -> Any:
+        if self.told.get(n) is not False:
+            good = self._textbook(value)
+            self.told[n] = self.told.get(n) if good is None else good
+        return value
+
+    def _textbook(self, value: Any) -> bool | None:
+        """Whether it is what a textbook has; None of numbers that anything could be."""
+        if isinstance(value, list | tuple):
+            try:
+                value = np.array(value, dtype=float)
+            except (ValueError, TypeError):
+                return None
+        if not isinstance(value, np.ndarray | float) or np.asarray(value).dtype != float:
+            return None
+        array = np.asarray(value)
+        key = (array.shape, array.tobytes())
+        if key not in self.known:
+            plain = not array.size or np.all((array == 0) | (np.abs(array) == 1))
+            plain = plain or not np.isfinite(array).all()
+            self.known[key] = None if plain else self.grounds.thing([array]) is not None
+        return self.known[key]
+
+
+def _saw(n: int, value: Any) -> ast.expr:
+    """A value that is told of."""
+    return ast.Call(ast.Name("_saw", ast.Load()), [ast.Constant(n), value], [])
+
+
+def _places(tree: ast.AST) -> Iterator[tuple[Any, Any]]:
+    """Where the values of statements hang: what is set, returned, or put into a list."""
+    for node in nodes(tree):
+        if isinstance(node, ast.Assign | ast.Return) and node.value is not None:
+            if isinstance(node.value, ast.Tuple):
+                yield from ((node.value.elts, k) for k in range(len(node.value.elts)))
+            elif isinstance(node.value, _COMPUTED):
+                yield node, "value"
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+            if node.func.attr == "append" and len(node.args) == 1:
+                yield node.args, 0
+
+
+_COMPUTED = ast.BinOp | ast.UnaryOp | ast.Call | ast.Subscript | ast.List | ast.ListComp
+"""What a statement may give that is not somebody else's value under another name."""
