@@ -6,6 +6,8 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
@@ -32,6 +34,8 @@ _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _WATCHING = 4
 """Of the work for single edits, the part for watching statements."""
+_RESTING = 3
+"""And the part for asking it at rest."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
@@ -45,62 +49,95 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return _found(search)
+        return _Several(search.most).found(search)
 
 
-def _found(search: LineSearch) -> list[ProgramRepair]:
-    known = effects_of(search, search.tried)
-    if known is None or not known.alike:
-        return []
-    pose = search.wanted.shape[1:] == _POSE
-    tried = _Tried(search)
-    found = tried.likeliest(known, known.adding_up(2))
-    if not found and pose:
-        found = tried.likeliest(known, known.in_a_row(2, _POSE))
-    if found:
-        return found
-    found = _from_steps(search, known)
-    if found:
-        return found
-    wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
-    joined = known if wider is None else known.beside(wider)
-    found = tried.likeliest(joined, joined.pairs())
-    found = found or _one_after_another(search, joined)
-    if not found and not search.stand:
-        found = tried.likeliest(known, known.adding_up(3))
+class _Several:
+    """A search that ends when its work is done.
+
+    Args:
+        left: operations that may still be done beside edits that stand.
+    """
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def found(self, search: LineSearch) -> list[ProgramRepair]:
+        """More than one edit, beside those that stand, that make the program right."""
+        known = effects_of(search, search.tried)
+        if known is None or not known.alike:
+            return []
+        pose = search.wanted.shape[1:] == _POSE
+        tried = _Tried(search)
+        found = tried.likeliest(known, known.adding_up(2))
         if not found and pose:
-            found = tried.likeliest(known, known.in_a_row(3, _POSE))
-        found = found or tried.likeliest(joined, joined.triples())
-    return found
-
-
-def _from_steps(search: LineSearch, known: Effects) -> list[ProgramRepair]:
-    """Edits with which statements are a textbook's, and then what is left."""
-    steps = Witnesses(search).steps(known, search.most // _WATCHING)
-    return _after(search, [step.edit for step in steps[:_STEPS]])
-
-
-def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair]:
-    """Edits that make numbers right and spoil none, and then what is left."""
-    return _after(search, [known.alike[k][0] for k in known.gaining[:_STEPS]])
-
-
-def _after(search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
-    """What is left once an edit stands, of several the first with which anything is found."""
-    for edit in firsts:
-        try:
-            with changed(search.trial, (edit,)):
-                here = search.beside((*search.stand, edit))
-                here.most = max(here.most, (search.most - search.work) // _STEPS)
-                here.look_again()
-                found = here.singles()
-                if not found and len(here.stand) < _DEEPEST:
-                    found = _found(here)
-        except NoProgramError:
-            continue
+            found = tried.likeliest(known, known.in_a_row(2, _POSE))
+        if found:
+            return self._settled(search, found)
+        steps = Witnesses(search).steps(known, search.most // _WATCHING)
+        found = self._after(search, [step.edit for step in steps])
         if found:
             return found
-    return []
+        wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
+        joined = known if wider is None else known.beside(wider)
+        found = self._settled(search, tried.likeliest(joined, joined.pairs()))
+        found = found or self._after(search, [joined.alike[k][0] for k in joined.gaining])
+        if not found and not search.stand:
+            found = tried.likeliest(known, known.adding_up(3))
+            if not found and pose:
+                found = tried.likeliest(known, known.in_a_row(3, _POSE))
+            found = found or tried.likeliest(joined, joined.triples())
+        return found
+
+    def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
+        """What is left once an edit stands: of several the first beside which anything does."""
+        for edit in [*{_place(edit): edit for edit in reversed(firsts)}.values()][::-1][:_STEPS]:
+            if self.left <= 0:
+                break
+            try:
+                with changed(search.trial, (edit,)):
+                    here = self._beside(search, (edit,))
+                    found = here.singles()
+                    self.left -= here.work
+                    if not found and len(here.stand) < _DEEPEST:
+                        found = self.found(here)
+            except NoProgramError:
+                continue
+            if found:
+                return self._settled(search, found)
+        return []
+
+    def _beside(self, search: LineSearch, edits: Way) -> LineSearch:
+        """The search for more while these edits stand, too."""
+        here = search.beside((*search.stand, *edits))
+        here.most = min(max(here.most, (search.most - search.work) // _STEPS), self.left)
+        here.look_again()
+        return here
+
+    def _settled(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The first repair with each of its edits the likeliest beside the others."""
+        if not found:
+            return []
+        own = found[0].edits[len(search.stand) :]
+        for edit in own:
+            others = tuple(one for one in own if one is not edit)
+            try:
+                with changed(search.trial, others):
+                    here = self._beside(search, others)
+                    better = here.singles()[:1]
+                    self.left -= here.work
+                    cost = here.likely(edit)
+                    better = [one for one in better if here.likely(one.edits[-1]) < cost]
+            except NoProgramError:
+                continue
+            if better:
+                return self._settled(search, better)
+        return found
+
+
+def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
+    """Where an edit is: of several in one place the likeliest is enough to go on from."""
+    return edit.part, getattr(edit.node, "lineno", edit.node), edit.place
 
 
 class _Tried:
