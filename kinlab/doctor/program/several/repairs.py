@@ -6,6 +6,7 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -28,13 +29,15 @@ _RIVALS = 6
 """Repairs of which it is looked what they leave right."""
 _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
+_TIED = 0.08
+"""Of these, costs that are one."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
-_WATCHING = 4
+_WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
-_RESTING = 3
+_RESTING = 4
 """And the part for asking it at rest."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
@@ -74,11 +77,15 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
-        steps = Witnesses(search).steps(known, search.most // _WATCHING)
+        witnesses = Witnesses(search)
+        steps = witnesses.steps(known, search.most // _WATCHING)
+        self.left -= witnesses.work
         found = self._after(search, [step.edit for step in steps])
         if found:
             return found
-        wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
+        rest = AtRest(search)
+        wider = None if search.stand else rest.effects(known, search.most // _RESTING)
+        self.left -= rest.work
         joined = known if wider is None else known.beside(wider)
         found = self._settled(search, tried.likeliest(joined, joined.pairs()))
         found = found or self._after(search, [joined.alike[k][0] for k in joined.gaining])
@@ -91,7 +98,8 @@ class _Several:
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
         """What is left once an edit stands: of several the first beside which anything does."""
-        for edit in [*{_place(edit): edit for edit in reversed(firsts)}.values()][::-1][:_STEPS]:
+        apart = {_place(edit): edit for edit in reversed(firsts)}
+        for turn, edit in enumerate([*apart.values()][::-1][:_STEPS]):
             if self.left <= 0:
                 break
             try:
@@ -99,7 +107,8 @@ class _Several:
                     here = self._beside(search, (edit,))
                     found = here.singles()
                     self.left -= here.work
-                    if not found and len(here.stand) < _DEEPEST:
+                    # two more only beside the likeliest: others gain as much by accident
+                    if not found and not turn and len(here.stand) < _DEEPEST:
                         found = self.found(here)
             except NoProgramError:
                 continue
@@ -152,7 +161,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most = self.search.most // 4
+        most = self.search.most // 6
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
@@ -201,6 +210,7 @@ class _Tried:
         costs = {way: sum(map(search.likely, way)) for way in ways}
         ranked = sorted(costs, key=lambda way: costs[way])
         near = [way for way in ranked if costs[way] <= costs[ranked[0]] + _ALIKE][:_RIVALS]
+        rights = dict.fromkeys(near, 0)
         if len(near) > 1 and search.evidence.known:
             rights = {way: search.left_right(way) + sum(map(self._own, way)) for way in near}
             near.sort(key=lambda way: (-rights[way], costs[way]))
@@ -210,7 +220,15 @@ class _Tried:
             found += [] if repair is None else [repair]
             if len(found) == _NAMED:
                 break
+        own = [way for way in near if any(repair.edits[-len(way) :] == way for repair in found)]
+        if len(own) > 1 and rights[own[0]] == rights[own[1]] and self._tied(own[0], own[1], costs):
+            found[0] = replace(found[0], rivals=(found[1],))
         return found
+
+    def _tied(self, one: Way, other: Way, costs: dict[Way, float]) -> bool:
+        """Whether nothing tells which of two repairs of different places it is."""
+        apart = {_place(edit) for edit in one} != {_place(edit) for edit in other}
+        return apart and abs(costs[one] - costs[other]) <= _TIED
 
     def _own(self, edit: ProgramEdit) -> bool:
         """Whether a number that is nothing of the arm's becomes one of its own."""

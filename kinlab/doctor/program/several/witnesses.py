@@ -59,7 +59,7 @@ class Witnesses:
     """
 
     def __init__(self, search: LineSearch) -> None:
-        self.search = search
+        self.search, self.work = search, 0
         self.grounds = copy.copy(search.evidence)
         self.grounds.known = search.evidence.known[:_FIRST]
         self.known: dict[tuple[Any, bytes], bool | None] = {}
@@ -82,8 +82,8 @@ class Witnesses:
             watched = [_watched(edits[0], numbers) for edits in known.alike]
             variants = Variants(trial, watched)
             for edits, edit in zip(known.alike, watched, strict=True):
-                most -= self.cost_of(edit)
-                if most < 0:
+                self.work += self.cost_of(edit)
+                if self.work > most:
                     break
                 try:
                     with trial.changed({edit.part}, edit.changes, variants.of(edit)):
