@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pinocchio as pin
@@ -15,6 +16,12 @@ from kinlab.errors import NameUnknownError, OptionError
 
 ARMS = ("planar2r", "planar3r", "spatial3r", "scara", "stanford", "puma560", "puma560_modified",
         "ur5", "panda")  # fmt: skip
+
+
+@cache
+def searched(name):
+    """The search on a shipped arm, which several tests read."""
+    return kl.find_singularities(kl.load(name))
 
 
 def engine_ratio(robot, q, rows):
@@ -30,7 +37,7 @@ def engine_ratio(robot, q, rows):
 @pytest.mark.parametrize("name", ARMS)
 def test_every_configuration_is_singular_by_the_engine(name):
     robot = kl.load(name)
-    search = kl.find_singularities(robot)
+    search = searched(name)
     assert len(search) > 0 and search.suggested
     for found in search:
         assert engine_ratio(robot, found.q, found.rows) <= 1e-10
@@ -57,7 +64,7 @@ def test_determinant_is_numeric_and_every_factor_is_hit(name):
     assert np.max(np.abs(formula - numeric)) <= 1e-12 * max(1.0, np.max(np.abs(numeric)))
     hit = {
         str(factor.expression)
-        for state in kl.find_singularities(robot)
+        for state in searched(name)
         for factor in vanishing_factors(found, robot, state.q)
     }
     assert hit == {str(f.expression) for f in found.factors if f.within_limits}
@@ -69,7 +76,7 @@ def test_puma_factors_and_their_meaning():
     assert {f.meaning: f.joints for f in found.factors} == {
         "shoulder": ("joint_2", "joint_3"), "elbow": ("joint_3",), "wrist": ("joint_5",)
     }  # fmt: skip
-    families = kl.find_singularities(robot).families
+    families = searched("puma560").families
     assert {"wrist", "shoulder", "elbow"} <= {f.kind for f in families}
     wrist = next(f for f in families if f.kind == "wrist")
     assert wrist.deciding == ("joint_5",) and abs(wrist.pinned[0]) < 1e-9
@@ -81,14 +88,14 @@ def test_puma_factors_and_their_meaning():
 
 
 def test_ur5_has_wrist_shoulder_and_elbow():
-    families = kl.find_singularities(kl.load("ur5")).families
+    families = searched("ur5").families
     pinned = {(f.kind, round(abs(f.pinned[0]), 6)) for f in families if f.pinned}
     assert pinned == {("elbow", 0.0), ("elbow", 3.141593), ("wrist", 0.0), ("wrist", 3.141593)}
     assert any(f.kind == "shoulder" and not f.pinned for f in families)
 
 
 def test_planar_arms_in_closed_form():
-    two = kl.find_singularities(kl.load("planar2r"))
+    two = searched("planar2r")
     assert sorted(round(abs(f.pinned[0]), 9) for f in two.families) == [0.0, round(np.pi, 9)]
     assert all(f.kind == "elbow" and f.beyond is False for f in two.families)
     radial = two.families[0].representative

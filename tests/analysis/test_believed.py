@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -55,6 +57,16 @@ def srs(d=(0.36, 0.42, 0.40, 0.126)):
     return arm("srs", rows, -2.6, 2.6)
 
 
+def named(name):
+    return {"wenger": wenger, "srs": srs}[name]() if name in ("wenger", "srs") else kl.load(name)
+
+
+@cache
+def searched(name):
+    """The search on such an arm, which several tests read."""
+    return kl.find_singularities(named(name))
+
+
 def engine_ratio(robot, q, rows):
     data = robot.model.createData()
     jac = pin.computeFrameJacobian(
@@ -105,7 +117,7 @@ def test_the_distance_of_a_redundant_arm():
     q = np.array([0.2, -0.6, 0.4, -1.9, 0.5, 1.4, 0.3])
     near = kl.nearest_singularity(robot, q, boxes=4000)
     assert 0.0 < near.bound <= near.distance
-    search = kl.find_singularities(robot)
+    search = searched("panda")
     assert near.distance <= min(np.linalg.norm(s.q - q) for s in search) + 1e-9
 
 
@@ -189,11 +201,9 @@ def test_slope_bound_holds():
 # ---- families
 
 
-@pytest.mark.parametrize(
-    "robot", [wenger(), kl.load("ur5"), kl.load("panda"), srs(), kl.load("stanford")]
-)
-def test_families_stay_singular_when_their_free_joints_move_far(robot):
-    search = kl.find_singularities(robot)
+@pytest.mark.parametrize("name", ["wenger", "ur5", "panda", "srs", "stanford"])
+def test_families_stay_singular_when_their_free_joints_move_far(name):
+    robot, search = named(name), searched(name)
     rng = np.random.default_rng(5)
     for family in search.families:
         first = family.representative
@@ -205,16 +215,16 @@ def test_families_stay_singular_when_their_free_joints_move_far(robot):
 
 
 def test_one_sheet_is_one_family():
-    families = kl.find_singularities(wenger()).families
+    families = searched("wenger").families
     assert [(f.deciding, f.pinned) for f in families] == [(("joint_2", "joint_3"), ())]
-    shoulders = [f for f in kl.find_singularities(kl.load("ur5")).families if f.kind == "shoulder"]
+    shoulders = [f for f in searched("ur5").families if f.kind == "shoulder"]
     assert len(shoulders) == 1 and len(shoulders[0].deciding) == 3
 
 
 def test_an_arm_with_spherical_shoulder_and_wrist():
     found = {
         (f.kind, f.deciding, tuple(np.round(np.abs(f.pinned), 6) + 0.0))
-        for f in kl.find_singularities(srs()).families
+        for f in searched("srs").families
     }
     half = round(PI / 2, 6)
     assert found == {
@@ -230,7 +240,7 @@ def test_an_arm_with_spherical_shoulder_and_wrist():
 
 def test_a_wrist_is_no_edge():
     for name in ("stanford", "puma560", "ur5"):
-        wrists = [f for f in kl.find_singularities(kl.load(name)).families if f.kind == "wrist"]
+        wrists = [f for f in searched(name).families if f.kind == "wrist"]
         assert wrists and all(f.beyond is True for f in wrists)
 
 
@@ -238,7 +248,7 @@ def test_edges_that_are_known():
     three = kl.find_singularities(wenger(), "position")
     kinds = {m.kind for f in three.families for m in f.members}
     assert kinds == {"boundary", "interior"}  # outer boundary, and the curve with cusps inside
-    stretched = kl.find_singularities(kl.load("puma560")).families
+    stretched = searched("puma560").families
     assert {f.kind: f.beyond for f in stretched} == {
         "elbow": False, "shoulder": False, "wrist": True
     }  # fmt: skip
