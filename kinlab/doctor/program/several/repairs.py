@@ -98,8 +98,10 @@ class _Several:
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
         """What is left once an edit stands: of several the first beside which anything does."""
-        apart = {_place(edit): edit for edit in reversed(firsts)}
-        for turn, edit in enumerate([*apart.values()][::-1][:_STEPS]):
+        apart: dict[Any, ProgramEdit] = {}
+        for edit in firsts:
+            apart.setdefault(_place(edit), edit)
+        for turn, edit in enumerate([*apart.values()][:_STEPS]):
             if self.left <= 0:
                 break
             try:

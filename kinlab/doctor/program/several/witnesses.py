@@ -195,16 +195,20 @@ def _saw(n: int, value: Any) -> ast.expr:
 
 
 def _places(tree: ast.AST) -> Iterator[tuple[Any, Any]]:
-    """Where the values of statements hang: what is set, returned, or put into a list."""
+    """Where the values of statements hang: what is set, returned, or put into a list.
+
+    Of what is given as a row of entries each entry is one.
+    """
     for node in nodes(tree):
-        if isinstance(node, ast.Assign | ast.Return) and node.value is not None:
-            if isinstance(node.value, ast.Tuple):
-                yield from ((node.value.elts, k) for k in range(len(node.value.elts)))
-            elif isinstance(node.value, _COMPUTED):
-                yield node, "value"
+        if isinstance(node, ast.Assign | ast.Return) and isinstance(node.value, _COMPUTED):
+            yield node, "value"
         elif isinstance(node, ast.Call) and called(node) == "append" and len(node.args) == 1:
             yield node.args, 0
+        if isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
+            yield from (
+                (node.elts, k) for k, one in enumerate(node.elts) if isinstance(one, _COMPUTED)
+            )
 
 
-_COMPUTED = ast.BinOp | ast.UnaryOp | ast.Call | ast.Subscript | ast.List | ast.ListComp
+_COMPUTED = ast.BinOp | ast.UnaryOp | ast.Call | ast.Subscript | ast.ListComp
 """What a statement may give that is not somebody else's value under another name."""
