@@ -53,7 +53,7 @@ class CodeStep:
 
 
 PACING = {"NOP", "RESUME", "CACHE", "PRECALL", "EXTENDED_ARG", "MAKE_CELL", "COPY_FREE_VARS"}
-PACING |= {"TO_BOOL", "NOT_TAKEN"}
+PACING |= {"TO_BOOL", "NOT_TAKEN", "END_SEND"}
 JUMPS = {"JUMP_FORWARD", "JUMP_BACKWARD", "JUMP_BACKWARD_NO_INTERRUPT"}
 ENDING = 0 if sys.version_info < (3, 12) else 1 if sys.version_info < (3, 13) else 2
 """How many instructions end a loop that has run out: ``END_FOR``, then ``POP_TOP`` too."""
@@ -122,12 +122,15 @@ def entry(code: CodeType) -> CodeStep:
             ending = ENDING if step.op == "FOR_ITER" else 0
             step.ends = 2 * place[int(instructions[n].argval)] if step.op == "FOR_ITER" else 0
             step.after = [following, at(place[int(instructions[n].argval)] + ending)]
+        elif step.op == "SEND":
+            step.after = [at(place[int(instructions[n].argval)])]
         else:
             step.after = [following]
     for step in steps:
         _in_parts(step)
     for step in steps:
         _keeping(step)
+        _passing_on(step)
     first = at(0)
     if first.op == "RETURN_GENERATOR":
         first = first.after[0].after[0]
@@ -163,6 +166,13 @@ def _keeping(step: CodeStep) -> None:
         if falls.op == "POP_TOP" and step is not test:
             step.op, step.value = ("OR" if test.falls else "AND"), True
             step.span, step.after = test.span, [falls.after[0], jumps]
+
+
+def _passing_on(step: CodeStep) -> None:
+    """All that ``yield from`` does as one step; it goes on where the inner iterator has ended."""
+    path = _path(step, 3)
+    if [s.op for s in path] == ["GET_YIELD_FROM_ITER", "LOAD_CONST", "SEND"]:
+        step.op, step.after = "YIELD_FROM", path[2].after
 
 
 def _step(code: CodeType, n: int, instruction: dis.Instruction) -> CodeStep:

@@ -59,6 +59,7 @@ TAKING: dict[str, tuple[int | None, Callable[[list[ast.expr]], ast.expr]]] = {
     "UNARY_INVERT": (1, lambda e: ast.UnaryOp(ast.Invert(), *e)),
     "UNARY_NOT": (1, lambda e: ast.UnaryOp(ast.Not(), *e)),
     "YIELD_VALUE": (1, lambda e: ast.Yield(*e)),
+    "YIELD_FROM": (1, lambda e: ast.YieldFrom(*e)),
     "LIST_TO_TUPLE": (1, lambda e: ast.Tuple(needed(e[0], ast.List).elts, ast.Load())),
     "BUILD_SLICE": (None, lambda e: limits(*e)),
     "BUILD_TUPLE": (None, lambda e: ast.Tuple(e, ast.Load())),

@@ -58,8 +58,9 @@ class Observed:
         try:
             for k, (tree, part) in enumerate(zip(trial.trees, parts, strict=True)):
                 trial.place(k, made(_watched(tree, k), part, trial.space))
-            with quietly():
+            with quietly(), trial.as_loaded():
                 for state in states:
+                    trial.load()
                     trial.function(*state)
         finally:
             for k, function in enumerate(originals):
@@ -130,8 +131,9 @@ def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
     before = sys.getprofile()
     sys.setprofile(count)
     try:
-        with quietly():
+        with quietly(), trial.as_loaded():
             for state in states:
+                trial.load()
                 trial.function(*state)
     finally:
         sys.setprofile(before)
@@ -180,6 +182,6 @@ def _watchable(parent: ast.AST, name: str, node: ast.expr) -> bool:
         return False
     if isinstance(parent, ast.Subscript) and name == "slice" and isinstance(node, ast.Tuple):
         return False
-    if isinstance(parent, ast.JoinedStr | ast.FormattedValue | ast.arguments | ast.arg):
+    if isinstance(parent, ast.JoinedStr | ast.FormattedValue | ast.arg):
         return False
     return not (isinstance(node, ast.Constant) and isinstance(node.value, str))

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import copy
+import functools
+import inspect
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import CodeType, FunctionType, ModuleType
@@ -15,7 +17,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.kept import Contents
-from kinlab.doctor.program.read import OwnFunction, OwnProgram, written
+from kinlab.doctor.program.read import OwnFunction, OwnProgram, closed, functions_in, implied, written
 
 
 class NoProgramError(Exception):
@@ -65,31 +67,66 @@ class Trial:
     """
 
     def __init__(self, program: OwnProgram) -> None:
+        self._prepare(program)
+        while self.program.plain is not None and not self._loads_the_same():
+            self._prepare(self.program.plain)
+
+    def _prepare(self, program: OwnProgram) -> None:
         self.program = program
         self.space = dict(program.space)
+        self.sets = [name for part in program.parts for name in sorted(part.sets)]
+        held = [*program.data, *(name for name in self.sets if name not in program.data)]
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
-        owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in program.data)))
+        owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in held)))
         self._copies: dict[int, Any] = {}
-        module = program.parts[0].function.__module__
-        self.classes = {one: _copied(one) for one in owners if written(one, module)}
-        for name in program.data:
+        self._at = {id(part.function): k for k, part in enumerate(program.parts) if not part.sets}
+        self.classes = {one: _copied(one) for one in owners if written(one, program.modules)}
+        for name in held:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
         owned = [value for one in self.classes.values() for value in vars(one).values()]
-        held = [self.space[name] for name in program.data]
-        self._contents = Contents([*held, *self.bound, *owned])
+        self._contents = Contents([*(self.space[name] for name in held), *self.bound, *owned])
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
-        self.trees = [_bounded(part.tree) for part in program.parts]
+        self.trees = [_bounded(part.tree, part) for part in program.parts]
         self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
+        self._loads = [k for k, part in enumerate(program.parts) if part.sets]
+        self._bodies = _bodies(self.trees[k] for k in self._loads)
+        for label in self._bodies:
+            self.space[_META + label] = _Body(self.space[label])
+        self._fields = [one for one in self.classes.values() if _FIELDS in vars(one)]
+        self._stale = False
         self.above = _callers(program)
         self._touched: set[int] = set()
         self._made = [self._compiled(k) for k in range(len(self.trees))]
+        self._placed: list[Any] = [*self._made]
         self._remembering = [_remembering(one) for one in self._made]
         for k, one in enumerate(self._made):
             self.place(k, one)
+
+    def _loads_the_same(self) -> bool:
+        """Whether what runs before the function is asked, run again, gives what is there."""
+        try:
+            with quietly():
+                self.load()
+                entry = self._entry()
+                held = closed(entry) if isinstance(entry, FunctionType) else {}
+        except Exception:  # noqa: BLE001  then it is left as it is
+            return False
+        was, making = self.program.space, self.program.making
+        same = all(_alike(self.space.get(name), was[name]) for name in self.sets)
+        before = {} if making is None else making.closed
+        return same and all(name in held and _alike(held[name], x) for name, x in before.items())
+
+    def _entry(self) -> Any:
+        """The function that is asked: the first part, or what that makes."""
+        making = self.program.making
+        if making is None:
+            return self.placed(0)
+        found = self.placed(0)(*(self.space[name] for name in making.given))
+        return next(one for one in functions_in([found]) if one.__name__ == making.name)
 
     def _own(self, value: Any) -> Any:
         """A copy of data; of a class, and of an object of it, one whose methods can be changed."""
@@ -97,6 +134,11 @@ class Trial:
             return self.classes.get(value, value)
         if id(value) in self._copies:
             return self._copies[id(value)]
+        if id(value) in self._at:
+            return self._asking(self._at[id(value)])
+        if isinstance(value, functools.partial):
+            given = {k: self._own(v) for k, v in value.keywords.items()}
+            return functools.partial(self._own(value.func), *map(self._own, value.args), **given)
         if type(value) in (list, tuple, dict) and not _numbers_only(value):
             return self._own_list(value)
         if type(value) not in self.classes:
@@ -105,6 +147,10 @@ class Trial:
         self._copies[id(value)] = new
         new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
         return new
+
+    def _asking(self, k: int) -> Any:
+        """A part as it is placed when it is called: in a list of functions."""
+        return lambda *given, **named: self._placed[k](*given, **named)
 
     def _own_list(self, value: Any) -> Any:
         """A list, tuple or dictionary in which objects may be kept."""
@@ -125,18 +171,47 @@ class Trial:
 
     def placed(self, k: int) -> Any:
         """The function that stands for a part now."""
-        part = self.program.parts[k]
-        if part.owner is None:
-            return self.space[part.name]
-        return vars(self.classes[part.owner])[part.name]
+        return self._placed[k]
 
     def place(self, k: int, function: Any) -> None:
         """Puts a function where the program looks for a part."""
         part = self.program.parts[k]
-        if part.owner is None:
-            self.space[part.name] = function
-        else:
-            setattr(self.classes[part.owner], part.name, function)
+        self._placed[k] = function
+        for owner, name in part.spots:
+            if owner is None:
+                self.space[name] = function
+            else:
+                held = function if part.kept is FunctionType else part.kept(function)
+                setattr(self.classes[owner], name, held)
+
+    def load(self) -> None:
+        """Runs the lines of the module."""
+        self._stale, self._turns = False, 0
+        for name in self.sets:
+            if name not in self._bodies:
+                self.space.pop(name, None)
+        for one in self._fields:
+            _with_defaults(one)
+        for k in self._loads:
+            self._placed[k]()
+
+    @contextmanager
+    def as_loaded(self) -> Iterator[None]:
+        """Puts back afterwards what the lines of the module set."""
+        before = [(name, self.space[name]) for name in self.sets if name in self.space]
+        owned = [(self.space[label], vars(self.space[label]).copy()) for label in self._bodies]
+        inits = [(one, one.__init__) for one in self._fields]
+        stale = self._stale
+        try:
+            yield
+        finally:
+            self.space.update(before)
+            for owner, held in owned:
+                for name in self._bodies[owner.__name__]:
+                    setattr(owner, name, held[name])
+            for one, init in inits:
+                one.__init__ = init
+            self._stale = stale
 
     @contextmanager
     def changed(
@@ -156,8 +231,12 @@ class Trial:
         every = range(len(self.trees))
         outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
         held = self._contents.now()
-        self._touched = outer | {k for part in parts for k in self.above[part]}
+        reached = {k for part in parts for k in self.above[part]}
+        self._touched = outer | reached
+        loaded = self.as_loaded()
+        loaded.__enter__()
         try:
+            self._stale |= not reached.isdisjoint(self._loads) or (-1 in parts and self._fields != [])
             for change in changes:
                 if compiled is None:
                     _located(change.new)
@@ -179,17 +258,21 @@ class Trial:
             self.space["_edit"] = 0
             for k in every:
                 self.place(k, kept[k])
+            loaded.__exit__(None, None, None)
 
     def _forget(self) -> None:
         for one in self._remembering:
-            one.known.clear()
+            getattr(one, "known", {}).clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state."""
         self._turns = 0
         try:
-            return self.placed(0)(*self.bound, *state)
-        except SystemExit as end:  # an edit led to where the user's program ends itself
+            if self._stale:
+                self.load()
+            return self._entry()(*self.bound, *state)
+        except (SystemExit, StopIteration) as end:  # an edit led to where the program ends itself
+            self._stale = self._stale or bool(self._loads)
             raise RuntimeError("the program ended itself") from end
 
     def _turn(self) -> bool:
@@ -234,27 +317,55 @@ _QUICK.__dict__.update(np.__dict__, cross=_cross)
 
 def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
     """A function of a definition, with the defaults that the user's own has."""
-    module = ast.Module([tree], [])
+    module = ast.Module(tree.body if part.sets else [tree], [])
     try:
         code = compile(module, "<formula>", "exec")
     except (SyntaxError, ValueError, TypeError) as problem:
         raise NoProgramError(str(problem)) from problem
-    own = next(one for one in code.co_consts if isinstance(one, CodeType))
-    function = FunctionType(own, space, part.name, part.function.__defaults__)
-    function.__kwdefaults__ = part.function.__kwdefaults__
+    if part.sets:
+        return FunctionType(code, space)
+    defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
+    if not tree.args.defaults and not any(tree.args.kw_defaults):
+        own = next(one for one in code.co_consts if isinstance(one, CodeType))
+        function = FunctionType(own, space, part.name, defaults)
+        function.__kwdefaults__ = keywords
+        return function
+    defined: dict[str, Any] = {}
+    try:
+        exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
+    except Exception as problem:
+        raise NoProgramError(str(problem)) from problem
+    function = defined[tree.name]
+    function.__defaults__ = _filled(function.__defaults__, defaults)
+    named = function.__kwdefaults__ or {}
+    function.__kwdefaults__ = keywords and {k: _or(named.get(k, ...), keywords[k]) for k in keywords}
     return function
 
 
+def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
+    return tuple(map(_or, new, own)) if new and own else own
+
+
+def _or(new: Any, own: Any) -> Any:
+    return own if new is ... else new
+
+
 def _callers(program: OwnProgram) -> dict[int, set[int]]:
-    """For each part those whose answers depend on it, itself among them; -1 for the data."""
+    """For each part those whose answers depend on it, itself among them; -1 for the data.
+
+    What is called without its name (``__init__``) may be called by all.
+    """
     every = range(len(program.parts))
     named = [named_in(part.tree) for part in program.parts]
-    calls = [{k for k in every if program.parts[k].name in inside} for inside in named]
+    named = [one.union(*(program.through.get(label, ()) for label in one)) for one in named]
+    gives = [part.sets or {name for _owner, name in part.spots} for part in program.parts]
+    own = [part.owner is not None and implied(part.name) for part in program.parts]
+    calls = [{k for k in every if own[k] or not gives[k].isdisjoint(inside)} for inside in named]
     above = {k: {k} for k in every}
     for _round in every:
         for k in every:
             above[k] |= {j for j in every if calls[j] & above[k]}
-    data = {k for k in every if named[k] & {*program.data}}
+    data = {k for k in every if named[k] & {*program.data} or program.parts[k].sets}
     owned = {k for k in every if program.parts[k].owner is not None}
     return {**above, -1: {j for k in data | owned for j in above[k] | {k}}}
 
@@ -272,7 +383,7 @@ def _class_of(value: Any) -> type:
 def _copied(owner: type) -> type:
     """A class like another, whose methods can be changed."""
     own = {
-        name: copy.deepcopy(value) if is_data(value) else value
+        name: copy.deepcopy(value) if is_data(value) and name[:2] != "__" else value
         for name, value in vars(owner).items()
         if name not in ("__dict__", "__weakref__")
     }
@@ -282,6 +393,8 @@ def _copied(owner: type) -> type:
 def _remembering(function: FunctionType) -> Any:
     """A part that no edit reaches: its answers are kept, by what it was asked."""
     known: dict[Any, Any] = {}
+    if function.__code__.co_flags & inspect.CO_GENERATOR or function.__code__.co_name == "<module>":
+        return function  # what it gives is used up; what it does is done each time
 
     def remembered(*asked: Any) -> Any:
         try:
@@ -292,7 +405,10 @@ def _remembering(function: FunctionType) -> Any:
         if key not in known:
             if len(known) >= _REMEMBERED:
                 known.clear()
-            known[key] = function(*asked)
+            answer = function(*asked)
+            if isinstance(answer, Iterator):
+                return answer
+            known[key] = answer
         return _again(known[key])
 
     remembered.known = known  # type: ignore[attr-defined]
@@ -321,11 +437,100 @@ def _key(value: Any) -> Any:
     raise TypeError(type(value).__name__)
 
 
-def _bounded(tree: ast.FunctionDef) -> ast.FunctionDef:
+_META = "_class_"
+_FIELDS = "__dataclass_fields__"
+
+
+class _Body:
+    """In place of the class of a class: what its lines set is given to the class that is there."""
+
+    def __init__(self, owner: type) -> None:
+        self.owner = owner
+
+    def __prepare__(self, _name: str, _bases: Any) -> dict[str, Any]:
+        return {**vars(self.owner)}
+
+    def __call__(self, _name: str, _bases: Any, space: dict[str, Any]) -> type:
+        for name, value in space.items():
+            if name[:2] != "__" and value is not vars(self.owner).get(name):
+                setattr(self.owner, name, value)
+        return self.owner
+
+
+def _bodies(trees: Iterable[ast.AST]) -> dict[str, set[str]]:
+    """The names that the lines of classes set, by the classes' names."""
+    found = [node for tree in trees for node in nodes(tree) if isinstance(node, ast.ClassDef)]
+    return {node.name: {*names(ast.Module(node.body, []), ast.Store)} for node in found}
+
+
+def _with_defaults(owner: Any) -> None:
+    """Gives the method that makes objects of a dataclass the defaults that stand in the class."""
+    init = owner.__init__
+    given = [name for name in getattr(owner, _FIELDS) if name in vars(owner)]
+    if not isinstance(init, FunctionType) or len(init.__defaults__ or ()) != len(given):
+        return
+    values = tuple(vars(owner)[name] for name in given)
+    code, space, closure = init.__code__, init.__globals__, init.__closure__
+    owner.__init__ = FunctionType(code, space, init.__name__, values, closure)
+
+
+def _alike(one: Any, other: Any, depth: int = 6) -> bool:
+    """Whether what a line gives anew is what is there; of functions nothing is asked."""
+    if depth == 0 or callable(one):
+        return callable(one) == callable(other)
+    if isinstance(one, int | float | complex | np.ndarray | np.number):
+        try:
+            close = np.allclose(one, other, rtol=1e-12, atol=0.0, equal_nan=True)
+        except (TypeError, ValueError):
+            return False
+        return bool(close) and np.shape(one) == np.shape(other)
+    if isinstance(one, list | tuple):
+        same = isinstance(other, list | tuple) and len(one) == len(other)
+        return same and all(_alike(a, b, depth - 1) for a, b in zip(one, other, strict=True))
+    if not isinstance(one, dict):
+        if type(one).__name__ != type(other).__name__:
+            return False
+        if not hasattr(one, "__dict__"):
+            return bool(one == other)
+        one, other = vars(one), vars(other)
+    if not isinstance(other, dict) or one.keys() != other.keys():
+        return False
+    return all(_alike(value, other[key], depth - 1) for key, value in one.items())
+
+
+def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
+    """Defaults that are numbers as they are, ``...`` for others; none where there are only others."""
+    if len(nodes_) != len(values):
+        return []
+    told = [_literal(node) for node in nodes_]
+    same = [x is not None and x == v and type(x) is type(v) for x, v in zip(told, values, strict=True)]
+    pairs = zip(nodes_, same, strict=True)
+    return [n if own or n is None else ast.Constant(...) for n, own in pairs] if any(same) else []
+
+
+def _literal(node: ast.AST | None) -> Any:
+    """A number, or a list or tuple of numbers, as it is written."""
+    try:
+        value = None if node is None else ast.literal_eval(node)  # type: ignore[arg-type]
+    except (ValueError, TypeError):
+        return None
+    flat = value if isinstance(value, list | tuple) else [value]
+    plain = all(isinstance(one, int | float) and not isinstance(one, bool) for one in flat)
+    return value if plain else None
+
+
+def _bounded(tree: ast.FunctionDef, part: OwnFunction) -> ast.FunctionDef:
     """A copy that prints nothing and whose loops end."""
     own = copied(tree)
-    own.returns, own.args.defaults = None, []
-    own.args.kw_defaults = [None] * len(own.args.kwonlyargs)
+    for node in nodes(own) if part.sets else ():
+        if isinstance(node, ast.ClassDef):
+            node.keywords = [ast.keyword("metaclass", ast.Name(_META + node.name, ast.Load()))]
+    own.returns = None
+    if not part.sets:
+        plain, named = part.function.__defaults__ or (), part.function.__kwdefaults__ or {}
+        only = [named.get(one.arg) for one in own.args.kwonlyargs]
+        own.args.defaults = _written(own.args.defaults, plain)
+        own.args.kw_defaults = _written(own.args.kw_defaults, only) or [None] * len(only)
     for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
         name.annotation = None
     _Quiet().visit(own)
