@@ -94,6 +94,7 @@ class _Several:
             if not found and pose:
                 found = tried.likeliest(known, known.in_a_row(3, _POSE))
             found = found or tried.likeliest(joined, joined.triples())
+            found = self._settled(search, found)
         return found
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
@@ -163,7 +164,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most = self.search.most // 6
+        most = self.search.most // 4
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
@@ -222,6 +223,7 @@ class _Tried:
             found += [] if repair is None else [repair]
             if len(found) == _NAMED:
                 break
+        found = search.of_any_arm(found)
         own = [way for way in near if any(repair.edits[-len(way) :] == way for repair in found)]
         if len(own) > 1 and rights[own[0]] == rights[own[1]] and self._tied(own[0], own[1], costs):
             found[0] = replace(found[0], rivals=(found[1],))
