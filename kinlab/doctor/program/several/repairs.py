@@ -37,7 +37,7 @@ _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
-_RESTING = 4
+_RESTING = 2
 """And the part for asking it at rest."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
@@ -107,7 +107,9 @@ class _Several:
                 break
             try:
                 with changed(search.trial, (edit,)):
-                    here = self._beside(search, (edit,))
+                    here = _beside(search, (edit,))
+                    more = (search.most - search.work) // _STEPS
+                    here.most = min(max(here.most, more), self.left)
                     found = here.singles()
                     self.left -= here.work
                     # two more only beside the likeliest: others gain as much by accident
@@ -119,13 +121,6 @@ class _Several:
                 return self._settled(search, found)
         return []
 
-    def _beside(self, search: LineSearch, edits: Way) -> LineSearch:
-        """The search for more while these edits stand, too."""
-        here = search.beside((*search.stand, *edits))
-        here.most = min(max(here.most, (search.most - search.work) // _STEPS), self.left)
-        here.look_again()
-        return here
-
     def _settled(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others."""
         if not found:
@@ -135,9 +130,8 @@ class _Several:
             others = tuple(one for one in own if one is not edit)
             try:
                 with changed(search.trial, others):
-                    here = self._beside(search, others)
+                    here = _beside(search, others)
                     better = here.singles()[:1]
-                    self.left -= here.work
                     cost = here.likely(edit)
                     better = [one for one in better if here.likely(one.edits[-1]) < cost]
             except NoProgramError:
@@ -145,6 +139,13 @@ class _Several:
             if better:
                 return self._settled(search, better)
         return found
+
+
+def _beside(search: LineSearch, edits: Way) -> LineSearch:
+    """The search for more while these edits stand, too, with what is right by them."""
+    here = search.beside((*search.stand, *edits))
+    here.look_again()
+    return here
 
 
 def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
