@@ -37,6 +37,8 @@ _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
+_TURNS = 3
+"""Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
 """And the part for asking it at rest."""
 _DEEPEST = 2
@@ -121,10 +123,12 @@ class _Several:
                 return self._settled(search, found)
         return []
 
-    def _settled(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+    def _settled(
+        self, search: LineSearch, found: list[ProgramRepair], turns: int = _TURNS
+    ) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others."""
-        if not found:
-            return []
+        if not found or not turns:
+            return found
         own = found[0].edits[len(search.stand) :]
         for edit in own:
             others = tuple(one for one in own if one is not edit)
@@ -137,7 +141,7 @@ class _Several:
             except NoProgramError:
                 continue
             if better:
-                return self._settled(search, better)
+                return self._settled(search, better, turns - 1)
         return found
 
 
