@@ -257,7 +257,7 @@ class LineSearch:
         found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
         if len(found) < 2 or not self.evidence.known:
             return found
-        found = self._of_any_arm(found)
+        found = self.of_any_arm(found)
         least = self.likely(found[0].edits[-1])
         lines: dict[int, ProgramRepair] = {}
         for repair in found:
@@ -274,7 +274,7 @@ class LineSearch:
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 
-    def _of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+    def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """Of repairs those that hold for a larger arm too, where some do and some do not."""
         other = scaled(self.case.robot)
         edits = None if other is None else larger(self.case.robot, self.trial, self.observed)
@@ -288,7 +288,7 @@ class LineSearch:
         held: list[ProgramRepair] = []
         with changed(self.trial, edits):
             for repair in found[:_RIVALS]:
-                with changed(self.trial, repair.edits[-1:]):
+                with changed(self.trial, repair.edits[len(self.stand) :]):
                     values = self.values(self.first)
                     if values is not None and self.right(values, wanted).all():
                         held.append(repair)
