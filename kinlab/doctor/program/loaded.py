@@ -1,4 +1,4 @@
-"""The lines of a module that run when it is loaded: ``I1 = m1*l1**2/12``, ``LC = [x/2 for x in L]``.
+"""The lines of a module that run when it is loaded: ``I1 = m1*l1**2/12``, ``M = [M1, M2]``.
 
 They can be run again with an edit in them, in a space of their own, if they do nothing but compute:
 what draws, prints, reads a file or draws lots is left as it is, and so is what it sets. Numbers
@@ -209,13 +209,12 @@ def _set_by(tree: ast.AST) -> set[str]:
     found: set[str] = set()
     if isinstance(tree, ast.comprehension | ast.Lambda):
         return found
-    if isinstance(tree, ast.Name | ast.Subscript | ast.Attribute):
-        if isinstance(tree.ctx, ast.Store | ast.Del) and (root := _root(tree)) is not None:
-            found.add(root)
-    if isinstance(tree, ast.Call) and isinstance(tree.func, ast.Attribute):
-        root = _root(tree.func.value)
-        if tree.func.attr in _GROWING and root is not None:
-            found.add(root)
+    root: str | None = None
+    if isinstance(getattr(tree, "ctx", None), ast.Store | ast.Del):
+        root = _root(tree)
+    elif isinstance(tree, ast.Call) and isinstance(tree.func, ast.Attribute):
+        root = _root(tree.func.value) if tree.func.attr in _GROWING else None
+    found |= {root} if root is not None else set()
     return found.union(*map(_set_by, ast.iter_child_nodes(tree)))
 
 

@@ -7,22 +7,36 @@ import copy
 import functools
 import inspect
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import CodeType, FunctionType, ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.program.definitions import (
+    FIELDS,
+    META,
+    Body,
+    bounded,
+    class_like,
+    names_by_class,
+    with_defaults,
+)
+from kinlab.doctor.program.definitions import (
+    NoProgramError as NoProgramError,
+)
+from kinlab.doctor.program.definitions import (
+    is_data as is_data,
+)
+from kinlab.doctor.program.definitions import (
+    made as made,
+)
 from kinlab.doctor.program.kept import Contents
-from kinlab.doctor.program.read import OwnFunction, OwnProgram, closed, functions_in, implied, written
-
-
-class NoProgramError(Exception):
-    """What an edit makes of a program is none."""
-
+from kinlab.doctor.program.plain import closed, functions_in, written
+from kinlab.doctor.program.read import OwnProgram, implied
 
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
@@ -80,7 +94,7 @@ class Trial:
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in held)))
         self._copies: dict[int, Any] = {}
         self._at = {id(part.function): k for k, part in enumerate(program.parts) if not part.sets}
-        self.classes = {one: _copied(one) for one in owners if written(one, program.modules)}
+        self.classes = {one: class_like(one) for one in owners if written(one, program.modules)}
         for name in held:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
@@ -89,14 +103,14 @@ class Trial:
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
-        self.trees = [_bounded(part.tree, part) for part in program.parts]
+        self.trees = [bounded(part.tree, part) for part in program.parts]
         self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
-        self._bodies = _bodies(self.trees[k] for k in self._loads)
+        self._bodies = names_by_class(self.trees[k] for k in self._loads)
         for label in self._bodies:
-            self.space[_META + label] = _Body(self.space[label])
-        self._fields = [one for one in self.classes.values() if _FIELDS in vars(one)]
+            self.space[META + label] = Body(self.space[label])
+        self._fields = [one for one in self.classes.values() if FIELDS in vars(one)]
         self._stale = False
         self.above = _callers(program)
         self._touched: set[int] = set()
@@ -191,7 +205,7 @@ class Trial:
             if name not in self._bodies:
                 self.space.pop(name, None)
         for one in self._fields:
-            _with_defaults(one)
+            with_defaults(one)
         for k in self._loads:
             self._placed[k]()
 
@@ -200,7 +214,7 @@ class Trial:
         """Puts back afterwards what the lines of the module set."""
         before = [(name, self.space[name]) for name in self.sets if name in self.space]
         owned = [(self.space[label], vars(self.space[label]).copy()) for label in self._bodies]
-        inits = [(one, one.__init__) for one in self._fields]
+        inits = [(one, vars(one)["__init__"]) for one in self._fields]
         stale = self._stale
         try:
             yield
@@ -210,7 +224,7 @@ class Trial:
                 for name in self._bodies[owner.__name__]:
                     setattr(owner, name, held[name])
             for one, init in inits:
-                one.__init__ = init
+                setattr(one, "__init__", init)  # noqa: B010
             self._stale = stale
 
     @contextmanager
@@ -236,7 +250,8 @@ class Trial:
         loaded = self.as_loaded()
         loaded.__enter__()
         try:
-            self._stale |= not reached.isdisjoint(self._loads) or (-1 in parts and self._fields != [])
+            again = not reached.isdisjoint(self._loads) or (-1 in parts and bool(self._fields))
+            self._stale = self._stale or again
             for change in changes:
                 if compiled is None:
                     _located(change.new)
@@ -288,11 +303,6 @@ def _numbers_only(value: Any) -> bool:
     return all(isinstance(one, int | float) for one in inner)
 
 
-def is_data(value: Any) -> bool:
-    """Whether numbers are kept in it by keys or indices."""
-    return isinstance(value, list | dict | np.ndarray)
-
-
 @contextmanager
 def quietly() -> Iterator[None]:
     """What edited programs warn of is nobody's concern."""
@@ -313,41 +323,6 @@ def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
 
 _QUICK = ModuleType("numpy")
 _QUICK.__dict__.update(np.__dict__, cross=_cross)
-
-
-def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
-    """A function of a definition, with the defaults that the user's own has."""
-    module = ast.Module(tree.body if part.sets else [tree], [])
-    try:
-        code = compile(module, "<formula>", "exec")
-    except (SyntaxError, ValueError, TypeError) as problem:
-        raise NoProgramError(str(problem)) from problem
-    if part.sets:
-        return FunctionType(code, space)
-    defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
-    if not tree.args.defaults and not any(tree.args.kw_defaults):
-        own = next(one for one in code.co_consts if isinstance(one, CodeType))
-        function = FunctionType(own, space, part.name, defaults)
-        function.__kwdefaults__ = keywords
-        return function
-    defined: dict[str, Any] = {}
-    try:
-        exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
-    except Exception as problem:
-        raise NoProgramError(str(problem)) from problem
-    function = defined[tree.name]
-    function.__defaults__ = _filled(function.__defaults__, defaults)
-    named = function.__kwdefaults__ or {}
-    function.__kwdefaults__ = keywords and {k: _or(named.get(k, ...), keywords[k]) for k in keywords}
-    return function
-
-
-def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
-    return tuple(map(_or, new, own)) if new and own else own
-
-
-def _or(new: Any, own: Any) -> Any:
-    return own if new is ... else new
 
 
 def _callers(program: OwnProgram) -> dict[int, set[int]]:
@@ -378,16 +353,6 @@ def named_in(tree: ast.AST) -> set[str]:
 
 def _class_of(value: Any) -> type:
     return value if isinstance(value, type) else type(value)
-
-
-def _copied(owner: type) -> type:
-    """A class like another, whose methods can be changed."""
-    own = {
-        name: copy.deepcopy(value) if is_data(value) and name[:2] != "__" else value
-        for name, value in vars(owner).items()
-        if name not in ("__dict__", "__weakref__")
-    }
-    return type(owner.__name__, owner.__bases__, own)
 
 
 def _remembering(function: FunctionType) -> Any:
@@ -437,43 +402,6 @@ def _key(value: Any) -> Any:
     raise TypeError(type(value).__name__)
 
 
-_META = "_class_"
-_FIELDS = "__dataclass_fields__"
-
-
-class _Body:
-    """In place of the class of a class: what its lines set is given to the class that is there."""
-
-    def __init__(self, owner: type) -> None:
-        self.owner = owner
-
-    def __prepare__(self, _name: str, _bases: Any) -> dict[str, Any]:
-        return {**vars(self.owner)}
-
-    def __call__(self, _name: str, _bases: Any, space: dict[str, Any]) -> type:
-        for name, value in space.items():
-            if name[:2] != "__" and value is not vars(self.owner).get(name):
-                setattr(self.owner, name, value)
-        return self.owner
-
-
-def _bodies(trees: Iterable[ast.AST]) -> dict[str, set[str]]:
-    """The names that the lines of classes set, by the classes' names."""
-    found = [node for tree in trees for node in nodes(tree) if isinstance(node, ast.ClassDef)]
-    return {node.name: {*names(ast.Module(node.body, []), ast.Store)} for node in found}
-
-
-def _with_defaults(owner: Any) -> None:
-    """Gives the method that makes objects of a dataclass the defaults that stand in the class."""
-    init = owner.__init__
-    given = [name for name in getattr(owner, _FIELDS) if name in vars(owner)]
-    if not isinstance(init, FunctionType) or len(init.__defaults__ or ()) != len(given):
-        return
-    values = tuple(vars(owner)[name] for name in given)
-    code, space, closure = init.__code__, init.__globals__, init.__closure__
-    owner.__init__ = FunctionType(code, space, init.__name__, values, closure)
-
-
 def _alike(one: Any, other: Any, depth: int = 6) -> bool:
     """Whether what a line gives anew is what is there; of functions nothing is asked."""
     if depth == 0 or callable(one):
@@ -496,58 +424,6 @@ def _alike(one: Any, other: Any, depth: int = 6) -> bool:
     if not isinstance(other, dict) or one.keys() != other.keys():
         return False
     return all(_alike(value, other[key], depth - 1) for key, value in one.items())
-
-
-def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
-    """Defaults that are numbers as they are, ``...`` for others; none where there are only others."""
-    if len(nodes_) != len(values):
-        return []
-    told = [_literal(node) for node in nodes_]
-    same = [x is not None and x == v and type(x) is type(v) for x, v in zip(told, values, strict=True)]
-    pairs = zip(nodes_, same, strict=True)
-    return [n if own or n is None else ast.Constant(...) for n, own in pairs] if any(same) else []
-
-
-def _literal(node: ast.AST | None) -> Any:
-    """A number, or a list or tuple of numbers, as it is written."""
-    try:
-        value = None if node is None else ast.literal_eval(node)  # type: ignore[arg-type]
-    except (ValueError, TypeError):
-        return None
-    flat = value if isinstance(value, list | tuple) else [value]
-    plain = all(isinstance(one, int | float) and not isinstance(one, bool) for one in flat)
-    return value if plain else None
-
-
-def _bounded(tree: ast.FunctionDef, part: OwnFunction) -> ast.FunctionDef:
-    """A copy that prints nothing and whose loops end."""
-    own = copied(tree)
-    for node in nodes(own) if part.sets else ():
-        if isinstance(node, ast.ClassDef):
-            node.keywords = [ast.keyword("metaclass", ast.Name(_META + node.name, ast.Load()))]
-    own.returns = None
-    if not part.sets:
-        plain, named = part.function.__defaults__ or (), part.function.__kwdefaults__ or {}
-        only = [named.get(one.arg) for one in own.args.kwonlyargs]
-        own.args.defaults = _written(own.args.defaults, plain)
-        own.args.kw_defaults = _written(own.args.kw_defaults, only) or [None] * len(only)
-    for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
-        name.annotation = None
-    _Quiet().visit(own)
-    return ast.fix_missing_locations(own)
-
-
-class _Quiet(ast.NodeTransformer):
-    def visit_Expr(self, node: ast.Expr) -> ast.stmt:
-        called = node.value.func if isinstance(node.value, ast.Call) else None
-        silent = isinstance(called, ast.Name) and called.id in ("print", "display")
-        return ast.copy_location(ast.Pass(), node) if silent else node
-
-    def visit_While(self, node: ast.While) -> ast.While:
-        self.generic_visit(node)
-        turn = ast.Call(ast.Name("_turn", ast.Load()), [], [])
-        node.test = ast.BoolOp(ast.And(), [turn, node.test])
-        return node
 
 
 def _located(new: Any) -> None:
