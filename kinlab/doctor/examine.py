@@ -179,13 +179,17 @@ def _explained(
         if program is not None and not edited:
             limit = _PLAIN if program.written_out else _FETCHED
             if all(cause.cost > limit for cause in exact or rough):
+                noise = None if exact or rough else verdicts.to_digits(case, engine)
+                if noise is not None:
+                    return [], (), noise, None
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
             plain = [cause for cause in read_so if cause.cost <= _FETCHED]
             return meant(edited, plain), (), None, None
         causes = _outranked(causes, exact)
-        if not written and off and (not causes or len(off) <= RIVALS):
+        by_values = program is None or program.written_out
+        if not written and by_values and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
             causes += found
     # one number of the robot that is another may look like a slip in every term it stands in
@@ -203,7 +207,9 @@ def _explained(
         found_ = one_for_each_kind(few, ways, split) or several_taken_otherwise(few, ways, split)
         causes = _exactly([_as_steps(found) for found in found_], worst)
         if not causes:
-            causes = _exactly([*in_pairs(few, tried)], worst)
+            # what stands in one place of a program was looked for there
+            among = tried if program is None else [r for r in tried if not r.place]
+            causes = _exactly([*in_pairs(few, among)], worst)
     if not causes and signs:
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):

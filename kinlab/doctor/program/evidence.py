@@ -171,13 +171,13 @@ class Grounds:
         for k in range(passes):
             values = [seen.values[k + passes * j] for j in range(count)]
             if not all(np.all((x == 0) | (np.abs(x) == 1)) for x in values):
-                sense = self._thing(values)
+                sense = self.thing(values)
                 if sense is None:
                     return None
                 found.append(sense)
         return found or None
 
-    def _thing(self, values: list[Array]) -> Sense | None:
+    def thing(self, values: list[Array]) -> Sense | None:
         """A thing of the arm's that a value is at all the states: the first of several."""
         found = self._row(values)
         if found is None and self.known[0].plane and values[0].shape in ((), (2,)):

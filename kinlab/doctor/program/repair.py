@@ -205,6 +205,11 @@ class LineSearch:
         other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // _SHARE
         return other
 
+    def look_again(self) -> None:
+        """Watches the program as it stands now: what is right in it may be more than before."""
+        self.observed = Observed(self.trial, self.states)
+        self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+
     def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""
         found: list[ProgramRepair] = []

@@ -8,5 +8,6 @@ module            what it holds
 ``repairs``       Two or three edits that together make a program right
 ``rest``          A wrong program asked where parts of its answer are silent: at rest, with one
                   motion alone
+``witnesses``     What statements give while edits are tried: which of them are a textbook's
 ================  =================================================================================
 """

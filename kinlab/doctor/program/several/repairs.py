@@ -6,6 +6,9 @@ first that explain most; then what is left is looked for beside an edit that mak
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 
 from kinlab.doctor.glossary.meaning import meaning_of
@@ -13,6 +16,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
+from kinlab.doctor.program.several.witnesses import Witnesses
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 _VERIFIED = 60
@@ -25,10 +29,16 @@ _RIVALS = 6
 """Repairs of which it is looked what they leave right."""
 _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
+_TIED = 0.08
+"""Of these, costs that are one."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
+_WATCHING = 5
+"""Of the work for single edits, the part for watching statements."""
+_RESTING = 4
+"""And the part for asking it at rest."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
@@ -42,47 +52,101 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return _found(search)
+        return _Several(search.most).found(search)
 
 
-def _found(search: LineSearch) -> list[ProgramRepair]:
-    known = effects_of(search, search.tried)
-    if known is None or not known.alike:
-        return []
-    pose = search.wanted.shape[1:] == _POSE
-    tried = _Tried(search)
-    found = tried.likeliest(known, known.adding_up(2))
-    if not found and pose:
-        found = tried.likeliest(known, known.in_a_row(2, _POSE))
-    if found:
-        return found
-    wider = None if search.stand else AtRest(search).effects(known, search.most // 2)
-    joined = known if wider is None else known.beside(wider)
-    found = tried.likeliest(joined, joined.pairs())
-    found = found or _one_after_another(search, joined)
-    if not found and not search.stand:
-        found = tried.likeliest(known, known.adding_up(3))
+class _Several:
+    """A search that ends when its work is done.
+
+    Args:
+        left: operations that may still be done beside edits that stand.
+    """
+
+    def __init__(self, left: int) -> None:
+        self.left = left
+
+    def found(self, search: LineSearch) -> list[ProgramRepair]:
+        """More than one edit, beside those that stand, that make the program right."""
+        known = effects_of(search, search.tried)
+        if known is None or not known.alike:
+            return []
+        pose = search.wanted.shape[1:] == _POSE
+        tried = _Tried(search)
+        found = tried.likeliest(known, known.adding_up(2))
         if not found and pose:
-            found = tried.likeliest(known, known.in_a_row(3, _POSE))
-        found = found or tried.likeliest(joined, joined.triples())
-    return found
-
-
-def _one_after_another(search: LineSearch, known: Effects) -> list[ProgramRepair]:
-    """Edits that make numbers right and spoil none, and then what is left."""
-    for k in known.gaining[:_STEPS]:
-        edit = known.alike[k][0]
-        try:
-            with changed(search.trial, (edit,)):
-                here = search.beside((*search.stand, edit))
-                found = here.singles()
-                if not found and len(here.stand) < _DEEPEST:
-                    found = _found(here)
-        except NoProgramError:
-            continue
+            found = tried.likeliest(known, known.in_a_row(2, _POSE))
+        if found:
+            return self._settled(search, found)
+        witnesses = Witnesses(search)
+        steps = witnesses.steps(known, search.most // _WATCHING)
+        self.left -= witnesses.work
+        found = self._after(search, [step.edit for step in steps])
         if found:
             return found
-    return []
+        rest = AtRest(search)
+        wider = None if search.stand else rest.effects(known, search.most // _RESTING)
+        self.left -= rest.work
+        joined = known if wider is None else known.beside(wider)
+        found = self._settled(search, tried.likeliest(joined, joined.pairs()))
+        found = found or self._after(search, [joined.alike[k][0] for k in joined.gaining])
+        if not found and not search.stand:
+            found = tried.likeliest(known, known.adding_up(3))
+            if not found and pose:
+                found = tried.likeliest(known, known.in_a_row(3, _POSE))
+            found = found or tried.likeliest(joined, joined.triples())
+        return found
+
+    def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
+        """What is left once an edit stands: of several the first beside which anything does."""
+        apart = {_place(edit): edit for edit in reversed(firsts)}
+        for turn, edit in enumerate([*apart.values()][::-1][:_STEPS]):
+            if self.left <= 0:
+                break
+            try:
+                with changed(search.trial, (edit,)):
+                    here = self._beside(search, (edit,))
+                    found = here.singles()
+                    self.left -= here.work
+                    # two more only beside the likeliest: others gain as much by accident
+                    if not found and not turn and len(here.stand) < _DEEPEST:
+                        found = self.found(here)
+            except NoProgramError:
+                continue
+            if found:
+                return self._settled(search, found)
+        return []
+
+    def _beside(self, search: LineSearch, edits: Way) -> LineSearch:
+        """The search for more while these edits stand, too."""
+        here = search.beside((*search.stand, *edits))
+        here.most = min(max(here.most, (search.most - search.work) // _STEPS), self.left)
+        here.look_again()
+        return here
+
+    def _settled(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """The first repair with each of its edits the likeliest beside the others."""
+        if not found:
+            return []
+        own = found[0].edits[len(search.stand) :]
+        for edit in own:
+            others = tuple(one for one in own if one is not edit)
+            try:
+                with changed(search.trial, others):
+                    here = self._beside(search, others)
+                    better = here.singles()[:1]
+                    self.left -= here.work
+                    cost = here.likely(edit)
+                    better = [one for one in better if here.likely(one.edits[-1]) < cost]
+            except NoProgramError:
+                continue
+            if better:
+                return self._settled(search, better)
+        return found
+
+
+def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
+    """Where an edit is: of several in one place the likeliest is enough to go on from."""
+    return edit.part, getattr(edit.node, "lineno", edit.node), edit.place
 
 
 class _Tried:
@@ -97,7 +161,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most = self.search.most // 4
+        most = self.search.most // 6
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
@@ -146,6 +210,7 @@ class _Tried:
         costs = {way: sum(map(search.likely, way)) for way in ways}
         ranked = sorted(costs, key=lambda way: costs[way])
         near = [way for way in ranked if costs[way] <= costs[ranked[0]] + _ALIKE][:_RIVALS]
+        rights = dict.fromkeys(near, 0)
         if len(near) > 1 and search.evidence.known:
             rights = {way: search.left_right(way) + sum(map(self._own, way)) for way in near}
             near.sort(key=lambda way: (-rights[way], costs[way]))
@@ -155,7 +220,15 @@ class _Tried:
             found += [] if repair is None else [repair]
             if len(found) == _NAMED:
                 break
+        own = [way for way in near if any(repair.edits[-len(way) :] == way for repair in found)]
+        if len(own) > 1 and rights[own[0]] == rights[own[1]] and self._tied(own[0], own[1], costs):
+            found[0] = replace(found[0], rivals=(found[1],))
         return found
+
+    def _tied(self, one: Way, other: Way, costs: dict[Way, float]) -> bool:
+        """Whether nothing tells which of two repairs of different places it is."""
+        apart = {_place(edit) for edit in one} != {_place(edit) for edit in other}
+        return apart and abs(costs[one] - costs[other]) <= _TIED
 
     def _own(self, edit: ProgramEdit) -> bool:
         """Whether a number that is nothing of the arm's becomes one of its own."""
