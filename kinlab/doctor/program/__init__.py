@@ -3,22 +3,20 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
-``definitions``   Definitions as they are run in a trial, and classes whose methods can be changed
 ``digits``        Whether a program is right to the digits that its numbers are written with
 ``elsewhere``     The lines of a function that lives in another process
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``kept``          What a program's data hold, so that what an edited run writes into them is put
                   back
-``loaded``        The lines of a module that run when it is loaded
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
 ``observed``      What every expression of a program was when it ran: its values, their shapes
 ``places``        The places of a program, and what is put there instead
-``plain``         Whether a program is plain arithmetic, and may be run with edits in it
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
 ``repair``        The edits that make a program right
 ``trial``         A program run with edits in it
 ``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
+``own/``          What it is made of beside its functions, and what of it may be run again
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``several/``      Two or three edits that together make a program right

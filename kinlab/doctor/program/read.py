@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
-from kinlab.doctor.program.loaded import felt, of_module, setting
-from kinlab.doctor.program.plain import (
+from kinlab.doctor.program.own.loaded import felt, of_module, setting
+from kinlab.doctor.program.own.plain import (
     CACHE,
     closed,
     functions_in,

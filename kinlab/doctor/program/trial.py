@@ -10,33 +10,29 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import FunctionType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.program.definitions import (
+from kinlab.doctor.program.kept import Contents
+from kinlab.doctor.program.own.definitions import (
     FIELDS,
     META,
-    Body,
+    ClassBody,
     bounded,
     class_like,
     names_by_class,
     with_defaults,
 )
-from kinlab.doctor.program.definitions import (
-    NoProgramError as NoProgramError,
-)
-from kinlab.doctor.program.definitions import (
-    is_data as is_data,
-)
-from kinlab.doctor.program.definitions import (
-    made as made,
-)
-from kinlab.doctor.program.kept import Contents
-from kinlab.doctor.program.plain import closed, functions_in, written
-from kinlab.doctor.program.read import OwnProgram, implied
+from kinlab.doctor.program.own.plain import closed, functions_in, written
+from kinlab.doctor.program.read import OwnFunction, OwnProgram, implied
+
+
+class NoProgramError(Exception):
+    """What an edit makes of a program is none."""
+
 
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
@@ -103,13 +99,15 @@ class Trial:
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
-        self.trees = [bounded(part.tree, part) for part in program.parts]
+        self.trees = [
+            bounded(part.tree, None if part.sets else part.function) for part in program.parts
+        ]
         self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
         for label in self._bodies:
-            self.space[META + label] = Body(self.space[label])
+            self.space[META + label] = ClassBody(self.space[label])
         self._fields = [one for one in self.classes.values() if FIELDS in vars(one)]
         self._stale = False
         self.above = _callers(program)
@@ -303,6 +301,11 @@ def _numbers_only(value: Any) -> bool:
     return all(isinstance(one, int | float) for one in inner)
 
 
+def is_data(value: Any) -> bool:
+    """Whether numbers are kept in it by keys or indices."""
+    return isinstance(value, list | dict | np.ndarray)
+
+
 @contextmanager
 def quietly() -> Iterator[None]:
     """What edited programs warn of is nobody's concern."""
@@ -323,6 +326,44 @@ def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
 
 _QUICK = ModuleType("numpy")
 _QUICK.__dict__.update(np.__dict__, cross=_cross)
+
+
+def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
+    """A function of a definition, with the defaults that the user's own has."""
+    module = ast.Module(tree.body if part.sets else [tree], [])
+    try:
+        code = compile(module, "<formula>", "exec")
+    except (SyntaxError, ValueError, TypeError) as problem:
+        raise NoProgramError(str(problem)) from problem
+    if part.sets:
+        return FunctionType(code, space)
+    defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
+    if not tree.args.defaults and not any(tree.args.kw_defaults):
+        own = next(one for one in code.co_consts if isinstance(one, CodeType))
+        function = FunctionType(own, space, part.name, defaults)
+        function.__kwdefaults__ = keywords
+        return function
+    defined: dict[str, Any] = {}
+    try:
+        exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
+    except Exception as problem:
+        raise NoProgramError(str(problem)) from problem
+    function = defined[tree.name]
+    assert isinstance(function, FunctionType)
+    function.__defaults__ = _filled(function.__defaults__, defaults)
+    named, old = function.__kwdefaults__ or {}, keywords or {}
+    function.__kwdefaults__ = {
+        name: _or(named.get(name, ...), x) for name, x in old.items()
+    } or None
+    return function
+
+
+def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
+    return tuple(map(_or, new, own)) if new and own else own
+
+
+def _or(new: Any, own: Any) -> Any:
+    return own if new is ... else new
 
 
 def _callers(program: OwnProgram) -> dict[int, set[int]]:

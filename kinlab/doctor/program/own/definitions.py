@@ -5,22 +5,12 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Iterable, Sequence
-from types import CodeType, FunctionType
+from types import FunctionType
 from typing import Any
 
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.read import OwnFunction
-
-
-class NoProgramError(Exception):
-    """What an edit makes of a program is none."""
-
-
-def is_data(value: Any) -> bool:
-    """Whether numbers are kept in it by keys or indices."""
-    return isinstance(value, list | dict | np.ndarray)
 
 
 def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
@@ -44,15 +34,20 @@ def _literal(node: ast.expr | None) -> Any:
     return value if plain else None
 
 
-def bounded(tree: ast.FunctionDef, part: OwnFunction) -> ast.FunctionDef:
-    """A copy that prints nothing and whose loops end."""
+def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.FunctionDef:
+    """A copy that prints nothing and whose loops end.
+
+    Args:
+        tree: a definition.
+        function: whose; None of the lines of a module.
+    """
     own = copied(tree)
-    for node in nodes(own) if part.sets else ():
+    for node in nodes(own) if function is None else ():
         if isinstance(node, ast.ClassDef):
             node.keywords = [ast.keyword("metaclass", ast.Name(META + node.name, ast.Load()))]
     own.returns = None
-    if not part.sets:
-        plain, named = part.function.__defaults__ or (), part.function.__kwdefaults__ or {}
+    if function is not None:
+        plain, named = function.__defaults__ or (), function.__kwdefaults__ or {}
         only = [named.get(one.arg) for one in own.args.kwonlyargs]
         own.args.defaults = _written(own.args.defaults, plain)
         own.args.kw_defaults = _written(own.args.kw_defaults, only) or [None] * len(only)
@@ -77,11 +72,12 @@ class _Quiet(ast.NodeTransformer):
 
 def class_like(owner: type) -> type:
     """A class like another, whose methods can be changed."""
-    own = {
-        name: copy.deepcopy(value) if is_data(value) and name[:2] != "__" else value
-        for name, value in vars(owner).items()
-        if name not in ("__dict__", "__weakref__")
-    }
+    own: dict[str, Any] = {}
+    for name, value in vars(owner).items():
+        data = isinstance(value, list | dict | np.ndarray) and name[:2] != "__"
+        own[name] = copy.deepcopy(value) if data else value
+    own.pop("__dict__", None)
+    own.pop("__weakref__", None)
     return type(owner.__name__, owner.__bases__, own)
 
 
@@ -91,7 +87,7 @@ FIELDS = "__dataclass_fields__"
 """In a class that is a dataclass."""
 
 
-class Body:
+class ClassBody:
     """In place of the class of a class: what its lines set is given to the class that is there."""
 
     def __init__(self, owner: type) -> None:
@@ -124,41 +120,3 @@ def with_defaults(owner: Any) -> None:
     made = FunctionType(code, space, init.__name__, values, closure)
     made.__kwdefaults__ = init.__kwdefaults__
     owner.__init__ = made
-
-
-def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
-    """A function of a definition, with the defaults that the user's own has."""
-    module = ast.Module(tree.body if part.sets else [tree], [])
-    try:
-        code = compile(module, "<formula>", "exec")
-    except (SyntaxError, ValueError, TypeError) as problem:
-        raise NoProgramError(str(problem)) from problem
-    if part.sets:
-        return FunctionType(code, space)
-    defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
-    if not tree.args.defaults and not any(tree.args.kw_defaults):
-        own = next(one for one in code.co_consts if isinstance(one, CodeType))
-        function = FunctionType(own, space, part.name, defaults)
-        function.__kwdefaults__ = keywords
-        return function
-    defined: dict[str, Any] = {}
-    try:
-        exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
-    except Exception as problem:
-        raise NoProgramError(str(problem)) from problem
-    function = defined[tree.name]
-    assert isinstance(function, FunctionType)
-    function.__defaults__ = _filled(function.__defaults__, defaults)
-    named, old = function.__kwdefaults__ or {}, keywords or {}
-    function.__kwdefaults__ = {
-        name: _or(named.get(name, ...), x) for name, x in old.items()
-    } or None
-    return function
-
-
-def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
-    return tuple(map(_or, new, own)) if new and own else own
-
-
-def _or(new: Any, own: Any) -> Any:
-    return own if new is ... else new
