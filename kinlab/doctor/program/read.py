@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
-from kinlab.doctor.program.own.loaded import felt, of_module, setting
+from kinlab.doctor.program.own.loaded import drawing, felt, of_module, setting
 from kinlab.doctor.program.own.plain import (
     CACHE,
     closed,
@@ -26,12 +26,13 @@ from kinlab.doctor.program.own.plain import (
     owners_in,
     remembers,
     used_in,
+    written,
 )
 
 _MOST = 40
 """Functions of one program that are read."""
-_LOADED = "<module>"
-"""What Python calls the lines outside all functions."""
+_LOADED = "module"
+"""What the lines outside all functions are called."""
 _GENERATED = "__create_fn__"
 """In which a dataclass makes its methods."""
 
@@ -83,6 +84,7 @@ class OwnProgram:
         bound: what is given to it before the state: the object of a method.
         space: what every name outside the functions stands for.
         data: names of numbers, and of lists, tables and arrays of numbers, that the parts use.
+        held: these names, and those of other lists and dictionaries that the parts use.
         modules: those whose functions and classes are the program's own.
         through: for names of what holds functions (a list, a partial), the functions' names.
         plain: the same program without what runs before the function is asked, if that is read:
@@ -94,6 +96,7 @@ class OwnProgram:
     bound: tuple[Any, ...]
     space: dict[str, Any]
     data: tuple[str, ...]
+    held: frozenset[str]
     modules: frozenset[str | None]
     through: dict[str, set[str]]
     plain: OwnProgram | None = None
@@ -150,9 +153,34 @@ def _with_lines(asked: _Reading) -> OwnProgram | None:
     )
     whole = None if lines is None else _Reader(replace(asked, lines=lines)).program()
     known = {part.function for part in plain.parts}
-    if whole is None or any(felt(x.tree) for x in whole.parts if x.function not in known):
+    if whole is None or any(_is_felt(x) for x in whole.parts if x.function not in known):
         return plain
-    return replace(whole, plain=plain)
+    return replace(whole, plain=plain) if _all_read(whole) else plain
+
+
+def _is_felt(part: OwnFunction) -> bool:
+    space, used = part.function.__globals__, used_in(part.function.__code__)
+    return felt(part.tree) or any(drawing(space.get(name)) for name in used)
+
+
+def _all_read(program: OwnProgram) -> bool:
+    """Whether all of the program's own that makes objects is read: else what is the user's runs."""
+    read = {part.function for part in program.parts}
+    held = (*program.bound, *(program.space[name] for name in program.data))
+    own = {one for value in held for one in owners_in(value, program.modules)}
+    for owner in own:
+        for base in owner.__mro__:
+            if written(base, program.modules) and base not in own:
+                return False
+        for name in ("__new__", "__init__", "__post_init__"):
+            kept = vars(owner).get(name)
+            method = getattr(kept, "__func__", kept)
+            written_ = (
+                isinstance(method, FunctionType) and _GENERATED not in method.__code__.co_qualname
+            )
+            if written_ and method not in read:
+                return False
+    return True
 
 
 def _maker(function: FunctionType) -> tuple[FunctionType, dict[str, Any]] | None:
@@ -241,12 +269,19 @@ class _Reader:
         parts = [*self.parts.values()]
         if self.lines is not None:
             parts.append(OwnFunction(_LOADED, self.lines, self.function, sets=sets))
-        held = [label for label in self.data if label not in sets or _is_class(self.space[label])]
+        data = [label for label in self.data if label not in sets or _is_class(self.space[label])]
+        held = {*self.used, *self.asked.given} & {
+            label for label, value in self.space.items() if isinstance(value, list | dict | set)
+        }
+        held |= {*data, *sets}
         space = {
-            label: value if label in (*held, *sets) else _out_of_reach(value)
+            label: value if label in held else _out_of_reach(value)
             for label, value in self.space.items()
         }
-        return OwnProgram(tuple(parts), bound, space, tuple(held), self.modules, self.through)
+        copied = frozenset(held)
+        return OwnProgram(
+            tuple(parts), bound, space, tuple(data), copied, self.modules, self.through
+        )
 
     @staticmethod
     def _may_stay(name: str, owner: type | None) -> bool:

@@ -6,11 +6,12 @@ import ast
 import copy
 import functools
 import inspect
+import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import CodeType, FunctionType, ModuleType
+from types import CodeType, FrameType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,8 @@ _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
+_LINES = 20_000
+"""Lines that may run before the function is asked, if they are to be run again for each edit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,15 +80,22 @@ class Trial:
     """
 
     def __init__(self, program: OwnProgram) -> None:
+        while program.plain is not None:
+            try:
+                self._prepare(program)
+                same = self._loads_the_same()
+            except Exception:  # noqa: BLE001  what does not run alone is left as it is
+                same = False
+            if same:
+                return
+            program = program.plain
         self._prepare(program)
-        while self.program.plain is not None and not self._loads_the_same():
-            self._prepare(self.program.plain)
 
     def _prepare(self, program: OwnProgram) -> None:
         self.program = program
         self.space = dict(program.space)
         self.sets = [name for part in program.parts for name in sorted(part.sets)]
-        held = [*program.data, *(name for name in self.sets if name not in program.data)]
+        held = [*program.data, *sorted(program.held.difference(program.data))]
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in held)))
         self._copies: dict[int, Any] = {}
@@ -120,13 +130,10 @@ class Trial:
 
     def _loads_the_same(self) -> bool:
         """Whether what runs before the function is asked, run again, gives what is there."""
-        try:
-            with quietly():
-                self.load()
-                entry = self._entry()
-                held = closed(entry) if isinstance(entry, FunctionType) else {}
-        except Exception:  # noqa: BLE001  then it is left as it is
-            return False
+        with quietly(), _at_most(_LINES):
+            self.load()
+            entry = self._entry()
+        held = closed(entry) if isinstance(entry, FunctionType) else {}
         was, making = self.program.space, self.program.making
         same = all(_alike(self.space.get(name), was[name]) for name in self.sets)
         before = {} if making is None else making.closed
@@ -154,7 +161,10 @@ class Trial:
         if type(value) in (list, tuple, dict) and not _numbers_only(value):
             return self._own_list(value)
         if type(value) not in self.classes:
-            return copy.deepcopy(value)
+            try:
+                return copy.deepcopy(value)
+            except TypeError:  # a module, an iterator: nothing that a program writes into
+                return value
         new: Any = object.__new__(self.classes[type(value)])
         self._copies[id(value)] = new
         new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
@@ -304,6 +314,25 @@ def _numbers_only(value: Any) -> bool:
 def is_data(value: Any) -> bool:
     """Whether numbers are kept in it by keys or indices."""
     return isinstance(value, list | dict | np.ndarray)
+
+
+@contextmanager
+def _at_most(lines: int) -> Iterator[None]:
+    """Ends what runs too many lines."""
+    left = [lines]
+
+    def count(_frame: FrameType, event: str, _argument: Any) -> Any:
+        left[0] -= event == "line"
+        if left[0] < 0:
+            raise RuntimeError("too long")
+        return count
+
+    before = sys.gettrace()
+    sys.settrace(count)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
 
 
 @contextmanager
