@@ -339,7 +339,7 @@ FELT = {
         "kept",
     ),
     "a list that is given": (
-        "kept = []\ndef noted(box, x):\n    box.append(x)\n    return x\n"
+        "kept = []\ndef noted(box, x):\n    box.append(str(x))\n    return x\n"
         "shift = noted(kept, 0*lone)",
         "kept",
     ),
