@@ -126,10 +126,14 @@ class _Several:
     def _settled(
         self, search: LineSearch, found: list[ProgramRepair], turns: int = _TURNS
     ) -> list[ProgramRepair]:
-        """The first repair with each of its edits the likeliest beside the others."""
+        """The first repair with each of its edits the likeliest beside the others.
+
+        But what leaves less of the program as a textbook has it is no likelier.
+        """
         if not found or not turns:
             return found
         own = found[0].edits[len(search.stand) :]
+        right = search.left_right(own)
         for edit in own:
             others = tuple(one for one in own if one is not edit)
             try:
@@ -140,7 +144,7 @@ class _Several:
                     better = [one for one in better if here.likely(one.edits[-1]) < cost]
             except NoProgramError:
                 continue
-            if better:
+            if better and search.left_right((*others, better[0].edits[-1])) >= right:
                 return self._settled(search, better, turns - 1)
         return found
 
