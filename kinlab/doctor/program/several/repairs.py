@@ -79,18 +79,17 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
-        witnesses = Witnesses(search)
-        steps = witnesses.steps(known, search.most // _WATCHING)
-        self.left -= witnesses.work
-        found = self._after(search, [step.edit for step in steps])
+        steps = Witnesses(search).steps(known, search.most // _WATCHING)
+        firsts = _apart([step.edit for step in steps])[: _STEPS - 1]
+        found = self._after(search, firsts)
         if found:
             return found
-        rest = AtRest(search)
-        wider = None if search.stand else rest.effects(known, search.most // _RESTING)
-        self.left -= rest.work
+        wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
         joined = known if wider is None else known.beside(wider)
         found = self._settled(search, tried.likeliest(joined, joined.pairs()))
-        found = found or self._after(search, [joined.alike[k][0] for k in joined.gaining])
+        if not found:
+            gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:_STEPS]
+            found = self._after(search, [edit for edit in gaining if edit not in firsts])
         if not found and not search.stand:
             found = tried.likeliest(known, known.adding_up(3))
             if not found and pose:
@@ -101,10 +100,7 @@ class _Several:
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
         """What is left once an edit stands: of several the first beside which anything does."""
-        apart: dict[Any, ProgramEdit] = {}
-        for edit in firsts:
-            apart.setdefault(_place(edit), edit)
-        for turn, edit in enumerate([*apart.values()][:_STEPS]):
+        for turn, edit in enumerate(firsts):
             if self.left <= 0:
                 break
             try:
@@ -120,21 +116,22 @@ class _Several:
             except NoProgramError:
                 continue
             if found:
-                return self._settled(search, found)
+                return self._settled(search, found, 1)
         return []
 
     def _settled(
-        self, search: LineSearch, found: list[ProgramRepair], turns: int = _TURNS
+        self, search: LineSearch, found: list[ProgramRepair], turns: int = 0
     ) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others.
 
         But what leaves less of the program as a textbook has it is no likelier.
         """
-        if not found or not turns:
+        if not found or turns == _TURNS:
             return found
         own = found[0].edits[len(search.stand) :]
         right = search.left_right(own)
-        for edit in own:
+        # the last one was the likeliest beside the others when it was found so
+        for edit in own[:-1] if turns else own:
             others = tuple(one for one in own if one is not edit)
             try:
                 with changed(search.trial, others):
@@ -145,7 +142,7 @@ class _Several:
             except NoProgramError:
                 continue
             if better and search.left_right((*others, better[0].edits[-1])) >= right:
-                return self._settled(search, better, turns - 1)
+                return self._settled(search, better, turns + 1)
         return found
 
 
@@ -156,8 +153,16 @@ def _beside(search: LineSearch, edits: Way) -> LineSearch:
     return here
 
 
+def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:
+    """Of edits in one place the first: it is enough to go on from."""
+    apart: dict[Any, ProgramEdit] = {}
+    for edit in edits:
+        apart.setdefault(_place(edit), edit)
+    return [*apart.values()]
+
+
 def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
-    """Where an edit is: of several in one place the likeliest is enough to go on from."""
+    """Where an edit is."""
     return edit.part, getattr(edit.node, "lineno", edit.node), edit.place
 
 
