@@ -426,7 +426,9 @@ def done(code: types.CodeType) -> set[tuple[str, str]]:
             found |= {(first, repr(i.argval[0])), (second, repr(i.argval[1]))}
         elif i.opname == "RETURN_CONST":  # 3.12
             found |= {("LOAD_CONST", repr(i.argval)), ("RETURN_VALUE", "None")}
-        elif i.opname not in ("FOR_ITER", "SEND", "PUSH_NULL") and not any(w in i.opname for w in pacing):
+        elif i.opname not in ("FOR_ITER", "SEND", "PUSH_NULL") and not any(
+            w in i.opname for w in pacing
+        ):
             found.add((i.opname.replace("LOAD_METHOD", "LOAD_ATTR"), repr(i.argval)))
     return found
 

@@ -16,6 +16,7 @@ module            what it holds
 ``trial``         A program run with edits in it
 ``variants``        Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
+``own/``          What it is made of beside its functions, and what of it may be run again
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``several/``      Two or three edits that together make a program right

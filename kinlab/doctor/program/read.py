@@ -4,83 +4,35 @@ from __future__ import annotations
 
 import ast
 import copy
-import functools
 import inspect
-import itertools
-import os
 import sys
 import textwrap
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
+from pathlib import Path
+from types import FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
-from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.program.loaded import felt, of_module, setting
+from kinlab.doctor.program.own.loaded import drawing, felt, of_module, setting
+from kinlab.doctor.program.own.plain import (
+    CACHE,
+    closed,
+    functions_in,
+    harmless,
+    is_plain,
+    owners_in,
+    remembers,
+    used_in,
+    written,
+)
 
-_Cache = type(functools.lru_cache(len))
-_HEAP = 1 << 9
-_DEEP = 6
-"""Lists in lists, dictionaries and objects down to which data are looked at."""
 _MOST = 40
 """Functions of one program that are read."""
-_ARITHMETIC = frozenset(
-    [
-        "builtins",
-        "types",
-        "math",
-        "cmath",
-        "numpy",
-        "itertools",
-        "functools",
-        "operator",
-        "collections",
-        "fractions",
-        "dataclasses",
-        "typing",
-        "__future__",
-    ]
-)
-"""Modules that a program may use if it is to be tried with edits in it."""
-_REACHING_OUT = frozenset(
-    [
-        "open",
-        "exec",
-        "eval",
-        "compile",
-        "input",
-        "exit",
-        "quit",
-        "breakpoint",
-        "__import__",
-        "globals",
-        "locals",
-        "vars",
-        "setattr",
-        "delattr",
-        "save",
-        "savez",
-        "savetxt",
-        "savez_compressed",
-        "tofile",
-        "dump",
-        "memmap",
-        "fromfile",
-        "ctypeslib",
-    ]
-)
-"""Functions that reach beyond arithmetic."""
-_ENDLESS = ("itertools.count", "itertools.cycle", "itertools.repeat")
-"""Iterators that only a condition of the program ends."""
-_KEEPING = frozenset(
-    ["append", "extend", "insert", "pop", "remove", "clear", "update", "add", "setdefault"]
-)
-"""Methods with which a program may remember what it was asked before."""
-_LOADED = "<module>"
-"""What Python calls the lines outside all functions."""
+_LOADED = "module"
+"""What the lines outside all functions are called."""
 _GENERATED = "__create_fn__"
 """In which a dataclass makes its methods."""
 
@@ -132,6 +84,7 @@ class OwnProgram:
         bound: what is given to it before the state: the object of a method.
         space: what every name outside the functions stands for.
         data: names of numbers, and of lists, tables and arrays of numbers, that the parts use.
+        held: these names, and those of other lists and dictionaries that the parts use.
         modules: those whose functions and classes are the program's own.
         through: for names of what holds functions (a list, a partial), the functions' names.
         plain: the same program without what runs before the function is asked, if that is read:
@@ -143,6 +96,7 @@ class OwnProgram:
     bound: tuple[Any, ...]
     space: dict[str, Any]
     data: tuple[str, ...]
+    held: frozenset[str]
     modules: frozenset[str | None]
     through: dict[str, set[str]]
     plain: OwnProgram | None = None
@@ -157,7 +111,7 @@ def read(function: Callable[..., Any]) -> OwnProgram | None:
     if not isinstance(function, FunctionType) or function.__code__.co_flags & inspect.CO_GENERATOR:
         return None
     modules = _own_modules(function)
-    if not all(_harmless(one, modules) for one in bound):
+    if not all(harmless(one, modules) for one in bound):
         return None
     program = _with_lines(_Reading(function, modules, bound))
     maker = _maker(function) if program is not None and not bound else None
@@ -191,17 +145,42 @@ def _with_lines(asked: _Reading) -> OwnProgram | None:
     module = of_module(asked.function) if plain is not None else None
     if plain is None or module is None:
         return plain
-    used = {name for part in plain.parts for name in _used(part.function.__code__)}
+    used = {name for part in plain.parts for name in used_in(part.function.__code__)}
     lines = module.needed(
         used,
-        lambda value: _harmless(value, asked.modules),
-        lambda node: _plain(node, asked.function),
+        lambda value: harmless(value, asked.modules),
+        lambda node: is_plain(node, asked.function),
     )
     whole = None if lines is None else _Reader(replace(asked, lines=lines)).program()
     known = {part.function for part in plain.parts}
-    if whole is None or any(felt(x.tree) for x in whole.parts if x.function not in known):
+    if whole is None or any(_is_felt(x) for x in whole.parts if x.function not in known):
         return plain
-    return replace(whole, plain=plain)
+    return replace(whole, plain=plain) if _all_read(whole) else plain
+
+
+def _is_felt(part: OwnFunction) -> bool:
+    space, used = part.function.__globals__, used_in(part.function.__code__)
+    return felt(part.tree) or any(drawing(space.get(name)) for name in used)
+
+
+def _all_read(program: OwnProgram) -> bool:
+    """Whether all of the program's own that makes objects is read: else what is the user's runs."""
+    read = {part.function for part in program.parts}
+    held = (*program.bound, *(program.space[name] for name in program.data))
+    own = {one for value in held for one in owners_in(value, program.modules)}
+    for owner in own:
+        for base in owner.__mro__:
+            if written(base, program.modules) and base not in own:
+                return False
+        for name in ("__new__", "__init__", "__post_init__"):
+            kept = vars(owner).get(name)
+            method = getattr(kept, "__func__", kept)
+            written_ = (
+                isinstance(method, FunctionType) and _GENERATED not in method.__code__.co_qualname
+            )
+            if written_ and method not in read:
+                return False
+    return True
 
 
 def _maker(function: FunctionType) -> tuple[FunctionType, dict[str, Any]] | None:
@@ -226,18 +205,18 @@ def _maker(function: FunctionType) -> tuple[FunctionType, dict[str, Any]] | None
 def _own_modules(function: FunctionType) -> frozenset[str | None]:
     """The function's module, and those in the same folder that it uses."""
     own: set[str | None] = {function.__module__}
-    folder = os.path.dirname(function.__code__.co_filename)
-    values = function.__globals__.values() if os.path.isabs(folder) else ()
+    folder = Path(function.__code__.co_filename).parent
+    values = function.__globals__.values() if folder.is_absolute() else ()
     for value in values:
         module = value if isinstance(value, ModuleType) else sys.modules.get(_home(value) or "")
         file = getattr(module, "__file__", None) or ""
-        if os.path.dirname(file) == folder and module is not None and "." not in module.__name__:
+        if module is not None and Path(file).parent == folder and "." not in module.__name__:
             own.add(module.__name__)
     return frozenset(own)
 
 
 def _home(value: Any) -> str | None:
-    known = isinstance(value, FunctionType | type | _Cache)
+    known = isinstance(value, FunctionType | type | CACHE)
     return value.__module__ if known and isinstance(value.__module__, str) else None
 
 
@@ -268,7 +247,7 @@ class _Reader:
         if self.lines is not None:
             sets = setting(self.lines)
             code = compile(ast.Module(self.lines.body, []), "<lines>", "exec")
-            if not self._names_of(self.function, [*_used(code)]):
+            if not self._names_of(self.function, [*used_in(code)]):
                 return None
         while self.waiting:
             owner, name, one, kept = self.waiting.pop(0)
@@ -276,7 +255,7 @@ class _Reader:
                 self._wait(owner, name, one, kept)
                 continue
             tree = tree_of(one)
-            if tree is None or not _plain(tree, one) or _remembers(tree, one):
+            if tree is None or not is_plain(tree, one) or remembers(tree, one):
                 if self._may_stay(name, owner):
                     continue
                 return None
@@ -285,17 +264,24 @@ class _Reader:
             if self._may_stay(name, owner) and not self._harmless_all(one):
                 continue
             self.parts[one] = OwnFunction(name, tree, one, owner, [(owner, name)], kept)
-            if not self._names_of(one, [*_used(one.__code__)]):
+            if not self._names_of(one, [*used_in(one.__code__)]):
                 return None
         parts = [*self.parts.values()]
         if self.lines is not None:
             parts.append(OwnFunction(_LOADED, self.lines, self.function, sets=sets))
-        held = [label for label in self.data if label not in sets or _is_class(self.space[label])]
+        data = [label for label in self.data if label not in sets or _is_class(self.space[label])]
+        held = {*self.used, *self.asked.given} & {
+            label for label, value in self.space.items() if isinstance(value, list | dict | set)
+        }
+        held |= {*data, *sets}
         space = {
-            label: value if label in (*held, *sets) else _out_of_reach(value)
+            label: value if label in held else _out_of_reach(value)
             for label, value in self.space.items()
         }
-        return OwnProgram(tuple(parts), bound, space, tuple(held), self.modules, self.through)
+        copied = frozenset(held)
+        return OwnProgram(
+            tuple(parts), bound, space, tuple(data), copied, self.modules, self.through
+        )
 
     @staticmethod
     def _may_stay(name: str, owner: type | None) -> bool:
@@ -303,8 +289,8 @@ class _Reader:
         return owner is not None and implied(name) and name != "__call__"
 
     def _harmless_all(self, one: FunctionType) -> bool:
-        values = (one.__globals__.get(label) for label in _used(one.__code__))
-        return all(_harmless(value, self.modules) for value in values)
+        values = (one.__globals__.get(label) for label in used_in(one.__code__))
+        return all(harmless(value, self.modules) for value in values)
 
     def _names_of(self, one: FunctionType, used: list[str]) -> bool:
         for label, value in closed(one).items():
@@ -315,7 +301,7 @@ class _Reader:
             value = closed(one).get(label, one.__globals__.get(label))
             if label in one.__globals__ and self.space.setdefault(label, value) is not value:
                 return False
-            if isinstance(value, _Cache) and isinstance(value.__wrapped__, FunctionType):
+            if isinstance(value, CACHE) and isinstance(value.__wrapped__, FunctionType):
                 value = value.__wrapped__
             if not self._value(label, value):
                 return False
@@ -330,13 +316,13 @@ class _Reader:
 
     def _value(self, label: str, value: Any) -> bool:
         """Takes what a name stands for; False where it may not be given to edited lines."""
-        if not _harmless(value, self.modules):
+        if not harmless(value, self.modules):
             return False
         if isinstance(value, FunctionType):
             self._wait(None, label, value)
         elif _numeric(value) and label not in self.data:
             self.data.append(label)
-        found = dict.fromkeys(_owners(value, self.modules))
+        found = dict.fromkeys(owners_in(value, self.modules))
         inner = [f for f in functions_in(value) if self.space.get(f.__name__) is f]
         if inner:
             self.through[label] = {f.__name__ for f in inner}
@@ -372,7 +358,7 @@ def _unwrapped(held: Any) -> tuple[FunctionType | None, type]:
         inner = held.fget if held.fset is None else None
     elif isinstance(held, staticmethod | classmethod):
         inner = held.__func__
-    elif isinstance(held, _Cache):
+    elif isinstance(held, CACHE):
         kept, inner = FunctionType, held.__wrapped__
     return (inner, kept) if isinstance(inner, FunctionType) else (None, kept)
 
@@ -387,19 +373,6 @@ def _implied(name: str, method: FunctionType) -> bool:
 def implied(name: str) -> bool:
     """Whether a method of that name is called without it: ``__init__``."""
     return name[:2] == name[-2:] == "__"
-
-
-def functions_in(value: Any, depth: int = _DEEP) -> Iterator[FunctionType]:
-    """The functions kept in a value: in a list, in what gives some of a function's arguments."""
-    inner: list[Any] = []
-    if isinstance(value, functools.partial):
-        inner = [value.func, *value.args, *value.keywords.values()]
-    elif isinstance(value, list | tuple | dict):
-        inner = [*value.values()] if isinstance(value, dict) else [*value]
-    for one in inner[:_MOST] if depth else ():
-        if isinstance(one, FunctionType):
-            yield one
-        yield from functions_in(one, depth - 1)
 
 
 def tree_of(function: FunctionType) -> ast.FunctionDef | None:
@@ -421,146 +394,6 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
     tree = ast.increment_lineno(found[0], first - 1)
     tree.decorator_list = []
     return tree
-
-
-def _plain(tree: ast.AST, function: FunctionType) -> bool:
-    """Whether a definition asks for nothing but arithmetic."""
-    for node in nodes(tree):
-        if isinstance(node, _BEYOND):
-            return False
-        if isinstance(node, ast.Nonlocal) and not {*node.names}.isdisjoint(
-            function.__code__.co_freevars
-        ):
-            return False  # it keeps something from one call to the next
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-        if any(name.partition(".")[0] not in _ARITHMETIC for name in names):
-            return False
-        if isinstance(node, ast.Name) and node.id in _REACHING_OUT:
-            return False
-        if isinstance(node, ast.Attribute) and node.attr in _REACHING_OUT:
-            return False
-        if isinstance(node, ast.Attribute) and ast.unparse(node) in _ENDLESS:
-            return False
-    return True
-
-
-_BEYOND = (
-    ast.Global,
-    ast.Await,
-    ast.With,
-    ast.Try,
-    ast.TryStar,
-)
-"""What a program of plain arithmetic has not."""
-
-
-def _remembers(tree: ast.FunctionDef, function: FunctionType) -> bool:
-    """Whether a function keeps something from one call to the next: a list of what it was asked."""
-    known = {**function.__globals__, **closed(function)}
-    named = inspect.signature(function, follow_wrapped=False).parameters.values()
-    kept = {p.name for p in named if isinstance(p.default, list | dict | set)}
-    own = {*names(tree, ast.Store)}
-    own |= {n.arg for n in nodes(tree) if isinstance(n, ast.arg)} - kept
-    for node in nodes(tree):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
-            root = _root(node.func.value)
-            held = None if root is None or root in own else known.get(root, ())
-            if node.func.attr in _KEEPING and not isinstance(held, ModuleType | None):
-                return True
-        if isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store):
-            root = _root(node.value)
-            held = None if root is None else known.get(root)
-            if root in kept or (root not in own and isinstance(held, dict)):
-                return True
-    return False
-
-
-def _root(node: ast.AST) -> str | None:
-    """The name that an expression begins with."""
-    while isinstance(node, ast.Attribute | ast.Subscript):
-        node = node.value
-    return node.id if isinstance(node, ast.Name) else None
-
-
-def written(owner: type, modules: frozenset[str | None]) -> bool:
-    """Whether a class is the program's own."""
-    made = bool(owner.__flags__ & _HEAP)  # by a class statement
-    own = owner.__module__ in modules
-    return made and (own or (None in modules and owner.__module__ == "builtins"))  # so exec has it
-
-
-def _owners(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> Iterator[type]:
-    """The program's own classes of which objects are kept in a value: in lists, in one another."""
-    owner = value if isinstance(value, type) else type(value)
-    inner: list[Any] = []
-    if written(owner, modules):
-        yield owner
-        inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
-    elif isinstance(value, list | tuple | dict):
-        inner = [*value.values()] if isinstance(value, dict) else [*value]
-    for one in inner[:_MOST] if depth else ():
-        yield from _owners(one, modules, depth - 1)
-
-
-def _harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> bool:
-    """Whether an edited program may be given a value: what is only arithmetic cannot be hurt.
-
-    Code in C that is called with a wrong index may end the process; files, processes and whatever
-    else a program may reach are not to be tried in vain.
-    """
-    if isinstance(value, ModuleType):
-        return value.__name__.partition(".")[0] in _ARITHMETIC
-    if isinstance(value, MethodType | functools.partial):
-        inside = (
-            (value.__self__, value.__func__)
-            if isinstance(value, MethodType)
-            else (value.func, *value.args, *value.keywords.values())
-        )
-        return depth > 0 and all(_harmless(one, modules, depth - 1) for one in inside)
-    if isinstance(value, BuiltinFunctionType) and isinstance(value.__self__, ModuleType):
-        return _harmless(value.__self__, modules) and value.__name__ not in _REACHING_OUT
-    if any(value is one for one in (itertools.count, itertools.cycle, itertools.repeat)):
-        return False
-    if isinstance(value, _Cache):  # what it answers does not change with the program
-        return False
-    if isinstance(value, list | tuple | set | frozenset | dict):
-        inner = [*value.values()] if isinstance(value, dict) else [*value]
-        return depth > 0 and all(_harmless(one, modules, depth - 1) for one in inner[:_MOST])
-    if isinstance(value, BuiltinFunctionType):
-        return (value.__module__ or "").partition(".")[0] in _ARITHMETIC
-    if isinstance(value, FunctionType | type):
-        of = value.__module__
-        return of in modules or (of or "").partition(".")[0] in _ARITHMETIC
-    home = type(value).__module__ or ""
-    if written(type(value), modules):
-        held = [*getattr(value, "__dict__", {}).values()]
-        for method in vars(type(value)).values():
-            space = method.__globals__ if isinstance(method, FunctionType) else {}
-            if space and space.get("__name__") != "dataclasses":  # what a dataclass prints itself with
-                held += [space.get(name) for name in _used(method.__code__)]
-        return depth > 0 and all(_harmless(one, modules, depth - 1) for one in held)
-    return home.partition(".")[0] in _ARITHMETIC
-
-
-def closed(function: FunctionType) -> dict[str, Any]:
-    """What a closure holds."""
-    cells = function.__closure__ or ()
-    out: dict[str, Any] = {}
-    for name, cell in zip(function.__code__.co_freevars, cells, strict=True):
-        try:
-            out[name] = cell.cell_contents
-        except ValueError:  # not filled yet
-            continue
-    return out
-
-
-def _used(code: CodeType) -> Iterator[str]:
-    """Names of globals and of free variables, in the order of the code."""
-    yield from dict.fromkeys((*code.co_names, *code.co_freevars))
-    for constant in code.co_consts:
-        if isinstance(constant, CodeType):
-            yield from _used(constant)
 
 
 def _out_of_reach(value: Any) -> Any:

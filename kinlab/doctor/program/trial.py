@@ -6,18 +6,29 @@ import ast
 import copy
 import functools
 import inspect
+import sys
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import CodeType, FunctionType, ModuleType
+from types import CodeType, FrameType, FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.kept import Contents
-from kinlab.doctor.program.read import OwnFunction, OwnProgram, closed, functions_in, implied, written
+from kinlab.doctor.program.own.definitions import (
+    FIELDS,
+    META,
+    ClassBody,
+    bounded,
+    class_like,
+    names_by_class,
+    with_defaults,
+)
+from kinlab.doctor.program.own.plain import closed, functions_in, written
+from kinlab.doctor.program.read import OwnFunction, OwnProgram, implied
 
 
 class NoProgramError(Exception):
@@ -28,6 +39,8 @@ _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
+_LINES = 20_000
+"""Lines that may run before the function is asked, if they are to be run again for each edit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,20 +80,27 @@ class Trial:
     """
 
     def __init__(self, program: OwnProgram) -> None:
+        while program.plain is not None:
+            try:
+                self._prepare(program)
+                same = self._loads_the_same()
+            except Exception:  # noqa: BLE001  what does not run alone is left as it is
+                same = False
+            if same:
+                return
+            program = program.plain
         self._prepare(program)
-        while self.program.plain is not None and not self._loads_the_same():
-            self._prepare(self.program.plain)
 
     def _prepare(self, program: OwnProgram) -> None:
         self.program = program
         self.space = dict(program.space)
         self.sets = [name for part in program.parts for name in sorted(part.sets)]
-        held = [*program.data, *(name for name in self.sets if name not in program.data)]
+        held = [*program.data, *sorted(program.held.difference(program.data))]
         owners = dict.fromkeys(part.owner for part in program.parts if part.owner is not None)
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in held)))
         self._copies: dict[int, Any] = {}
         self._at = {id(part.function): k for k, part in enumerate(program.parts) if not part.sets}
-        self.classes = {one: _copied(one) for one in owners if written(one, program.modules)}
+        self.classes = {one: class_like(one) for one in owners if written(one, program.modules)}
         for name in held:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
@@ -89,14 +109,16 @@ class Trial:
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
-        self.trees = [_bounded(part.tree, part) for part in program.parts]
+        self.trees = [
+            bounded(part.tree, None if part.sets else part.function) for part in program.parts
+        ]
         self.space |= {"_turn": self._turn, "_edit": 0}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
-        self._bodies = _bodies(self.trees[k] for k in self._loads)
+        self._bodies = names_by_class(self.trees[k] for k in self._loads)
         for label in self._bodies:
-            self.space[_META + label] = _Body(self.space[label])
-        self._fields = [one for one in self.classes.values() if _FIELDS in vars(one)]
+            self.space[META + label] = ClassBody(self.space[label])
+        self._fields = [one for one in self.classes.values() if FIELDS in vars(one)]
         self._stale = False
         self.above = _callers(program)
         self._touched: set[int] = set()
@@ -108,13 +130,10 @@ class Trial:
 
     def _loads_the_same(self) -> bool:
         """Whether what runs before the function is asked, run again, gives what is there."""
-        try:
-            with quietly():
-                self.load()
-                entry = self._entry()
-                held = closed(entry) if isinstance(entry, FunctionType) else {}
-        except Exception:  # noqa: BLE001  then it is left as it is
-            return False
+        with quietly(), _at_most(_LINES):
+            self.load()
+            entry = self._entry()
+        held = closed(entry) if isinstance(entry, FunctionType) else {}
         was, making = self.program.space, self.program.making
         same = all(_alike(self.space.get(name), was[name]) for name in self.sets)
         before = {} if making is None else making.closed
@@ -142,7 +161,10 @@ class Trial:
         if type(value) in (list, tuple, dict) and not _numbers_only(value):
             return self._own_list(value)
         if type(value) not in self.classes:
-            return copy.deepcopy(value)
+            try:
+                return copy.deepcopy(value)
+            except TypeError:  # a module, an iterator: nothing that a program writes into
+                return value
         new: Any = object.__new__(self.classes[type(value)])
         self._copies[id(value)] = new
         new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
@@ -191,7 +213,7 @@ class Trial:
             if name not in self._bodies:
                 self.space.pop(name, None)
         for one in self._fields:
-            _with_defaults(one)
+            with_defaults(one)
         for k in self._loads:
             self._placed[k]()
 
@@ -200,7 +222,7 @@ class Trial:
         """Puts back afterwards what the lines of the module set."""
         before = [(name, self.space[name]) for name in self.sets if name in self.space]
         owned = [(self.space[label], vars(self.space[label]).copy()) for label in self._bodies]
-        inits = [(one, one.__init__) for one in self._fields]
+        inits = [(one, vars(one)["__init__"]) for one in self._fields]
         stale = self._stale
         try:
             yield
@@ -210,7 +232,7 @@ class Trial:
                 for name in self._bodies[owner.__name__]:
                     setattr(owner, name, held[name])
             for one, init in inits:
-                one.__init__ = init
+                setattr(one, "__init__", init)  # noqa: B010
             self._stale = stale
 
     @contextmanager
@@ -236,7 +258,8 @@ class Trial:
         loaded = self.as_loaded()
         loaded.__enter__()
         try:
-            self._stale |= not reached.isdisjoint(self._loads) or (-1 in parts and self._fields != [])
+            again = not reached.isdisjoint(self._loads) or (-1 in parts and bool(self._fields))
+            self._stale = self._stale or again
             for change in changes:
                 if compiled is None:
                     _located(change.new)
@@ -294,6 +317,25 @@ def is_data(value: Any) -> bool:
 
 
 @contextmanager
+def _at_most(lines: int) -> Iterator[None]:
+    """Ends what runs too many lines."""
+    left = [lines]
+
+    def count(_frame: FrameType, event: str, _argument: Any) -> Any:
+        left[0] -= event == "line"
+        if left[0] < 0:
+            raise RuntimeError("too long")
+        return count
+
+    before = sys.gettrace()
+    sys.settrace(count)
+    try:
+        yield
+    finally:
+        sys.settrace(before)
+
+
+@contextmanager
 def quietly() -> Iterator[None]:
     """What edited programs warn of is nobody's concern."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
@@ -336,9 +378,12 @@ def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> Fun
     except Exception as problem:
         raise NoProgramError(str(problem)) from problem
     function = defined[tree.name]
+    assert isinstance(function, FunctionType)
     function.__defaults__ = _filled(function.__defaults__, defaults)
-    named = function.__kwdefaults__ or {}
-    function.__kwdefaults__ = keywords and {k: _or(named.get(k, ...), keywords[k]) for k in keywords}
+    named, old = function.__kwdefaults__ or {}, keywords or {}
+    function.__kwdefaults__ = {
+        name: _or(named.get(name, ...), x) for name, x in old.items()
+    } or None
     return function
 
 
@@ -378,16 +423,6 @@ def named_in(tree: ast.AST) -> set[str]:
 
 def _class_of(value: Any) -> type:
     return value if isinstance(value, type) else type(value)
-
-
-def _copied(owner: type) -> type:
-    """A class like another, whose methods can be changed."""
-    own = {
-        name: copy.deepcopy(value) if is_data(value) and name[:2] != "__" else value
-        for name, value in vars(owner).items()
-        if name not in ("__dict__", "__weakref__")
-    }
-    return type(owner.__name__, owner.__bases__, own)
 
 
 def _remembering(function: FunctionType) -> Any:
@@ -437,43 +472,6 @@ def _key(value: Any) -> Any:
     raise TypeError(type(value).__name__)
 
 
-_META = "_class_"
-_FIELDS = "__dataclass_fields__"
-
-
-class _Body:
-    """In place of the class of a class: what its lines set is given to the class that is there."""
-
-    def __init__(self, owner: type) -> None:
-        self.owner = owner
-
-    def __prepare__(self, _name: str, _bases: Any) -> dict[str, Any]:
-        return {**vars(self.owner)}
-
-    def __call__(self, _name: str, _bases: Any, space: dict[str, Any]) -> type:
-        for name, value in space.items():
-            if name[:2] != "__" and value is not vars(self.owner).get(name):
-                setattr(self.owner, name, value)
-        return self.owner
-
-
-def _bodies(trees: Iterable[ast.AST]) -> dict[str, set[str]]:
-    """The names that the lines of classes set, by the classes' names."""
-    found = [node for tree in trees for node in nodes(tree) if isinstance(node, ast.ClassDef)]
-    return {node.name: {*names(ast.Module(node.body, []), ast.Store)} for node in found}
-
-
-def _with_defaults(owner: Any) -> None:
-    """Gives the method that makes objects of a dataclass the defaults that stand in the class."""
-    init = owner.__init__
-    given = [name for name in getattr(owner, _FIELDS) if name in vars(owner)]
-    if not isinstance(init, FunctionType) or len(init.__defaults__ or ()) != len(given):
-        return
-    values = tuple(vars(owner)[name] for name in given)
-    code, space, closure = init.__code__, init.__globals__, init.__closure__
-    owner.__init__ = FunctionType(code, space, init.__name__, values, closure)
-
-
 def _alike(one: Any, other: Any, depth: int = 6) -> bool:
     """Whether what a line gives anew is what is there; of functions nothing is asked."""
     if depth == 0 or callable(one):
@@ -496,58 +494,6 @@ def _alike(one: Any, other: Any, depth: int = 6) -> bool:
     if not isinstance(other, dict) or one.keys() != other.keys():
         return False
     return all(_alike(value, other[key], depth - 1) for key, value in one.items())
-
-
-def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
-    """Defaults that are numbers as they are, ``...`` for others; none where there are only others."""
-    if len(nodes_) != len(values):
-        return []
-    told = [_literal(node) for node in nodes_]
-    same = [x is not None and x == v and type(x) is type(v) for x, v in zip(told, values, strict=True)]
-    pairs = zip(nodes_, same, strict=True)
-    return [n if own or n is None else ast.Constant(...) for n, own in pairs] if any(same) else []
-
-
-def _literal(node: ast.AST | None) -> Any:
-    """A number, or a list or tuple of numbers, as it is written."""
-    try:
-        value = None if node is None else ast.literal_eval(node)  # type: ignore[arg-type]
-    except (ValueError, TypeError):
-        return None
-    flat = value if isinstance(value, list | tuple) else [value]
-    plain = all(isinstance(one, int | float) and not isinstance(one, bool) for one in flat)
-    return value if plain else None
-
-
-def _bounded(tree: ast.FunctionDef, part: OwnFunction) -> ast.FunctionDef:
-    """A copy that prints nothing and whose loops end."""
-    own = copied(tree)
-    for node in nodes(own) if part.sets else ():
-        if isinstance(node, ast.ClassDef):
-            node.keywords = [ast.keyword("metaclass", ast.Name(_META + node.name, ast.Load()))]
-    own.returns = None
-    if not part.sets:
-        plain, named = part.function.__defaults__ or (), part.function.__kwdefaults__ or {}
-        only = [named.get(one.arg) for one in own.args.kwonlyargs]
-        own.args.defaults = _written(own.args.defaults, plain)
-        own.args.kw_defaults = _written(own.args.kw_defaults, only) or [None] * len(only)
-    for name in (*own.args.posonlyargs, *own.args.args, *own.args.kwonlyargs):
-        name.annotation = None
-    _Quiet().visit(own)
-    return ast.fix_missing_locations(own)
-
-
-class _Quiet(ast.NodeTransformer):
-    def visit_Expr(self, node: ast.Expr) -> ast.stmt:
-        called = node.value.func if isinstance(node.value, ast.Call) else None
-        silent = isinstance(called, ast.Name) and called.id in ("print", "display")
-        return ast.copy_location(ast.Pass(), node) if silent else node
-
-    def visit_While(self, node: ast.While) -> ast.While:
-        self.generic_visit(node)
-        turn = ast.Call(ast.Name("_turn", ast.Load()), [], [])
-        node.test = ast.BoolOp(ast.And(), [turn, node.test])
-        return node
 
 
 def _located(new: Any) -> None:

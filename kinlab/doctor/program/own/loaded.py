@@ -1,4 +1,4 @@
-"""The lines of a module that run when it is loaded: ``I1 = m1*l1**2/12``, ``LC = [x/2 for x in L]``.
+"""The lines of a module that run when it is loaded: ``I1 = m1*l1**2/12``, ``M = [M1, M2]``.
 
 They can be run again with an edit in them, in a space of their own, if they do nothing but compute:
 what draws, prints, reads a file or draws lots is left as it is, and so is what it sets. Numbers
@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import ast
 import builtins
+import functools
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from types import FunctionType, ModuleType
+from types import FunctionType, MethodType, ModuleType
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import names, nodes
@@ -87,12 +88,14 @@ class ModuleLines:
             if sum(name in one.sets for one in self.lines) == 1
         }
         lines = [one for one in self.lines if not (one.written_down and one.sets <= alone)]
-        barred = {*self.others}
+        barred, made = {*self.others}, {name for one in lines for name in one.sets}
         while True:
             held = [
                 one
                 for one in lines
-                if barred.isdisjoint(one.sets) and plain(one.node) and self._runs(one, harmless)
+                if barred.isdisjoint(one.sets)
+                and plain(one.node)
+                and self._runs(one, made, harmless)
             ]
             if len(held) == len(lines):
                 break
@@ -113,12 +116,31 @@ class ModuleLines:
         tree.col_offset = tree.end_col_offset = 0
         return tree
 
-    def _runs(self, line: _Line, harmless: Callable[[Any], bool]) -> bool:
-        """Whether nothing but arithmetic happens when it is run again."""
+    def _runs(self, line: _Line, made: set[str], harmless: Callable[[Any], bool]) -> bool:
+        """Whether nothing but arithmetic happens when it is run again, on copies of the data."""
         if felt(line.node):
             return False
         known = {**vars(builtins), **self.space}
-        return all(harmless(known.get(name)) for name in line.uses | line.sets)
+        kinds: tuple[type, ...] = (ModuleType, FunctionType)
+        kinds += () if isinstance(line.node, ast.ClassDef) else (type,)
+        if any(isinstance(known.get(name), kinds) for name in line.sets):
+            return False
+        used = {name: known.get(name) for name in line.uses | line.sets}
+        if any(isinstance(x, _HELD) for name, x in used.items() if name not in made):
+            return False
+        return all(harmless(x) and not drawing(x) for x in used.values())
+
+
+_HELD = (MethodType, functools.partial)
+"""What holds objects of the user's own that are not copied."""
+
+
+def drawing(value: Any) -> bool:
+    """Whether asking a value changes it: an iterator, a source of random numbers."""
+    source = getattr(value, "__self__", value)
+    kinds = (value, source, type(source))
+    homes = (getattr(one, "__module__", None) or "" for one in kinds)
+    return isinstance(value, Iterator) or any(str(x).startswith("numpy.random") for x in homes)
 
 
 _NO_ARGUMENTS = ast.arguments([], [], None, [], [], None, [])
@@ -209,13 +231,12 @@ def _set_by(tree: ast.AST) -> set[str]:
     found: set[str] = set()
     if isinstance(tree, ast.comprehension | ast.Lambda):
         return found
-    if isinstance(tree, ast.Name | ast.Subscript | ast.Attribute):
-        if isinstance(tree.ctx, ast.Store | ast.Del) and (root := _root(tree)) is not None:
-            found.add(root)
-    if isinstance(tree, ast.Call) and isinstance(tree.func, ast.Attribute):
-        root = _root(tree.func.value)
-        if tree.func.attr in _GROWING and root is not None:
-            found.add(root)
+    root: str | None = None
+    if isinstance(getattr(tree, "ctx", None), ast.Store | ast.Del):
+        root = _root(tree)
+    elif isinstance(tree, ast.Call) and isinstance(tree.func, ast.Attribute):
+        root = _root(tree.func.value) if tree.func.attr in _GROWING else None
+    found |= {root} if root is not None else set()
     return found.union(*map(_set_by, ast.iter_child_nodes(tree)))
 
 
