@@ -41,6 +41,8 @@ _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
 """And the part for asking it at rest."""
+_STEPPING = 4
+"""And the part for the search beside the likeliest first edit."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
@@ -107,7 +109,8 @@ class _Several:
                 with changed(search.trial, (edit,)):
                     here = _beside(search, (edit,))
                     more = (search.most - search.work) // _STEPS
-                    here.most = min(max(here.most, more), self.left)
+                    likeliest = 0 if turn else search.most // _STEPPING
+                    here.most = min(max(here.most, more, likeliest), self.left)
                     found = here.singles()
                     self.left -= here.work
                     # two more only beside the likeliest: others gain as much by accident
