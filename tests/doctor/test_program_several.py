@@ -22,6 +22,21 @@ def f(q, v):
     return np.array([0.5*m[0]*np.sum((Jv1 @ v)**2), 0.5*m[1]*np.sum((Jv2 @ v)**2)])
 """
 
+GRADIENT = """
+import numpy as np
+
+L = np.array([0.5, 0.4, 0.25])
+
+def f(q, target):
+    th = np.cumsum(q)
+    c, s = L * np.cos(th), L * np.sin(th)
+    e = np.asarray(target) - np.array([c.sum(), s.sum(), th[2]])
+    out = np.zeros(3)
+    for j in range(3):
+        out[j] = e[0] * s[j:].sum() - e[1] * c[j:].sum() - e[2]
+    return out
+"""
+
 
 def asked(text, robot, quantity):
     """What is said of a text, and whether it is right once that stands in it."""
@@ -55,6 +70,11 @@ def asked(text, robot, quantity):
             "planar2r", "link_kinetic_energies", ENERGIES,
             [("0.5*m[0]", "m[0]"), ("c12, l2*c12", "c12, l1*c12")],
             id="an entry each",
+        ),
+        pytest.param(
+            "planar3r", "loss_gradient", GRADIENT,
+            [("np.cumsum(q)", "np.asarray(q)"), ("c[j:]", "s[j:]")],
+            id="neither alone makes any number right",
         ),
     ],
 )  # fmt: skip

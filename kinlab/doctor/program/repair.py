@@ -30,6 +30,7 @@ from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.scaled import larger, scaled
+from kinlab.doctor.program.suspects import suspects
 from kinlab.doctor.program.trial import NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
@@ -69,6 +70,8 @@ _WATCHED = 2
 """States at which a program is watched."""
 _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
+_SUSPECTED = 0.3
+"""What an edit is tried sooner in a statement that is wrong though its parts are right."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _ANGLES = 12
@@ -163,6 +166,7 @@ class LineSearch:
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+        self.suspected = suspects(self.trial, self.observed, self.evidence.known)
 
     @property
     def scale(self) -> Array:
@@ -215,11 +219,15 @@ class LineSearch:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
-            tried = sorted(edits(self.trial, self.observed), key=self._dear)
+            order = {edit: self._dear(edit) for edit in edits(self.trial, self.observed)}
+            tried = sorted(order, key=lambda edit: order[edit])
             variants = Variants(self.trial, tried)
             for edit in tried:
-                if found and self.likely(edit) > best + (_DOUBTED if doubted else _TIED):
+                farthest = best + (_DOUBTED if doubted else _TIED)
+                if found and order[edit] > farthest:
                     break
+                if found and self.likely(edit) > farthest:
+                    continue
                 self.work += self.cost_of(edit)
                 if self.work > self.most:
                     break
@@ -249,7 +257,7 @@ class LineSearch:
         found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
         if len(found) < 2 or not self.evidence.known:
             return found
-        found = self._of_any_arm(found)
+        found = self.of_any_arm(found)
         least = self.likely(found[0].edits[-1])
         lines: dict[int, ProgramRepair] = {}
         for repair in found:
@@ -266,7 +274,7 @@ class LineSearch:
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 
-    def _of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
+    def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """Of repairs those that hold for a larger arm too, where some do and some do not."""
         other = scaled(self.case.robot)
         edits = None if other is None else larger(self.case.robot, self.trial, self.observed)
@@ -280,7 +288,7 @@ class LineSearch:
         held: list[ProgramRepair] = []
         with changed(self.trial, edits):
             for repair in found[:_RIVALS]:
-                with changed(self.trial, repair.edits[-1:]):
+                with changed(self.trial, repair.edits[len(self.stand) :]):
                     values = self.values(self.first)
                     if values is not None and self.right(values, wanted).all():
                         held.append(repair)
@@ -306,7 +314,8 @@ class LineSearch:
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
         run, whole = max(1, self.amounts[edit.part]), max(1, self.amounts[0])
-        return self.likely(edit) + _DEAR * float(np.log10(run / whole))
+        sooner = _SUSPECTED if id(edit.node) in self.suspected else 0.0
+        return self.likely(edit) + _DEAR * float(np.log10(run / whole)) - sooner
 
     def _numbers(self) -> list[ProgramRepair]:
         """The single number, of the text or the data, with which the program is right.

@@ -37,7 +37,9 @@ _STEPS = 3
 """Edits that make numbers right from which is gone on."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
-_RESTING = 4
+_TURNS = 3
+"""Edits of one repair that are exchanged for likelier ones."""
+_RESTING = 2
 """And the part for asking it at rest."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
@@ -94,17 +96,22 @@ class _Several:
             if not found and pose:
                 found = tried.likeliest(known, known.in_a_row(3, _POSE))
             found = found or tried.likeliest(joined, joined.triples())
+            found = self._settled(search, found)
         return found
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
         """What is left once an edit stands: of several the first beside which anything does."""
-        apart = {_place(edit): edit for edit in reversed(firsts)}
-        for turn, edit in enumerate([*apart.values()][::-1][:_STEPS]):
+        apart: dict[Any, ProgramEdit] = {}
+        for edit in firsts:
+            apart.setdefault(_place(edit), edit)
+        for turn, edit in enumerate([*apart.values()][:_STEPS]):
             if self.left <= 0:
                 break
             try:
                 with changed(search.trial, (edit,)):
-                    here = self._beside(search, (edit,))
+                    here = _beside(search, (edit,))
+                    more = (search.most - search.work) // _STEPS
+                    here.most = min(max(here.most, more), self.left)
                     found = here.singles()
                     self.left -= here.work
                     # two more only beside the likeliest: others gain as much by accident
@@ -116,32 +123,33 @@ class _Several:
                 return self._settled(search, found)
         return []
 
-    def _beside(self, search: LineSearch, edits: Way) -> LineSearch:
-        """The search for more while these edits stand, too."""
-        here = search.beside((*search.stand, *edits))
-        here.most = min(max(here.most, (search.most - search.work) // _STEPS), self.left)
-        here.look_again()
-        return here
-
-    def _settled(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+    def _settled(
+        self, search: LineSearch, found: list[ProgramRepair], turns: int = _TURNS
+    ) -> list[ProgramRepair]:
         """The first repair with each of its edits the likeliest beside the others."""
-        if not found:
-            return []
+        if not found or not turns:
+            return found
         own = found[0].edits[len(search.stand) :]
         for edit in own:
             others = tuple(one for one in own if one is not edit)
             try:
                 with changed(search.trial, others):
-                    here = self._beside(search, others)
+                    here = _beside(search, others)
                     better = here.singles()[:1]
-                    self.left -= here.work
                     cost = here.likely(edit)
                     better = [one for one in better if here.likely(one.edits[-1]) < cost]
             except NoProgramError:
                 continue
             if better:
-                return self._settled(search, better)
+                return self._settled(search, better, turns - 1)
         return found
+
+
+def _beside(search: LineSearch, edits: Way) -> LineSearch:
+    """The search for more while these edits stand, too, with what is right by them."""
+    here = search.beside((*search.stand, *edits))
+    here.look_again()
+    return here
 
 
 def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
@@ -161,7 +169,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most = self.search.most // 6
+        most = self.search.most // 4
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
@@ -220,6 +228,7 @@ class _Tried:
             found += [] if repair is None else [repair]
             if len(found) == _NAMED:
                 break
+        found = search.of_any_arm(found)
         own = [way for way in near if any(repair.edits[-len(way) :] == way for repair in found)]
         if len(own) > 1 and rights[own[0]] == rights[own[1]] and self._tied(own[0], own[1], costs):
             found[0] = replace(found[0], rivals=(found[1],))

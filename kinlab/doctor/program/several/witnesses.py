@@ -27,12 +27,12 @@ from kinlab.doctor.program.variants import Variants
 
 _FIRST = 1
 """States at which statements are watched."""
-_NEVER = (0, None)
-"""What is told of a statement that never ran."""
 _GIVEN = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "load")
 """What a program is given, and needs not find."""
 _SHAPES = ((), (2,), (3,), (6,), (3, 3), (4, 4))
 """Shapes of most values."""
+_STATEMENT, _MANY = 0.04, 5
+"""What each statement that it makes right speaks for an edit, and how many do."""
 _WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 16)
 
 
@@ -42,13 +42,27 @@ class Step:
 
     Attributes:
         edit: the edit.
-        gained: how many statements do that did not.
-        cost: how far-fetched it is.
+        cost: how far-fetched it is, less what speaks for it.
     """
 
     edit: ProgramEdit
-    gained: int
     cost: float
+
+
+@dataclass
+class Told:
+    """What is told of a statement.
+
+    Attributes:
+        count: how often it ran.
+        good: whether all it gave is a textbook's; None where anything could be that.
+    """
+
+    count: int = 0
+    good: bool | None = None
+
+
+_NEVER = Told()
 
 
 class Witnesses:
@@ -63,14 +77,14 @@ class Witnesses:
         self.grounds = copy.copy(search.evidence)
         self.grounds.known = search.evidence.known[:_FIRST]
         self.known: dict[tuple[Any, bytes], bool | None] = {}
-        self.told: dict[int, list[Any]] = {}
+        self.told: dict[int, Told] = {}
         self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
 
     def steps(self, known: Effects, most: int) -> list[Step]:
         """The edits that make statements right and spoil none, as many as some work allows.
 
-        Those with which most are right come first.
+        The likeliest come first, those with which more is right as if they were likelier.
         """
         trial = self.search.trial
         if not self.grounds.known or not self.places:
@@ -90,17 +104,11 @@ class Witnesses:
                         after = self._right()
                 except NoProgramError:
                     continue
-                gained = sum(
-                    good is True and before.get(n, _NEVER)[1] is False and count >= before[n][0]
-                    for n, (count, good) in after.items()
-                )
-                lost = sum(
-                    good is False and before.get(n, _NEVER)[1] is True
-                    for n, (_count, good) in after.items()
-                )
-                if gained and not lost:
-                    found.append(Step(edits[0], gained, known.likely(edits[0])))
-        return sorted(found, key=lambda step: (-step.gained, step.cost))
+                gained = min(_gained(before, after), _MANY)
+                if gained:
+                    cost = known.likely(edits[0]) - _STATEMENT * gained
+                    found.append(Step(edits[0], cost))
+        return sorted(found, key=lambda step: step.cost)
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What watching the program with an edit amounts to."""
@@ -111,11 +119,8 @@ class Witnesses:
         return [FieldChange(holder, field, _saw(n, FieldChange(holder, field, None).now))
                 for n, (holder, field) in enumerate(self.places)]  # fmt: skip
 
-    def _right(self) -> dict[int, list[Any]]:
-        """Of each statement that ran, how often, and whether all it gave is a textbook's.
-
-        None for that where it gave only what anything could be.
-        """
+    def _right(self) -> dict[int, Told]:
+        """What is told of each statement that ran."""
         search, self.told = self.search, {}
         search.trial.space["_saw"] = self._see
         try:
@@ -126,11 +131,10 @@ class Witnesses:
         return self.told
 
     def _see(self, n: int, value: Any) -> Any:
-        told = self.told.setdefault(n, [0, None])
-        told[0] += 1
-        if told[1] is not False:
-            good = self._textbook(value)
-            told[1] = told[1] if good is None else good
+        told = self.told.setdefault(n, Told())
+        told.count += 1
+        if told.good is not False and (good := self._textbook(value)) is not None:
+            told.good = good
         return value
 
     def _textbook(self, value: Any) -> bool | None:
@@ -165,6 +169,17 @@ class Witnesses:
         return None if sense is not None and sense.what in _GIVEN else sense is not None
 
 
+def _gained(before: dict[int, Told], after: dict[int, Told]) -> int:
+    """How many statements an edit makes right; 0 where it spoils any."""
+    gained = 0
+    for n, now in after.items():
+        old = before.get(n, _NEVER)
+        if old.good is True and now.good is False:
+            return 0
+        gained += old.good is False and now.good is True and now.count >= old.count
+    return gained
+
+
 def _marks(known: Sequence[Glossary], shape: tuple[int, ...]) -> list[float]:
     """One number of each thing of a shape, sorted; of plane vectors, too, what is left of them."""
     if not known:
@@ -195,16 +210,20 @@ def _saw(n: int, value: Any) -> ast.expr:
 
 
 def _places(tree: ast.AST) -> Iterator[tuple[Any, Any]]:
-    """Where the values of statements hang: what is set, returned, or put into a list."""
+    """Where the values of statements hang: what is set, returned, or put into a list.
+
+    Of what is given as a row of entries each entry is one.
+    """
     for node in nodes(tree):
-        if isinstance(node, ast.Assign | ast.Return) and node.value is not None:
-            if isinstance(node.value, ast.Tuple):
-                yield from ((node.value.elts, k) for k in range(len(node.value.elts)))
-            elif isinstance(node.value, _COMPUTED):
-                yield node, "value"
+        if isinstance(node, ast.Assign | ast.Return) and isinstance(node.value, _COMPUTED):
+            yield node, "value"
         elif isinstance(node, ast.Call) and called(node) == "append" and len(node.args) == 1:
             yield node.args, 0
+        if isinstance(node, ast.List | ast.Tuple) and isinstance(node.ctx, ast.Load):
+            yield from (
+                (node.elts, k) for k, one in enumerate(node.elts) if isinstance(one, _COMPUTED)
+            )
 
 
-_COMPUTED = ast.BinOp | ast.UnaryOp | ast.Call | ast.Subscript | ast.List | ast.ListComp
+_COMPUTED = ast.BinOp | ast.UnaryOp | ast.Call | ast.Subscript | ast.ListComp
 """What a statement may give that is not somebody else's value under another name."""

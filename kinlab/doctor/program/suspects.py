@@ -1,0 +1,133 @@
+"""Statements that are wrong by what they are made of: their parts are right, and they are not.
+
+A slip in one statement spoils all that follow. The one to look at first is that whose value is
+nothing a textbook has, though each piece of it is: numbers of the data, the angles and speeds that
+were given, and what earlier statements have right.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from types import ModuleType
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.glossary.textbook import Glossary
+from kinlab.doctor.program.observed import Observed, Seen
+from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
+
+_PASSES = 12
+"""Passes of a statement that are looked at."""
+_PIECES = ast.Name | ast.Subscript | ast.Attribute
+
+
+def suspects(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set[int]:
+    """The nodes of statements that are wrong by what they are made of, by identity.
+
+    Args:
+        trial: a program in which no edit stands.
+        observed: its expressions.
+        known: the textbook's things at the states that it was observed at.
+    """
+    if not known:
+        return set()
+    look = _Look(trial, observed, known[0])
+    found: set[int] = set()
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Assign | ast.AugAssign | ast.Return) and node.value is not None:
+                if any(look.wrong(value) for value in _values(node.value)):
+                    found |= {id(inner) for inner in nodes(node)}
+    return found
+
+
+def _values(value: ast.expr) -> list[ast.expr]:
+    return value.elts if isinstance(value, ast.Tuple) else [value]
+
+
+class _Look:
+    """What pieces were at the first state."""
+
+    def __init__(self, trial: Trial, observed: Observed, known: Glossary) -> None:
+        self.observed, self.known = observed, known
+        modules = (name for name, x in trial.space.items() if isinstance(x, ModuleType))
+        self.given = {*trial.program.data, *modules}
+        self.seen: dict[tuple[tuple[int, ...], bytes], bool] = {}
+
+    def wrong(self, value: ast.expr) -> bool:
+        """Whether an expression is nothing known at some pass, and all that it is made of is."""
+        seen = self.observed.of(value)
+        if seen is None or seen.shape is None or seen.whole:
+            return False
+        pieces = [*_pieces(value)]
+        passes = seen.values[:_PASSES]
+        odd = [k for k, one in enumerate(passes) if not _plain(one) and not self.textbook(one)]
+        if not odd and all(map(_plain, passes)):
+            odd = [0] if any(self.moves(piece) for piece in pieces) else []
+        return bool(odd and pieces) and all(self.vouched(one, seen, odd[0]) for one in pieces)
+
+    def moves(self, piece: ast.expr) -> bool:
+        """Whether a piece is a value that an earlier statement made, and no whole number."""
+        seen = self.observed.of(piece)
+        return seen is not None and seen.shape is not None and not seen.whole
+
+    def vouched(self, piece: ast.expr, whole: Seen, k: int) -> bool:
+        """Whether a piece was right at a pass of the expression that it stands in."""
+        at: ast.expr = piece
+        while True:
+            seen = self.observed.of(at)
+            if isinstance(at, ast.Name) and (at.id in self.given or seen is None):
+                return True  # the user's numbers, or what is no value: a module, a function
+            if seen is not None and seen.shape is not None:
+                each = max(1, seen.count // max(1, whole.count))
+                here = seen.values[k * each : (k + 1) * each]
+                if seen.whole or all(_plain(x) or self.textbook(x) for x in here):
+                    return True
+            if isinstance(at, ast.Name):
+                return False
+            assert isinstance(at, ast.Subscript | ast.Attribute)
+            at = at.value
+            if not isinstance(at, _PIECES):
+                return all(self.vouched(inner, whole, k) for inner in _pieces(at))
+
+    def textbook(self, value: Array) -> bool:
+        """Whether a value is a thing of the textbooks, or minus it, or its transpose; nearly: it
+        may be that of a state beside, where differences are taken."""
+        value = np.squeeze(value)
+        key = (value.shape, value.tobytes())
+        if key not in self.seen:
+            forms = [value, -value, value.T] if value.ndim == 2 else [value, -value]
+            self.seen[key] = any(self._near(form) for form in forms)
+        return self.seen[key]
+
+    def _near(self, value: Array) -> bool:
+        if self.known.plane and value.shape in ((), (2,)):
+            lifted = np.append(value, 0.0) if value.shape else np.array([0.0, 0.0, value])
+            if self._one_of(lifted):
+                return True
+        return self._one_of(value)
+
+    def _one_of(self, value: Array) -> bool:
+        rows, things = self.known.things.get(value.shape, ((), value))
+        if not rows:
+            return False
+        gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
+        return bool(gap.min() <= TOLERANCES.nearly_agrees * float(np.max(np.abs(value))))
+
+
+def _plain(value: Array) -> bool:
+    """Whether it is made of zeros and ones."""
+    return bool(np.all((value == 0) | (np.abs(value) == 1)))
+
+
+def _pieces(node: ast.AST) -> Iterator[ast.expr]:
+    """Names, entries and attributes, the widest; what stands in an index is none."""
+    if isinstance(node, _PIECES):
+        yield node
+        return
+    for child in ast.iter_child_nodes(node):
+        yield from _pieces(child)
