@@ -41,7 +41,21 @@ _FELT = frozenset(
 """Functions whose being called a second time is felt."""
 _PI = ("pi", "np.pi", "numpy.pi", "math.pi")
 _TABLES = frozenset(
-    "dict list tuple float array asarray float64 diag eye zeros ones radians deg2rad".split()
+    [
+        "dict",
+        "list",
+        "tuple",
+        "float",
+        "array",
+        "asarray",
+        "float64",
+        "diag",
+        "eye",
+        "zeros",
+        "ones",
+        "radians",
+        "deg2rad",
+    ]
 )
 """What makes a table of numbers that are written down."""
 
