@@ -203,13 +203,13 @@ def _explained(
     split: Apart | None = None
     if not causes and not signs:
         split = apart(case)
-        few = case if written else replace(case, slack=min(_left(worst), TOLERANCES.slips_leave))
-        found_ = one_for_each_kind(few, ways, split) or several_taken_otherwise(few, ways, split)
-        causes = _exactly([_as_steps(found) for found in found_], worst)
-        if not causes:
-            # what stands in one place of a program was looked for there
-            among = tried if program is None else [r for r in tried if not r.place]
-            causes = _exactly([*in_pairs(few, among)], worst)
+        # two readings of a program of which no line explains it fit by accident more often
+        if program is None:
+            few = case if written else replace(case, slack=min(_left(worst), TOLERANCES.slips_leave))
+            found_ = one_for_each_kind(few, ways, split)
+            found_ = found_ or several_taken_otherwise(few, ways, split)
+            causes = _exactly([_as_steps(found) for found in found_], worst)
+            causes = causes or _exactly([*in_pairs(few, tried)], worst)
     if not causes and signs:
         causes = [*in_pairs(case, tried)]
     if same and all(len(cause.kinds) > LIST for cause in causes):

@@ -38,7 +38,7 @@ from kinlab.formulas.record import state_by_state
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
-_WORK = 35_000_000
+_WORK = 45_000_000
 """Operations of numbers, or what amounts to them, that may be done for single edits."""
 _NODE = 30
 """What compiling one node amounts to."""
@@ -70,8 +70,8 @@ _WATCHED = 2
 """States at which a program is watched."""
 _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
-_SUSPECTED = 0.3
-"""What an edit is tried sooner in a statement that is wrong though its parts are right."""
+_SUSPECTED = 2
+"""Of so much work one part goes first to statements that are wrong though their parts are right."""
 _NUMBER = 1.15
 """Cost of an edit above which it is rather a wrong number that explains the program."""
 _ANGLES = 12
@@ -219,13 +219,10 @@ class LineSearch:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
-            order = {edit: self._dear(edit) for edit in edits(self.trial, self.observed)}
-            tried = sorted(order, key=lambda edit: order[edit])
+            tried = self._in_turn(sorted(edits(self.trial, self.observed), key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
                 farthest = best + (_DOUBTED if doubted else _TIED)
-                if found and order[edit] > farthest:
-                    break
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work += self.cost_of(edit)
@@ -314,8 +311,19 @@ class LineSearch:
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""
         run, whole = max(1, self.amounts[edit.part]), max(1, self.amounts[0])
-        sooner = _SUSPECTED if id(edit.node) in self.suspected else 0.0
-        return self.likely(edit) + _DEAR * float(np.log10(run / whole)) - sooner
+        return self.likely(edit) + _DEAR * float(np.log10(run / whole))
+
+    def _in_turn(self, ranked: list[ProgramEdit]) -> list[ProgramEdit]:
+        """The likeliest first, and in turn with them those of suspected statements."""
+        turn: dict[ProgramEdit, float] = {}
+        every = among = 0
+        for edit in ranked:
+            every += self.cost_of(edit)
+            turn[edit] = every
+            if id(edit.node) in self.suspected:
+                among += self.cost_of(edit)
+                turn[edit] = min(every, _SUSPECTED * among)
+        return sorted(ranked, key=lambda edit: turn[edit])
 
     def _numbers(self) -> list[ProgramRepair]:
         """The single number, of the text or the data, with which the program is right.
