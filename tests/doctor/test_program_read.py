@@ -407,6 +407,31 @@ def test_lines_that_do_not_give_what_is_there_are_left_alone(load):
     assert Trial(read(load(LOADED, "short")["f"])).sets
 
 
+def test_what_makes_much_is_left_alone(load):
+    large = "B = np.arange(10**6)*1.0\nI1 = B[1]*m1*L[0]**2/12"
+    text = LOADED.replace("I1 = m1*L[0]**2/12", large)
+    assert Trial(read(load(text)["f"])).sets == ["I2", "LC", "P"]
+
+
+def test_a_tuple_with_names_is_no_table(load):
+    head = "import numpy as np\nfrom collections import namedtuple\n"
+    head += "Rods = namedtuple('Rods', 'a b')\nk = Rods(0.25*2, 0.4)\nlone, l2, shift = *k, 0.0\n"
+    body = BELOW.replace("l2", "k.b")
+    for file in (True, False):
+        found = kl.diagnose(RODS, "fk", load(head + body, file=file)["f"], samples=20)
+        assert lines_named(found.sentence) in ([10], [])
+        assert not found.agrees
+
+
+def test_a_class_that_is_registered_is_registered_once(load):
+    head = "import numpy as np\nmade = []\nclass Base:\n    def __init_subclass__(cls):\n"
+    head += "        made.append(cls.__name__)\nclass Rods(Base):\n    lone, l2 = 0.5, 0.4\n"
+    head += "lone, l2, shift = 0.5, 0.4, 0.0\nrods = Rods()\n"
+    space = load(head + BELOW.replace("l2", "rods.l2"))
+    assert not kl.diagnose(RODS, "fk", space["f"], samples=20).agrees
+    assert space["made"] == ["Rods"]
+
+
 def test_an_edit_of_data_runs_the_lines_that_use_them(load):
     function = load(LOADED)["f"]
     trial = Trial(read(function))

@@ -249,6 +249,23 @@ PROGRAMS = {
                     tau[i] += m[k] * g * s
             return tau
     """,
+    "generators": """
+        def f(q):
+            def links(q):
+                angle = 0.0
+                for k, x in enumerate(q):
+                    angle += x
+                    if x > 0.5:
+                        yield (k, angle)
+                    else:
+                        angle = yield angle
+                        angle = 0.1
+            def all(q):
+                last = yield from links(q)
+                yield last
+                yield from (x * x for x in q)
+            return list(all(q))
+    """,
 }
 Q = ([0.3, 0.7], [-0.4, 0.1, 0.2], [0.95, 0.05], [0.1, 0.9, 0.2, 0.7])
 WORLD = {"np": np, "cos": np.cos, "sin": np.sin, "b0": 0.25, "types": types}

@@ -270,10 +270,11 @@ class _Reader:
         if self.lines is not None:
             parts.append(OwnFunction(_LOADED, self.lines, self.function, sets=sets))
         data = [label for label in self.data if label not in sets or _is_class(self.space[label])]
+        data = [label for label in data if not _is_record(self.space[label])]
         held = {*self.used, *self.asked.given} & {
             label for label, value in self.space.items() if isinstance(value, list | dict | set)
         }
-        held |= {*data, *sets}
+        held |= {*self.data, *sets}
         space = {
             label: value if label in held else _out_of_reach(value)
             for label, value in self.space.items()
@@ -345,6 +346,11 @@ class _Reader:
                 known.spots.append(spot)
         elif all(spot != one[:2] for one in self.waiting):
             self.waiting.append((owner, name, function, kept))
+
+
+def _is_record(value: Any) -> bool:
+    """A tuple whose entries have names: it is made otherwise than a tuple."""
+    return isinstance(value, tuple) and type(value) is not tuple
 
 
 def _is_class(value: Any) -> bool:

@@ -87,6 +87,7 @@ class Trial:
             except Exception:  # noqa: BLE001  what does not run alone is left as it is
                 same = False
             if same:
+                self._keep()  # the lines of the module have made what they set anew
                 return
             program = program.plain
         self._prepare(program)
@@ -104,8 +105,7 @@ class Trial:
         for name in held:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
-        owned = [value for one in self.classes.values() for value in vars(one).values()]
-        self._contents = Contents([*(self.space[name] for name in held), *self.bound, *owned])
+        self._keep()
         for name, value in self.space.items():
             if value is np or value is np.cross:
                 self.space[name] = _QUICK if value is np else _cross
@@ -127,6 +127,13 @@ class Trial:
         self._remembering = [_remembering(one) for one in self._made]
         for k, one in enumerate(self._made):
             self.place(k, one)
+
+    def _keep(self) -> None:
+        """Keeps hold of the data that edited runs may write into."""
+        names = [*self.program.data, *sorted(self.program.held), *self.sets]
+        held = [self.space[name] for name in dict.fromkeys(names) if name in self.space]
+        owned = [value for one in self.classes.values() for value in vars(one).values()]
+        self._contents = Contents([*held, *self.bound, *owned])
 
     def _loads_the_same(self) -> bool:
         """Whether what runs before the function is asked, run again, gives what is there."""

@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from types import FunctionType, MethodType, ModuleType
 from typing import Any
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import names, nodes
 
 _GROWING = frozenset(["append", "extend", "insert", "update", "add", "setdefault", "fill"])
@@ -40,7 +42,24 @@ _FELT = frozenset(
 )
 """Functions whose being called a second time is felt."""
 _PI = ("pi", "np.pi", "numpy.pi", "math.pi")
-_TABLES = ("array", "asarray", "float64", "diag", "eye", "zeros", "ones", "radians", "deg2rad")
+_TABLES = frozenset(
+    [
+        "dict",
+        "list",
+        "tuple",
+        "float",
+        "array",
+        "asarray",
+        "float64",
+        "diag",
+        "eye",
+        "zeros",
+        "ones",
+        "radians",
+        "deg2rad",
+    ]
+)
+"""What makes a table of numbers that are written down."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,11 +147,22 @@ class ModuleLines:
         used = {name: known.get(name) for name in line.uses | line.sets}
         if any(isinstance(x, _HELD) for name, x in used.items() if name not in made):
             return False
-        return all(harmless(x) and not drawing(x) for x in used.values())
+        return all(harmless(x) and not drawing(x) and _small(x) for x in used.values())
 
 
 _HELD = (MethodType, functools.partial)
 """What holds objects of the user's own that are not copied."""
+
+
+def _small(value: Any) -> bool:
+    """Whether making a value again for each edit takes little."""
+    if isinstance(value, np.ndarray):
+        return value.size <= _SMALL
+    return not isinstance(value, list | tuple | dict | set) or len(value) <= _SMALL
+
+
+_SMALL = 1000
+"""Entries of a list or an array that lines make."""
 
 
 def drawing(value: Any) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import enum
 import functools
 import inspect
 import itertools
@@ -139,11 +140,22 @@ def written(owner: type, modules: frozenset[str | None]) -> bool:
     return made and (own or (None in modules and owner.__module__ == "builtins"))  # so exec has it
 
 
+def registers(owner: type) -> bool:
+    """Whether something happens when a class like it is made."""
+    held = (getattr(owner, "__init_subclass__", None), *map(vars(type(owner)).get, _MAKING))
+    made = [getattr(one, "__func__", one) for one in held]
+    return any(isinstance(f, FunctionType) and f.__module__ not in _STANDARD for f in made)
+
+
+_MAKING = ("__new__", "__init__", "__prepare__")
+_STANDARD = ("abc", "enum", "typing", "dataclasses")
+
+
 def owners_in(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> Iterator[type]:
     """The program's own classes of which objects are kept in a value: in lists, in one another."""
     owner = value if isinstance(value, type) else type(value)
     inner: list[Any] = []
-    if written(owner, modules):
+    if written(owner, modules) and not issubclass(owner, tuple | enum.Enum):
         yield owner
         inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
     elif isinstance(value, list | tuple | dict):
@@ -178,6 +190,8 @@ def harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> 
         return depth > 0 and all(harmless(one, modules, depth - 1) for one in inner[:_MOST])
     if isinstance(value, BuiltinFunctionType):
         return (value.__module__ or "").partition(".")[0] in _ARITHMETIC
+    if registers(value if isinstance(value, type) else type(value)):
+        return False  # a copy of the class would be felt
     if isinstance(value, FunctionType | type):
         of = value.__module__
         return of in modules or (of or "").partition(".")[0] in _ARITHMETIC

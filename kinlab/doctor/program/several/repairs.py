@@ -41,6 +41,8 @@ _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
 """And the part for asking it at rest."""
+_STEPPING = 4
+"""And the part for the search beside the likeliest first edit."""
 _DEEPEST = 2
 """Edits beside which one more is looked for, and no two."""
 _POSE = (4, 4)
@@ -79,18 +81,17 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
-        witnesses = Witnesses(search)
-        steps = witnesses.steps(known, search.most // _WATCHING)
-        self.left -= witnesses.work
-        found = self._after(search, [step.edit for step in steps])
+        steps = Witnesses(search).steps(known, search.most // _WATCHING)
+        firsts = _apart([step.edit for step in steps])[: _STEPS - 1]
+        found = self._after(search, firsts)
         if found:
             return found
-        rest = AtRest(search)
-        wider = None if search.stand else rest.effects(known, search.most // _RESTING)
-        self.left -= rest.work
+        wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
         joined = known if wider is None else known.beside(wider)
         found = self._settled(search, tried.likeliest(joined, joined.pairs()))
-        found = found or self._after(search, [joined.alike[k][0] for k in joined.gaining])
+        if not found:
+            gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:_STEPS]
+            found = self._after(search, [edit for edit in gaining if edit not in firsts])
         if not found and not search.stand:
             found = tried.likeliest(known, known.adding_up(3))
             if not found and pose:
@@ -101,17 +102,15 @@ class _Several:
 
     def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
         """What is left once an edit stands: of several the first beside which anything does."""
-        apart: dict[Any, ProgramEdit] = {}
-        for edit in firsts:
-            apart.setdefault(_place(edit), edit)
-        for turn, edit in enumerate([*apart.values()][:_STEPS]):
+        for turn, edit in enumerate(firsts):
             if self.left <= 0:
                 break
             try:
                 with changed(search.trial, (edit,)):
                     here = _beside(search, (edit,))
                     more = (search.most - search.work) // _STEPS
-                    here.most = min(max(here.most, more), self.left)
+                    likeliest = 0 if turn else search.most // _STEPPING
+                    here.most = min(max(here.most, more, likeliest), self.left)
                     found = here.singles()
                     self.left -= here.work
                     # two more only beside the likeliest: others gain as much by accident
@@ -120,17 +119,22 @@ class _Several:
             except NoProgramError:
                 continue
             if found:
-                return self._settled(search, found)
+                return self._settled(search, found, 1)
         return []
 
     def _settled(
-        self, search: LineSearch, found: list[ProgramRepair], turns: int = _TURNS
+        self, search: LineSearch, found: list[ProgramRepair], turns: int = 0
     ) -> list[ProgramRepair]:
-        """The first repair with each of its edits the likeliest beside the others."""
-        if not found or not turns:
+        """The first repair with each of its edits the likeliest beside the others.
+
+        But what leaves less of the program as a textbook has it is no likelier.
+        """
+        if not found or turns == _TURNS:
             return found
         own = found[0].edits[len(search.stand) :]
-        for edit in own:
+        right = search.left_right(own)
+        # the last one was the likeliest beside the others when it was found so
+        for edit in own[:-1] if turns else own:
             others = tuple(one for one in own if one is not edit)
             try:
                 with changed(search.trial, others):
@@ -140,8 +144,8 @@ class _Several:
                     better = [one for one in better if here.likely(one.edits[-1]) < cost]
             except NoProgramError:
                 continue
-            if better:
-                return self._settled(search, better, turns - 1)
+            if better and search.left_right((*others, better[0].edits[-1])) >= right:
+                return self._settled(search, better, turns + 1)
         return found
 
 
@@ -152,8 +156,16 @@ def _beside(search: LineSearch, edits: Way) -> LineSearch:
     return here
 
 
+def _apart(edits: list[ProgramEdit]) -> list[ProgramEdit]:
+    """Of edits in one place the first: it is enough to go on from."""
+    apart: dict[Any, ProgramEdit] = {}
+    for edit in edits:
+        apart.setdefault(_place(edit), edit)
+    return [*apart.values()]
+
+
 def _place(edit: ProgramEdit) -> tuple[int, Any, Any]:
-    """Where an edit is: of several in one place the likeliest is enough to go on from."""
+    """Where an edit is."""
     return edit.part, getattr(edit.node, "lineno", edit.node), edit.place
 
 

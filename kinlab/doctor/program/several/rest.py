@@ -29,7 +29,7 @@ class AtRest:
     """
 
     def __init__(self, search: LineSearch) -> None:
-        self.search, self.work = search, 0
+        self.search = search
         self.own: Array | None = None
         case = search.case
         stacks = _states(case.arguments)
@@ -72,8 +72,8 @@ class AtRest:
         variants = Variants(trial, [edits[0] for edits in known.alike])
         for edits in known.alike:
             edit = edits[0]
-            self.work += self.search.cost_of(edit)
-            if self.work > most:
+            most -= self.search.cost_of(edit)
+            if most < 0:
                 break
             try:
                 with trial.changed({edit.part}, edit.changes, variants.of(edit)):

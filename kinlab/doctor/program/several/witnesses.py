@@ -73,7 +73,7 @@ class Witnesses:
     """
 
     def __init__(self, search: LineSearch) -> None:
-        self.search, self.work = search, 0
+        self.search = search
         self.grounds = copy.copy(search.evidence)
         self.grounds.known = search.evidence.known[:_FIRST]
         self.known: dict[tuple[Any, bytes], bool | None] = {}
@@ -96,8 +96,8 @@ class Witnesses:
             watched = [_watched(edits[0], numbers) for edits in known.alike]
             variants = Variants(trial, watched)
             for edits, edit in zip(known.alike, watched, strict=True):
-                self.work += self.cost_of(edit)
-                if self.work > most:
+                most -= self.cost_of(edit)
+                if most < 0:
                     break
                 try:
                     with trial.changed({edit.part}, edit.changes, variants.of(edit)):
