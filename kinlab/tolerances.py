@@ -115,6 +115,10 @@ class Tolerances:
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
     1e-3 or more."""
 
+    left_of_several: float = 1e-11
+    """Relative error that several repairs of one program may leave, where one may leave what
+    formulas differ by: with so many of them something nearly right is found by accident."""
+
     finite_differences: float = 1e-5
     """Relative error that derivatives by differences may leave in a function once a slip is
     undone: forward differences with steps of 1e-5, central ones up to 1e-3."""

@@ -111,7 +111,10 @@ def reading_and_slips(case: Case, tried: list[Confusion], engine: Array) -> Iter
     for reading in tried:
         if reading.stage != "answer" or reading.kind not in _UNDONE or case.index:
             continue
-        undone = reading.apply(case.hand)
+        try:
+            undone = reading.apply(case.hand)
+        except np.linalg.LinAlgError:
+            continue  # an answer without an inverse is no inverse
         if undone.shape != engine.shape:
             continue
         if reading.kind == "factor":

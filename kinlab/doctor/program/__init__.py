@@ -5,7 +5,6 @@ module            what it holds
 ================  =================================================================================
 ``digits``        Whether a program is right to the digits that its numbers are written with
 ``elsewhere``     The lines of a function that lives in another process
-``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``kept``          What a program's data hold, so that what an edited run writes into them is put
                   back
 ``named``         What the pieces of a program around an edit are: ``z`` is the axis of joint 2
@@ -18,7 +17,7 @@ module            what it holds
 ``words``         A repair in words: the line, what stands there, what should
 ``own/``          What it is made of beside its functions, and what of it may be run again
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
-``scaled``        Another arm, on which what is one by the numbers alone is two things
+``grounds/``      What speaks for an edit, and against it
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

@@ -25,12 +25,12 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
-from kinlab.doctor.program.evidence import Grounds
+from kinlab.doctor.program.grounds.evidence import Grounds
+from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm
+from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
-from kinlab.doctor.program.scaled import larger, scaled
-from kinlab.doctor.program.suspects import suspects
 from kinlab.doctor.program.trial import NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
@@ -129,7 +129,8 @@ class LineSearch:
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
         self._add_a_wrong_one()
-        self.allowed = allowed if self._differences() else TOLERANCES.formula_agrees
+        self.differences = self._differences()
+        self.allowed = allowed if self.differences else TOLERANCES.formula_agrees
         self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
         self._few = self._at(self.first)
         self._near = max(TOLERANCES.tried_further, self.allowed) * self.scale
@@ -166,6 +167,7 @@ class LineSearch:
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+        self._larger = self._made_larger()
         self.suspected = suspects(self.trial, self.observed, self.evidence.known)
 
     @property
@@ -200,7 +202,7 @@ class LineSearch:
         """The same program asked at other states, all of which are its first."""
         other = copy.copy(self)
         other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
-        other._few = other._at(other.first)
+        other._few, other._larger = other._at(other.first), None
         return other
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
@@ -273,23 +275,38 @@ class LineSearch:
 
     def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """Of repairs those that hold for a larger arm too, where some do and some do not."""
-        other = scaled(self.case.robot)
-        edits = None if other is None else larger(self.case.robot, self.trial, self.observed)
-        if other is None or not edits:
-            return found
+        held: list[ProgramRepair] = []
+        for repair in found[:_RIVALS]:
+            with changed(self.trial, repair.edits[len(self.stand) :]):
+                held += [repair] if self._holds() else []
+        return [*held, *(one for one in found[_RIVALS:])] if held else found
+
+    def _holds(self) -> bool:
+        """Whether the program as it stands now is right for a larger arm."""
+        if self._larger is None:
+            return False
+        arm, wanted = self._larger
+        with changed(self.trial, arm.edits):
+            values = self.values(self.first)
+        return values is not None and bool(self.right(values, wanted).all())
+
+    def _only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
+        """Whether edits hold for this arm alone, where a program that is right holds for others."""
+        if self._larger is None or not self._larger[0].whole or self.case.quantity.read is not None:
+            return False
+        data = any(edit.part == DATA or edit.numbers is not None for edit in several)
+        return not data and not self._holds()
+
+    def _made_larger(self) -> tuple[OtherArm, Array] | None:
+        """A larger arm, and the right answers of it at the first states."""
+        arm = other_arm(self.case.robot, self.trial, self.observed)
+        if arm is None:
+            return None
         few = self.case.few(max(self.first) + 1)
         try:
-            wanted = replace(few, robot=other).answer(())
+            return arm, replace(few, robot=arm.robot).answer(())
         except KinlabError:
-            return found
-        held: list[ProgramRepair] = []
-        with changed(self.trial, edits):
-            for repair in found[:_RIVALS]:
-                with changed(self.trial, repair.edits[len(self.stand) :]):
-                    values = self.values(self.first)
-                    if values is not None and self.right(values, wanted).all():
-                        held.append(repair)
-        return [*held, *(one for one in found[_RIVALS:])] if held else found
+            return None
 
     def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
         """How many statements are what a textbook has, once edits stand."""
@@ -363,7 +380,7 @@ class LineSearch:
         found = self._by_secants(place)
         most = _DIGITS if isinstance(place.value, float) else _WHOLE
         tries = [] if found is None else [float(f"{found:.{k}e}") for k in range(most - 1)]
-        if found is not None and abs(found) > 1 / _ANGLES:
+        if found is not None and 1 / _ANGLES < abs(found) < 2 * np.pi:
             tries.insert(0, round(found * _ANGLES / np.pi) * np.pi / _ANGLES)
         for value in tries or [k * old for k in _MULTIPLES]:
             values = self._with(place, value)
@@ -420,6 +437,8 @@ class LineSearch:
             error = self.error(range(count))
             if not error <= self.allowed:
                 return None
+        if self._only_here(several):
+            return None
         return ProgramRepair(several, error, sum(edit.cost for edit in several))
 
     def error(self, which: range) -> float:

@@ -30,6 +30,8 @@ _NAMED = 2
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
 """Share of a number below which another one is rather the step of a difference."""
+_SMALL = 1e-3
+"""The largest number that is a step, and nothing else."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -311,6 +313,12 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
+    if (
+        len(repair.edits) > 1
+        and not search.differences
+        and repair.error > TOLERANCES.left_of_several
+    ):
+        return None
     if search.case.quantity.read is not None and _fewer(repair, search):
         return None
     edits = []
@@ -351,7 +359,13 @@ def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:
 
 
 def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
-    """Whether a number is made small until only the noise of differences is left."""
+    """Whether a number is made small until only the noise of differences is left.
+
+    Or a step is multiplied, which makes up for a factor elsewhere.
+    """
+    if edit.kind == "factor" and edit.part != DATA:
+        inside = (getattr(node, "value", None) for node in nodes(edit.node))
+        return any(isinstance(x, float) and 0 < abs(x) <= _SMALL for x in inside)
     if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
         return False
     old, new = map(abs, edit.numbers)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import pi
@@ -185,6 +185,20 @@ class NumberPlace:
             change = replace(change, new=_rebuilt(change.now, self.inner, value))
         both = (float(self.value), float(value))
         return ProgramEdit(self.part, (change,), kind, cost, self.node, self.place, both)
+
+
+def together(several: Sequence[tuple[NumberPlace, float]]) -> list[ProgramEdit]:
+    """Other numbers in several places; in a tuple, which is made anew, all at once."""
+    found: dict[Any, ProgramEdit] = {}
+    for place, value in several:
+        key = (id(place.holder), repr(place.field), place.inner == ())
+        edit = place.edit(value)
+        if place.inner and key in found:
+            (change,) = found[key].changes
+            new = _rebuilt(change.new, place.inner, value)
+            edit = replace(found[key], changes=(replace(change, new=new),))
+        found[key if place.inner else len(found)] = edit
+    return [*found.values()]
 
 
 def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:

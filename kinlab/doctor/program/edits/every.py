@@ -35,7 +35,7 @@ from kinlab.doctor.program.edits.operators import (
 )
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
-from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.doctor.program.trial import Trial
 
 
 def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
@@ -144,8 +144,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from exchanges.of_statement(here, scope, observed)
     if isinstance(node, ast.If):
         if node.orelse:
-            swap = (FieldChange(node, "body", node.orelse), FieldChange(node, "orelse", node.body))
-            yield ProgramEdit(here.part, swap, "condition", 1.2, node)
+            yield here.within(node, "test", negated(node.test), "condition", 1.2)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign) and isinstance(here.holder, list):
         for name in dict.fromkeys(name for one in node.targets for name in names(one)):

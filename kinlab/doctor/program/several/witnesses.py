@@ -37,7 +37,7 @@ _WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 16)
 
 
 @dataclass(frozen=True)
-class Step:
+class FirstStep:
     """An edit with which statements give what a textbook has.
 
     Attributes:
@@ -50,7 +50,7 @@ class Step:
 
 
 @dataclass
-class Told:
+class Watched:
     """What is told of a statement.
 
     Attributes:
@@ -62,7 +62,7 @@ class Told:
     good: bool | None = None
 
 
-_NEVER = Told()
+_NEVER = Watched()
 
 
 class Witnesses:
@@ -77,11 +77,11 @@ class Witnesses:
         self.grounds = copy.copy(search.evidence)
         self.grounds.known = search.evidence.known[:_FIRST]
         self.known: dict[tuple[Any, bytes], bool | None] = {}
-        self.told: dict[int, Told] = {}
+        self.told: dict[int, Watched] = {}
         self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
 
-    def steps(self, known: Effects, most: int) -> list[Step]:
+    def steps(self, known: Effects, most: int) -> list[FirstStep]:
         """The edits that make statements right and spoil none, as many as some work allows.
 
         The likeliest come first, those with which more is right as if they were likelier.
@@ -89,7 +89,7 @@ class Witnesses:
         trial = self.search.trial
         if not self.grounds.known or not self.places:
             return []
-        found: list[Step] = []
+        found: list[FirstStep] = []
         with trial.changed({*range(len(trial.trees))}, self._saws()):
             before = self._right()
             numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
@@ -107,7 +107,7 @@ class Witnesses:
                 gained = min(_gained(before, after), _MANY)
                 if gained:
                     cost = known.likely(edits[0]) - _STATEMENT * gained
-                    found.append(Step(edits[0], cost))
+                    found.append(FirstStep(edits[0], cost))
         return sorted(found, key=lambda step: step.cost)
 
     def cost_of(self, edit: ProgramEdit) -> int:
@@ -119,7 +119,7 @@ class Witnesses:
         return [FieldChange(holder, field, _saw(n, FieldChange(holder, field, None).now))
                 for n, (holder, field) in enumerate(self.places)]  # fmt: skip
 
-    def _right(self) -> dict[int, Told]:
+    def _right(self) -> dict[int, Watched]:
         """What is told of each statement that ran."""
         search, self.told = self.search, {}
         search.trial.space["_saw"] = self._see
@@ -131,7 +131,7 @@ class Witnesses:
         return self.told
 
     def _see(self, n: int, value: Any) -> Any:
-        told = self.told.setdefault(n, Told())
+        told = self.told.setdefault(n, Watched())
         told.count += 1
         if told.good is not False and (good := self._textbook(value)) is not None:
             told.good = good
@@ -169,7 +169,7 @@ class Witnesses:
         return None if sense is not None and sense.what in _GIVEN else sense is not None
 
 
-def _gained(before: dict[int, Told], after: dict[int, Told]) -> int:
+def _gained(before: dict[int, Watched], after: dict[int, Watched]) -> int:
     """How many statements an edit makes right; 0 where it spoils any."""
     gained = 0
     for n, now in after.items():

@@ -22,6 +22,7 @@ from kinlab.tolerances import TOLERANCES
 
 _PASSES = 12
 """Passes of a statement that are looked at."""
+_STATEMENTS = ast.Assign | ast.AugAssign | ast.Return
 _PIECES = ast.Name | ast.Subscript | ast.Attribute
 
 
@@ -39,9 +40,9 @@ def suspects(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set
     found: set[int] = set()
     for tree in trial.trees:
         for node in nodes(tree):
-            if isinstance(node, ast.Assign | ast.AugAssign | ast.Return) and node.value is not None:
-                if any(look.wrong(value) for value in _values(node.value)):
-                    found |= {id(inner) for inner in nodes(node)}
+            given = node.value if isinstance(node, _STATEMENTS) else None
+            if given is not None and any(look.wrong(value) for value in _values(given)):
+                found |= {id(inner) for inner in nodes(node)}
     return found
 
 

@@ -1,0 +1,10 @@
+"""What speaks for an edit of a program, and against it.
+
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``evidence``      What speaks against an edit: that what it changes is already what a textbook has
+``scaled``        Another arm, on which what is one by the numbers alone is two things
+``suspects``      Statements that are wrong by what they are made of
+================  =================================================================================
+"""
