@@ -30,8 +30,6 @@ _NAMED = 2
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
 """Share of a number below which another one is rather the step of a difference."""
-_SMALL = 1e-3
-"""The largest number that is a step, and nothing else."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -313,11 +311,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
-    if (
-        len(repair.edits) > 1
-        and not search.differences
-        and repair.error > TOLERANCES.left_of_several
-    ):
+    exact = repair.error <= TOLERANCES.left_of_several or search.differences
+    if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
         return None
     if search.case.quantity.read is not None and _fewer(repair, search):
         return None
@@ -328,6 +323,15 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         edits.append(_branch(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
     return replace(repair, edits=tuple(edits), rivals=tuple(one for one in rivals if one))
+
+
+def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
+    """Whether each of several edits is of the user's program, and the others alone do not do."""
+    for edit in repair.edits:
+        own = edit.part == DATA or _inside(edit.node, search.trial.trees[edit.part])
+        if not own or _right(tuple(one for one in repair.edits if one is not edit), search):
+            return False
+    return True
 
 
 def _fewer(repair: ProgramRepair, search: LineSearch) -> bool:
@@ -365,7 +369,7 @@ def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
     """
     if edit.kind == "factor" and edit.part != DATA:
         inside = (getattr(node, "value", None) for node in nodes(edit.node))
-        return any(isinstance(x, float) and 0 < abs(x) <= _SMALL for x in inside)
+        return any(isinstance(x, float) and 0 < abs(x) <= _STEP * _STEP for x in inside)
     if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
         return False
     old, new = map(abs, edit.numbers)

@@ -35,6 +35,10 @@ _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
+_SHARE = 7
+"""Tenths of the work for single edits that may be done for several."""
+_LOOKING = 1_500_000
+"""What watching a program anew amounts to, beside running it."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
 _TURNS = 3
@@ -56,7 +60,7 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return _Several(search.most).found(search)
+        return _Several(_SHARE * search.most // 10).found(search)
 
 
 class _Several:
