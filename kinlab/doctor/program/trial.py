@@ -37,6 +37,8 @@ class NoProgramError(Exception):
 
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
+_LARGEST = 100_000
+"""Numbers that an outer product may have."""
 _TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
 _LINES = 20_000
@@ -360,8 +362,15 @@ def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
     return np.cross(one, other, *rest, **options)
 
 
+def _outer(one: Any, other: Any, *rest: Any) -> Any:
+    """numpy's outer product, but none that grows without end where an edit made it of a dot."""
+    if np.size(one) * np.size(other) > _LARGEST:
+        raise ValueError("an outer product of so many numbers")
+    return np.outer(one, other, *rest)
+
+
 _QUICK = ModuleType("numpy")
-_QUICK.__dict__.update(np.__dict__, cross=_cross)
+_QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer)
 
 
 def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
