@@ -1,0 +1,154 @@
+"""What is told of a program rests on more than this arm's own numbers, and on the user's lines."""
+
+from __future__ import annotations
+
+import ast
+
+import numpy as np
+import pytest
+from hand_programs import repaired
+
+import kinlab as kl
+from kinlab.doctor.program.edits.operators import negated
+from kinlab.doctor.program.grounds.scaled import other_arm
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.read import read
+from kinlab.doctor.program.repair import changed
+from kinlab.doctor.program.trial import Trial, _outer
+
+TORQUES = """
+import numpy as np
+
+alpha = [0.0, -np.pi/2, 0.0]
+a = (0.0, 0.08, 0.38)
+d = (0.29, 0.1, -0.05)
+m = [5.2, 3.4, 1.9]
+pc = [np.array([0.03, 0.02, -0.07]), np.array([0.17, 0.02, -0.04]), np.array([0.14, -0.03, 0.02])]
+
+def step(i, angle):
+    c, s, ca, sa = np.cos(angle), np.sin(angle), np.cos(alpha[i]), np.sin(alpha[i])
+    return (np.array([[c, -s, 0], [s*ca, c*ca, -sa], [s*sa, c*sa, ca]]),
+            np.array([a[i], -sa*d[i], ca*d[i]]))
+
+def f(q):
+    g, forces, steps = np.array([0., 0., 9.81]), [], []
+    for i in range(3):
+        R, p = step(i, q[i])
+        g = R.T @ g
+        steps.append((R, p))
+        forces.append(m[i]*g)
+    tau, force, moment = np.zeros(3), np.zeros(3), np.zeros(3)
+    for i in (2, 1, 0):
+        force, moment = force + forces[i], moment + np.cross(pc[i], forces[i])
+        tau[i] = moment[2]
+        R, p = steps[i]
+        force = R @ force
+        moment = R @ moment + np.cross(p, force)
+    return tau
+"""
+
+
+@pytest.fixture(scope="module")
+def arm() -> kl.Robot:
+    """The arm of the program, from its table."""
+    twists, lengths, offsets = (0.0, -np.pi / 2, 0.0), (0.0, 0.08, 0.38), (0.29, 0.1, -0.05)
+    centres = ((0.03, 0.02, -0.07), (0.17, 0.02, -0.04), (0.14, -0.03, 0.02))
+    links = [
+        kl.DHLink(a=x, alpha=twist, d=y, mass=mass, com=com, inertia=0.01 * np.eye(3))
+        for x, twist, y, mass, com in zip(
+            lengths, twists, offsets, (5.2, 3.4, 1.9), centres, strict=True
+        )
+    ]
+    return kl.Robot.from_dh(kl.DHTable("grounds", "modified", links))
+
+
+def made(text):
+    space = {}
+    exec(text, space)  # noqa: S102  texts of this file
+    return space["f"]
+
+
+def test_the_program_is_right(arm) -> None:
+    assert np.max(kl.compare(arm, "gravity_torques", made(TORQUES)).errors) < 1e-12
+
+
+def test_the_program_with_another_arms_numbers_is_right_for_that_arm(arm) -> None:
+    function = made(TORQUES)
+    trial = Trial(read(function))
+    states = [(np.array([0.3, -0.7, 1.1]),), (np.array([-1.2, 0.4, 0.9]),)]
+    other = other_arm(arm, trial, Observed(trial, states))
+    assert other is not None
+    twists = [link.alpha for link in other.robot.table.links]
+    assert 0.1 < abs(np.cos(twists[1])) < 0.9 and twists[0] == twists[2] == 0
+    (edit,) = [one for one in other.edits if one.node == "a"]  # a tuple is made anew, once
+    assert edit.changes[0].new == pytest.approx((0.0, 0.1, 0.475))
+    with changed(trial, other.edits):
+        for (q,) in states:
+            engine = kl.gravity_torques(other.robot, q)
+            assert np.allclose(trial.function(q), engine, atol=1e-12)
+            assert not np.allclose(engine, function(q), rtol=0.1)
+
+
+def test_the_opposite_of_a_condition() -> None:
+    pairs = {"a > 2": "a <= 2", "a == 'x'": "a != 'x'", "a is b": "a is not b", "f(a)": "not f(a)"}
+    for text, opposite in pairs.items():
+        assert ast.unparse(negated(ast.parse(text, mode="eval").body)) == opposite
+
+
+@pytest.mark.parametrize(
+    ("piece", "slip"),
+    [
+        ("c*sa, ca]", "c*sa**2, ca]"),
+        ("[s*sa, c", "[s*sa**2, c"),
+    ],
+)
+def test_a_repair_holds_at_other_twists(arm, piece, slip) -> None:
+    """At alpha = -pi/2 a sine is -1: its square, its cube and its sign are one there."""
+    assert TORQUES.count(piece) == 1
+    wrong = TORQUES.replace(piece, slip)
+    found = kl.diagnose(arm, "gravity_torques", made(wrong))
+    assert found.causes
+    states = np.random.default_rng(2).uniform(-2, 2, (6, 3))
+    assert any(
+        all(np.allclose(after["f"](q), made(TORQUES)(q), atol=1e-12) for q in states)
+        for after in repaired(wrong, found.causes[0].sentence)
+    )
+    line = next(k for k, text in enumerate(wrong.splitlines(), 1) if slip in text)
+    assert f"line {line} " in found.causes[0].sentence
+
+
+def test_each_of_several_edits_is_the_users() -> None:
+    """tanh(q2) is no slip of the second torque: nothing is added to it and taken away again."""
+    text = """
+import numpy as np
+def f(q):
+    second = 1.5 * 9.81 * 0.4 * np.cos(q[0] + q[1])
+    return np.array([3.5 * 9.81 * 0.5 * np.cos(q[0]) + second, np.tanh(q[1])])
+"""
+    found = kl.diagnose("planar2r", "gravity_torques", made(text))
+    assert not found.agrees and not found.causes
+    assert any("g1" in said for said in found.proved)
+
+
+def test_an_edit_that_grows_without_end_is_left() -> None:
+    """np.outer for np.dot in a product of six frames has 16**7 entries."""
+    links = [kl.DHLink(a=0.1 * k, alpha=0.3 * k, d=0.05) for k in range(1, 8)]
+    arm = kl.Robot.from_dh(kl.DHTable("seven", "modified", links))
+    text = """
+import numpy as np
+a = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]
+alpha = [0.3, 0.6, 0.9, 1.2, 1.5, 1.8, 2.1]
+def A(i, th):
+    c, s, ca, sa = np.cos(th), np.sin(th), np.cos(alpha[i]), np.sin(alpha[i])
+    return np.array([[c, -s, 0, a[i]], [s*ca, s*ca, -sa, -sa*0.05], [s*sa, c*sa, ca, ca*0.05],
+                     [0, 0, 0, 1]])
+def f(q):
+    T = np.eye(4)
+    for i, th in enumerate(q):
+        T = np.dot(T, A(i, th))
+    return T
+"""
+    with pytest.raises(ValueError, match="so many"):
+        _outer(np.ones(400), np.ones(400))
+    found = kl.diagnose(arm, "fk", made(text))
+    assert "line 7 (in A)" in found.causes[0].sentence
