@@ -75,7 +75,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
         for place, some in zip(places, factors, strict=True):
             if id(place) in known and some:
                 changed += [(place, factor * place.value) for factor in some - {1.0}]
-            elif _of_one_arm(float(place.value)) or some - {1.0}:
+            elif some != {1.0} and (some or _of_one_arm(float(place.value))):
                 whole = False
         larger = scaled(robot, twisted) if changed else None
         if larger is not None:
