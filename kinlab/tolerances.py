@@ -115,6 +115,12 @@ class Tolerances:
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
     1e-3 or more."""
 
+    may_be_step: float = 1e-2
+    """The largest number of a program that may be the step of a difference."""
+
+    is_step: float = 1e-4
+    """The largest number of a program that is rather a step than anything of an arm."""
+
     left_of_several: float = 1e-11
     """Relative error that several repairs of one program may leave, where one may leave what
     formulas differ by: with so many of them something nearly right is found by accident."""

@@ -205,9 +205,8 @@ def _explained(
         split = apart(case)
         # two readings of a program of which no line explains it fit by accident more often
         if program is None:
-            few = (
-                case if written else replace(case, slack=min(_left(worst), TOLERANCES.slips_leave))
-            )
+            slack = min(_left(worst), TOLERANCES.slips_leave)
+            few = case if written else replace(case, slack=slack)
             found_ = one_for_each_kind(few, ways, split)
             found_ = found_ or several_taken_otherwise(few, ways, split)
             causes = _exactly([_as_steps(found) for found in found_], worst)

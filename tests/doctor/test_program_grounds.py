@@ -150,5 +150,8 @@ def f(q):
 """
     with pytest.raises(ValueError, match="so many"):
         _outer(np.ones(400), np.ones(400))
+    grown = "import numpy as np\ndef f(q):\n    return np.outer(np.ones(400), np.ones(400))"
+    with pytest.raises(ValueError, match="so many"):
+        Trial(read(made(grown))).function(np.zeros(2))
     found = kl.diagnose(arm, "fk", made(text))
     assert "line 7 (in A)" in found.causes[0].sentence

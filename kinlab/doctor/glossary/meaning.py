@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -194,13 +195,14 @@ _FORMS: dict[str, Callable[[Array], Array]] = {
 def _hits(known: Sequence[Glossary], values: Sequence[Array]) -> Iterator[Row]:
     for k, embed in enumerate(_EMBEDDINGS if known[0].plane else _EMBEDDINGS[:1]):
         shown = [embed(value) for value in values]
-        same: Array | None = None
+        same: Any = None
         rows: list[Row] = []
         for one, value in zip(known, shown, strict=True):
-            rows, things = one.things.get(value.shape if value is not None else (-1,), _NOTHING)
-            if value is None or not rows:
+            if value is None:
                 break
-            gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
+            rows, gap = one.gaps(value)
+            if not rows:
+                break
             here = gap <= TOLERANCES.same_relation * float(np.max(np.abs(value)))
             same = here if same is None else same & here
         else:
@@ -209,10 +211,7 @@ def _hits(known: Sequence[Glossary], values: Sequence[Array]) -> Iterator[Row]:
             yield from ((rank + (k > 0), sense) for rank, sense in found)
 
 
-_NOTHING: tuple[list[Row], Array] = ([], np.zeros(0))
-
-
-def _as_vector(value: Array) -> Array | None:
+def as_vector(value: Array) -> Array | None:
     """Of a plane arm: a number about z, or two in x and y."""
     if value.shape == ():
         return np.array([0.0, 0.0, float(value)])
@@ -245,7 +244,7 @@ def _as_rows(value: Array) -> Array | None:
 
 _EMBEDDINGS: tuple[Callable[[Array], Array | None], ...] = (
     np.asarray,
-    _as_vector,
+    as_vector,
     _as_rotation,
     _as_transform,
     _as_rows,

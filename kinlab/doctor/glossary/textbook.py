@@ -55,6 +55,13 @@ class Glossary:
     things: dict[tuple[int, ...], tuple[list[Row], Array]] = field(default_factory=dict)
     plane: bool = False
 
+    def gaps(self, value: Array) -> tuple[list[Row], Array]:
+        """The senses of a value's shape, and how far each is from it: the largest difference."""
+        if value.shape not in self.things:
+            return [], np.empty(0)
+        rows, things = self.things[value.shape]
+        return rows, np.abs(things - value).reshape(len(rows), -1).max(axis=1)
+
 
 def meanings(robot: Robot, arguments: dict[str, Array]) -> Glossary:
     """Every physical vector, matrix and number of the textbooks at one state.

@@ -23,6 +23,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.glossary.textbook import Glossary, meanings
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.grounds.evidence import Grounds
@@ -60,8 +61,6 @@ _ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
-_STEP = 1e-2
-"""The largest number that may be the step of a difference."""
 _SIMPLE = 12
 """Denominator up to which a fraction may be meant."""
 _CLEARLY = 0.5
@@ -143,7 +142,7 @@ class LineSearch:
         values += [self.trial.space[name] for name in self.program.data]
         values += [value for part in self.program.parts for value in _defaults(part.function)]
         words = {word for tree in self.trial.trees for word in named_in(tree)}
-        steps = (isinstance(x, float) and 0 < abs(x) <= _STEP for x in values)
+        steps = (isinstance(x, float) and 0 < abs(x) <= TOLERANCES.may_be_step for x in values)
         return any(steps) or any("eps" in word or word == "finfo" for word in words)
 
     def _add_a_wrong_one(self) -> None:
@@ -163,12 +162,17 @@ class LineSearch:
     def _prepare(self) -> None:
         stacks = self.case.arguments.values()
         self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
+        self.known: list[Glossary] = []
+        if table_of(self.case.robot) is not None:
+            given = self.case.arguments.items()
+            states = ({name: stack[k] for name, stack in given} for k in self.watched)
+            self.known = [meanings(self.case.robot, state) for state in states]
         self.observed = Observed(self.trial, self.states)
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
-        self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+        self.evidence = Grounds(self.trial, self.observed, self.known)
         self._larger = self._made_larger()
-        self.suspected = suspects(self.trial, self.observed, self.evidence.known)
+        self.suspected = suspects(self.trial, self.observed, self.known)
 
     @property
     def scale(self) -> Array:
@@ -214,7 +218,7 @@ class LineSearch:
     def look_again(self) -> None:
         """Watches the program as it stands now: what is right in it may be more than before."""
         self.observed = Observed(self.trial, self.states)
-        self.evidence = Grounds(self.trial, self.observed, self.case, self.watched)
+        self.evidence = Grounds(self.trial, self.observed, self.known)
 
     def singles(self) -> list[ProgramRepair]:
         """Single edits that make the program right, the likeliest first."""

@@ -264,33 +264,31 @@ class Trial:
         held = self._contents.now()
         reached = {k for part in parts for k in self.above[part]}
         self._touched = outer | reached
-        loaded = self.as_loaded()
-        loaded.__enter__()
-        try:
-            again = not reached.isdisjoint(self._loads) or (-1 in parts and bool(self._fields))
-            self._stale = self._stale or again
-            for change in changes:
-                if compiled is None:
-                    _located(change.new)
-                change.put(change.new)
-            for k in every:
-                if k in parts and compiled is not None:
-                    self.space["_edit"], self._made[k] = compiled
-                elif k in parts:
-                    self._made[k] = self._compiled(k)
-                # only of what no change reaches, this one's or one that stands, answers are kept
-                self.place(k, self._made[k] if k in self._touched else self._remembering[k])
-            yield
-        finally:
-            for change, value in reversed(old):
-                change.put(value)
-            if self._contents.put_back(held):  # answers may rest on what was written
-                self._forget()
-            self._touched, self._made = outer, before
-            self.space["_edit"] = 0
-            for k in every:
-                self.place(k, kept[k])
-            loaded.__exit__(None, None, None)
+        with self.as_loaded():
+            try:
+                again = not reached.isdisjoint(self._loads) or (-1 in parts and bool(self._fields))
+                self._stale = self._stale or again
+                for change in changes:
+                    if compiled is None:
+                        _located(change.new)
+                    change.put(change.new)
+                for k in every:
+                    if k in parts and compiled is not None:
+                        self.space["_edit"], self._made[k] = compiled
+                    elif k in parts:
+                        self._made[k] = self._compiled(k)
+                    # answers are kept of what no change reaches, this one's or one that stands
+                    self.place(k, self._made[k] if k in self._touched else self._remembering[k])
+                yield
+            finally:
+                for change, value in reversed(old):
+                    change.put(value)
+                if self._contents.put_back(held):  # answers may rest on what was written
+                    self._forget()
+                self._touched, self._made = outer, before
+                self.space["_edit"] = 0
+                for k in every:
+                    self.place(k, kept[k])
 
     def _forget(self) -> None:
         for one in self._remembering:

@@ -369,7 +369,7 @@ def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
     """
     if edit.kind == "factor" and edit.part != DATA:
         inside = (getattr(node, "value", None) for node in nodes(edit.node))
-        return any(isinstance(x, float) and 0 < abs(x) <= _STEP * _STEP for x in inside)
+        return any(isinstance(x, float) and 0 < abs(x) <= TOLERANCES.is_step for x in inside)
     if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
         return False
     old, new = map(abs, edit.numbers)

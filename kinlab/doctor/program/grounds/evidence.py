@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.glossary.textbook import Glossary, Row, Sense, meanings
+from kinlab.doctor.glossary.meaning import as_vector
+from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial, named_in
@@ -45,24 +46,19 @@ class Grounds:
     Args:
         trial: the program.
         observed: what its expressions were at the states that it was watched at.
-        case: the question.
-        watched: which of its states these are.
+        known: the textbook's things at these states; none of a robot without a table.
     """
 
-    def __init__(
-        self, trial: Trial, observed: Observed, case: Case, watched: Sequence[int]
-    ) -> None:
+    def __init__(self, trial: Trial, observed: Observed, known: list[Glossary]) -> None:
         self.trial = trial
-        self.known: list[Glossary] = []
+        self.known = known
         self.right: set[int] = set()
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
         self._of_data: dict[str, float] = {}
-        if table_of(case.robot) is None:
+        if not known:
             return
-        stacks = case.arguments.items()
-        self.known = [meanings(case.robot, {name: s[k] for name, s in stacks}) for k in watched]
         for part, tree in enumerate(trial.trees):
             self._look(part, tree, observed)
             for node in nodes(tree):
@@ -88,7 +84,7 @@ class Grounds:
         return _TRUSTED if edit.part in self.trusted else 0.0
 
     def _against_data(self, name: str) -> float:
-        using = [k for k in self.trial.above[DATA] if self._uses(k, name)]
+        using = [k for k in self.trial.above[DATA] if name in names(self.trial.trees[k])]
         if using and all(k in self.sound for k in using):
             return _SOUND
         return _TRUSTED if using and all(k in self.trusted for k in using) else 0.0
@@ -105,10 +101,6 @@ class Grounds:
             for node in nodes(tree)
             if isinstance(node, ast.Assign | ast.Return) and node.value is not None
         )
-
-    def _uses(self, part: int, name: str) -> bool:
-        tree = self.trial.trees[part]
-        return name in names(tree)
 
     def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
         """Statements that give what a textbook has, and whether the part returns it."""
@@ -170,7 +162,7 @@ class Grounds:
         found: list[Sense] = []
         for k in range(passes):
             values = [seen.values[k + passes * j] for j in range(count)]
-            if not all(np.all((x == 0) | (np.abs(x) == 1)) for x in values):
+            if not all(map(zeros_and_ones, values)):
                 sense = self.thing(values)
                 if sense is None:
                     return None
@@ -181,18 +173,16 @@ class Grounds:
         """A thing of the arm's that a value is at all the states: the first of several."""
         found = self._row(values)
         if found is None and self.known[0].plane and values[0].shape in ((), (2,)):
-            lifted = [np.append(x, 0.0) if x.shape else np.array([0.0, 0.0, x]) for x in values]
-            found = self._row(lifted)
+            found = self._row([x for x in map(as_vector, values) if x is not None])
         return found
 
     def _row(self, values: list[Array]) -> Sense | None:
-        same: Array | None = None
+        same: Any = None
         rows: Sequence[Row] = ()
         for known, value in zip(self.known, values, strict=True):
-            rows, things = known.things.get(value.shape, ((), value))
+            rows, gap = known.gaps(value)
             if not rows:
                 return None
-            gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
             here = gap <= TOLERANCES.same_relation * float(np.max(np.abs(value)))
             same = here if same is None else same & here
         for k in np.flatnonzero(same) if same is not None else ():
@@ -215,6 +205,11 @@ class Grounds:
         """The parts that are named in a tree."""
         inside = named_in(tree)
         return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
+
+
+def zeros_and_ones(value: Array) -> bool:
+    """Whether there is nothing else in a value, so that anything could be it."""
+    return bool(np.all((value == 0) | (np.abs(value) == 1)))
 
 
 def _factor(edit: ProgramEdit) -> float:

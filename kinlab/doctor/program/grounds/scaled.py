@@ -31,8 +31,6 @@ _TWISTED = 0.8
 """How much the axes are turned towards each other: no sine or cosine of that is 0 or 1."""
 _PARTS = 12
 """Denominator up to which a fraction, or one of pi, is nobody's length or mass."""
-_STEP = 1e-2
-"""The largest number that may be the step of a difference."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +64,8 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     held = np.array([float(place.value) for place in free])
     turned = bool(twists) and all(_among(x, held) for x in twists)
     for twisted in (_TWISTED, 1.0) if turned else (1.0,):
-        factors = _alike(places, [_factors(robot, table, p.value, twisted) for p in places])
+        kinds = _kinds(robot, table, twisted)
+        factors = _alike(places, [_factors(kinds, place.value) for place in places])
         known = {id(place) for place in free}
         if any(len(some) > 1 for some, p in zip(factors, places, strict=True) if id(p) in known):
             continue
@@ -77,17 +76,14 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
                 changed += [(place, factor * place.value) for factor in some - {1.0}]
             elif some != {1.0} and (some or _of_one_arm(float(place.value))):
                 whole = False
-        larger = scaled(robot, twisted) if changed else None
+        larger = _scaled(table, twisted) if changed else None
         if larger is not None:
             return OtherArm(larger, tuple(together(changed)), whole)
     return None
 
 
-def scaled(robot: Robot, twisted: float = 1.0) -> Robot | None:
-    """The arm with all its lengths and masses larger; None of one without a table."""
-    table = table_of(robot)
-    if table is None:
-        return None
+def _scaled(table: DHTable, twisted: float) -> Robot | None:
+    """The arm with all its lengths and masses larger; None where that is none."""
     links = [
         replace(
             link,
@@ -110,8 +106,11 @@ def scaled(robot: Robot, twisted: float = 1.0) -> Robot | None:
         return None
 
 
-def _factors(robot: Robot, table: DHTable, value: float, twisted: float) -> set[float]:
-    """What a number of the first arm is multiplied by: several where it may be several things."""
+Kinds = Sequence[tuple[float, Array]]
+"""What numbers of the first arm are multiplied by, and which."""
+
+
+def _kinds(robot: Robot, table: DHTable, twisted: float) -> Kinds:
     links = table.links
     lengths = [x for k in links for x in (k.a, k.d, *np.ravel(k.com))]
     lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
@@ -124,7 +123,12 @@ def _factors(robot: Robot, table: DHTable, value: float, twisted: float) -> set[
         (twisted, [k.alpha for k in links]),
         (1.0, [*kept, np.linalg.norm(robot.model.gravity.linear)]),
     )
-    return {factor for factor, known in kinds if value and _among(value, np.array(known, float))}
+    return [(factor, np.array(known, dtype=float)) for factor, known in kinds]
+
+
+def _factors(kinds: Kinds, value: float) -> set[float]:
+    """What a number of the first arm is multiplied by: several where it may be several things."""
+    return {factor for factor, known in kinds if value and _among(value, known)}
 
 
 def _alike(places: Sequence[NumberPlace], factors: list[set[float]]) -> list[set[float]]:
@@ -147,7 +151,7 @@ def _of_one_arm(value: float) -> bool:
     """Whether a number that stays in a program may be made of the first arm's numbers."""
     parts = _PARTS * value, _PARTS * value / np.pi
     plain = any(abs(x - round(x)) <= TOLERANCES.same_relation * abs(x) for x in parts)
-    return abs(value) > _STEP and not plain
+    return abs(value) > TOLERANCES.may_be_step and not plain
 
 
 def _among(value: float, known: Array) -> bool:

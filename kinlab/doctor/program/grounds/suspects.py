@@ -15,7 +15,9 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary
+from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
@@ -66,8 +68,10 @@ class _Look:
             return False
         pieces = [*_pieces(value)]
         passes = seen.values[:_PASSES]
-        odd = [k for k, one in enumerate(passes) if not _plain(one) and not self.textbook(one)]
-        if not odd and all(map(_plain, passes)):
+        odd = [
+            k for k, one in enumerate(passes) if not zeros_and_ones(one) and not self.textbook(one)
+        ]
+        if not odd and all(map(zeros_and_ones, passes)):
             odd = [0] if any(self.moves(piece) for piece in pieces) else []
         return bool(odd and pieces) and all(self.vouched(one, seen, odd[0]) for one in pieces)
 
@@ -86,7 +90,7 @@ class _Look:
             if seen is not None and seen.shape is not None:
                 each = max(1, seen.count // max(1, whole.count))
                 here = seen.values[k * each : (k + 1) * each]
-                if seen.whole or all(_plain(x) or self.textbook(x) for x in here):
+                if seen.whole or all(zeros_and_ones(x) or self.textbook(x) for x in here):
                     return True
             if isinstance(at, ast.Name):
                 return False
@@ -107,22 +111,16 @@ class _Look:
 
     def _near(self, value: Array) -> bool:
         if self.known.plane and value.shape in ((), (2,)):
-            lifted = np.append(value, 0.0) if value.shape else np.array([0.0, 0.0, value])
-            if self._one_of(lifted):
+            lifted = as_vector(value)
+            if lifted is not None and self._one_of(lifted):
                 return True
         return self._one_of(value)
 
     def _one_of(self, value: Array) -> bool:
-        rows, things = self.known.things.get(value.shape, ((), value))
-        if not rows:
-            return False
-        gap = np.abs(things - value).reshape(len(rows), -1).max(axis=1)
-        return bool(gap.min() <= TOLERANCES.nearly_agrees * float(np.max(np.abs(value))))
-
-
-def _plain(value: Array) -> bool:
-    """Whether it is made of zeros and ones."""
-    return bool(np.all((value == 0) | (np.abs(value) == 1)))
+        rows, gap = self.known.gaps(value)
+        return bool(rows) and bool(
+            gap.min() <= TOLERANCES.nearly_agrees * float(np.max(np.abs(value)))
+        )
 
 
 def _pieces(node: ast.AST) -> Iterator[ast.expr]:

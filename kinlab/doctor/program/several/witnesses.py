@@ -19,6 +19,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.glossary.textbook import Glossary
+from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.places import ProgramEdit, called
 from kinlab.doctor.program.repair import LineSearch
 from kinlab.doctor.program.several.effects import Effects
@@ -116,8 +117,10 @@ class Witnesses:
         return self.search.cost_of(edit) * _FIRST // own if own else 0
 
     def _saws(self) -> list[FieldChange]:
-        return [FieldChange(holder, field, _saw(n, FieldChange(holder, field, None).now))
-                for n, (holder, field) in enumerate(self.places)]  # fmt: skip
+        return [
+            FieldChange(holder, field, _saw(n, FieldChange(holder, field, None).now))
+            for n, (holder, field) in enumerate(self.places)
+        ]
 
     def _right(self) -> dict[int, Watched]:
         """What is told of each statement that ran."""
@@ -156,7 +159,7 @@ class Witnesses:
         flat = array.ravel()
         if not np.isfinite(flat).all():
             return False
-        if np.all((flat == 0) | (np.abs(flat) == 1)):
+        if zeros_and_ones(flat):
             return None
         marks = self.marks.get(array.shape)
         if marks is not None:  # most are nothing known, which one number of each tells
@@ -198,10 +201,11 @@ def _watched(edit: ProgramEdit, numbers: dict[tuple[int, Any], int]) -> ProgramE
     at = [numbers.get((id(c.holder), c.field)) for c in edit.changes]
     if all(n is None for n in at):
         return edit
-    return replace(edit, changes=tuple(
+    changes = [
         c if n is None or not isinstance(c.new, ast.expr) else replace(c, new=_saw(n, c.new))
         for c, n in zip(edit.changes, at, strict=True)
-    ))  # fmt: skip
+    ]
+    return replace(edit, changes=tuple(changes))
 
 
 def _saw(n: int, value: Any) -> ast.expr:
