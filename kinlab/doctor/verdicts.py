@@ -31,7 +31,9 @@ _FEW = 8
 """States at which the noise of a function is measured."""
 _COORDINATES = 6
 """Of a twist."""
-_ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
+_DIGITS_LEFT = 100.0
+"""Units of the last decimal that rounded answers reach at least."""
+ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
 @dataclass(frozen=True)
@@ -122,17 +124,22 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
                 "sums over qd_j qd_k are the same"
             )
             return Excuse("unusual", (said,))
-    if name in _ENERGIES:
+    if name in ENERGIES:
         gap = hand - engine
         constant = gap[:1]
         if same_values(gap, np.broadcast_to(constant, gap.shape), engine, slack):
             size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
-            said = _(
-                "the potential has another zero (the difference is {size:.6g} J everywhere), "
-                "which changes no torque"
-            )
-            return Excuse("unusual", (said.format(size=size),))
+            return Excuse("unusual", (zero_moved(size),))
     return None
+
+
+def zero_moved(size: float) -> str:
+    """What is said of a potential that is another everywhere, by so much."""
+    said = _(
+        "the potential has another zero (the difference is {size:.6g} J everywhere), "
+        "which changes no torque"
+    )
+    return said.format(size=size)
 
 
 def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
@@ -199,6 +206,14 @@ def elsewhere(
     return [], gap if plain else 0.0
 
 
+def unnamed(text: Written | None, derived: Derivation, poly: Poly) -> set[str]:
+    """The robot's numbers in a derived entry that a text has no name for."""
+    if text is None or not searchable(poly):
+        return set()
+    right = derived.tree(derived.held(poly, tree.names(text.node)))
+    return tree.names(right) & {*derived.arm.trig.parameters} - tree.names(text.node)
+
+
 def _one_robot(at: dict[str, Array], parameters: tuple[str, ...]) -> dict[str, Array]:
     """The same numbers for the robot at every state."""
     return {n: np.full_like(x, x[0]) if n in parameters else x for n, x in at.items()}
@@ -211,7 +226,9 @@ def _kept(
     count = len(next(iter(at.values())))
     here = {**at, **{name: np.full(count, value) for name, value in own.items()}}
     found = []
-    for name in sorted(missing or own):
+    written = {one.value for one in text.literals if not one.exponent}
+    asked = missing | {n for n, x in own.items() if x in written} if missing else {*own}
+    for name in sorted(asked):
         moved = {**here, name: here[name] * 1.37 + 0.1}
         target = np.broadcast_to(tree.evaluate(right, moved), (count,))
         gap = np.max(np.abs(text.values(moved) - target))
@@ -225,6 +242,22 @@ def by_differences(case: Case, engine: Array) -> Excuse | None:
     error, size = _own_error(case, engine)
     near = error <= TOLERANCES.slips_leave and _takes_differences(case, size)
     return of_digits(error) if near else None
+
+
+def answers_rounded(case: Case, engine: Array) -> Excuse | None:
+    """A function whose answers are the engine's, rounded to so many decimals."""
+    size = float(np.max(np.abs(engine)))
+    for places in range(2, 10):
+        unit = 10.0**-places
+        if size < _DIGITS_LEFT * unit:
+            continue
+        off = np.abs(np.round(case.hand / unit) * unit - case.hand)
+        if float(np.max(off)) > TOLERANCES.same_number * size:
+            continue
+        near = np.abs(case.hand - engine) <= 0.5 * unit * (1 + TOLERANCES.formula_agrees)
+        said = _("its answers are rounded to {places} decimals").format(places=places)
+        return Excuse("rounded", (said,)) if np.all(near) else None
+    return None
 
 
 def _own_error(case: Case, engine: Array) -> tuple[float, float]:

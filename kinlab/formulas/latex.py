@@ -27,7 +27,7 @@ _BLANKS = (
     r"\, \; \: \! \quad \qquad ~ \left \right \big \Big \bigg \Bigg \bigl \bigr \Bigl \Bigr "
     r"\biggl \biggr \displaystyle \textstyle \mathbf \boldsymbol \bm"
 )
-_SPACE = {"\\ ", *_BLANKS.split()}
+_SPACE = {"\\ ", "\\\\", "&", *_BLANKS.split()}
 _CALLED = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _TIMES = {"*", r"\cdot", r"\times"}
 _FRACTIONS = {r"\frac", r"\dfrac", r"\tfrac"}

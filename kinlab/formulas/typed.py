@@ -347,6 +347,8 @@ _ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
 """What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
 _OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
+_IN_BASE = re.compile(r"^(?:\{\s*\})?\^(?:0|\{\s*0\s*\})(?:_(?:\w|\{\s*\w\s*\}))?")
+"""The base frame in front of a name, and of which frame: {}^0_4T."""
 _NAMED = re.compile(r"([a-z_]{2,})(\[[\d:,\s-]+\])?")
 _LONGEST_NAME = 120
 
@@ -370,7 +372,44 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     if not parts[1].strip():
         raise ExpressionError(f"{place}: nothing stands behind the sign of equality")
     left, right = (part.strip() for part in parts)
+    typeset = typeset and (is_latex(right) or "*" not in right or "$" in text)
     return left, f"${right}$" if typeset else right
+
+
+_NEXT = re.compile(r"(\n|;|\\\\(?:\[[^\]]*\])?)")
+_GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
+_OWN_NAME = re.compile(r"[\\\w{} ]+")
+
+
+def explained(text: str) -> tuple[dict[str, str], str]:
+    """A formula with what its writer explains in front of it: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
+
+    Returns:
+        The writer's names with their formulas, as typed; and the formula itself, the last one.
+    """
+    lines = [line.strip("& ") for line in _lines(bare(text)) if line.strip("& ")]
+    own = [line.partition("=") for line in lines[:-1]]
+    counts = [line.count("=") for line in lines]
+    if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
+        return {}, text
+    if not all(_OWN_NAME.fullmatch(name) for name, *_rest in own):
+        return {}, text
+    dollars = "$" if is_latex(text) else ""
+    formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _lines(text: str) -> list[str]:
+    """The text, cut where a line or a statement ends outside of brackets and matrices."""
+    lines = [""]
+    for piece in _NEXT.split(_GOES_ON.sub(" ", text)):
+        last = lines[-1]
+        depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
+        if _NEXT.fullmatch(piece) and depth == 0 and last.count("\\begin") == last.count("\\end"):
+            lines.append("")
+        else:
+            lines[-1] += piece
+    return lines
 
 
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
@@ -386,7 +425,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise ExpressionError(f"{place}: {text[:30]}... is no name of an entry")
-    typed = _OF_STATE.sub("", bare(text).strip("& ")).strip()
+    typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in _LONG):
         return typed  # a quantity by its own name
@@ -403,9 +442,46 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
 
 
+_IN_BOOKS = (
+    "M D H B A mass_matrix",
+    "C coriolis_matrix",
+    "g phi gravity_torques",
+    "V P U Ep potential potential_energy",
+    "T K Ek kinetic kinetic_energy",
+    "L lagrangian",
+    "T A H fk",
+    "J planar_jacobian jacobian jacobian_tool jacobian_spatial",
+    "tau u Q inverse_dynamics",
+    "V C H N B coriolis_torques",
+)
+"""What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
+_MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
+_PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
+
+
 def _of_one_name(left: str, name: str) -> bool:
-    """Whether a left side may stand before an entry: G2 before g2, tau before tau1."""
-    return left.lower() == name.lower() or (left.isalpha() and f"{left}1" == name)
+    """Whether a left side may stand before an entry: G2 and phi_2 before g2, tau before tau1.
+
+    A name that no book has for anything else may be the writer's own.
+    """
+    (head, places), (mine, wanted) = _head_and_places(left), _head_and_places(name)
+    known = [group for group in _MEANT if head in group]
+    if not known and not places and head != mine:
+        return True
+    if places != wanted and (places or wanted not in ("", "1")):
+        return False
+    return head == mine or not known or any(mine in group for group in known)
+
+
+def _head_and_places(name: str) -> tuple[str, str]:
+    """``("m", "12")`` of M12, ``("mass_matrix", "12")`` of ``mass_matrix[0,1]``."""
+    found = _PLACES.fullmatch(name.replace(" ", ""))
+    if found is None:
+        return name.lower(), ""
+    head, places = found.groups()
+    if "[" in name:
+        places = "".join(str(int(k) + 1) for k in places.split(",") if k)
+    return head.lower(), places.replace(",", "")
 
 
 _MATRIX = re.compile(

@@ -31,15 +31,18 @@ class Vocabulary:
         values: what each name stands for, SI units.
         entries: entry of the table, such as ``"a2"`` or ``"com1x"``, as a sum of names.
             Rows are numbered from 1 as they stand in the table.
+        others: names by which books call what has another name here, or is zero: ``lc1`` is
+            l1/2 of a rod, ``I1`` nothing where all the mass is in one point.
     """
 
     values: dict[str, float] = field(default_factory=dict)
     entries: dict[str, Linear] = field(default_factory=dict)
+    others: dict[str, Linear] = field(default_factory=dict)
 
     def put(self, entry: str, name: str, value: float, sign: int = 1) -> None:
         """Calls an entry ``sign`` times ``name``; an entry of zero stays zero."""
         if value == 0.0:
-            self.entries[entry] = ()
+            self.entries[entry] = self.others[name] = ()
             return
         self.values[name] = sign * value
         self.entries[entry] = ((Fraction(sign), name),)
@@ -113,6 +116,7 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
             words.put(f"a{i}", f"l{i}", length)
             centre, behind = float(np.asarray(link.com)[0]) + length, length
         from_joint = _centre(words, i, centre, length)
+        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
         minus = ((Fraction(-1), f"l{i}"),) if behind else ()
         words.entries[f"com{i}x"] = _add(from_joint, minus)
         words.entries[f"com{i}y"] = words.entries[f"com{i}z"] = ()
@@ -120,6 +124,8 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
         for k, axis in enumerate(_AXES):  # only the moment about z can be felt
             words.entries[f"inertia{i}{axis}{axis}"] = ((exact(tensor[k, k]), ""),)
         words.put(f"inertia{i}zz", f"I{i}", tensor[2, 2])
+        moment = words.entries[f"inertia{i}zz"]
+        words.others |= dict.fromkeys((f"I{i}", f"Izz{i}", f"Iz{i}", f"J{i}"), moment)
         for pair in ("xy", "xz", "yz"):
             words.entries[f"inertia{i}{pair}"] = ()
 

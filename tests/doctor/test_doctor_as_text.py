@@ -121,3 +121,35 @@ def test_no_repair_holds_at_the_robots_own_numbers_alone(robot, entry, text, rig
         right,
         right.replace("m1+m2", "m2+m1"),
     )
+
+
+BOOKS = "m1*lc1^2 + I1 + m2*(l1^2 + lc2^2 + 2*l1*lc2*c2) + I2"
+"""Spong's entry of the mass matrix."""
+
+
+@pytest.mark.parametrize("letters", [("lc", "I"), ("r", "J"), ("L_c", "I_zz")])
+def test_a_books_names_have_a_meaning_where_the_robot_has_others(letters):
+    """The centre of a rod is at l/2, of a point mass at l: its table has no name for it."""
+    typed = BOOKS.replace("lc", letters[0]).replace("I", letters[1])
+    rods = kl.diagnose("planar2r_rods", "M11", typed)
+    assert rods.agrees and not rods.remarks
+    points = kl.diagnose("planar2r", "M11", typed)
+    assert points.agrees
+    zeros = " and ".join(f"{letters[1]}{k} = 0" for k in (1, 2))
+    assert points.remarks == (f"of this robot {zeros}: what stands with it is not judged",)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("m1*lc1^2", "m1*l1^2", "l1 should be lc1 in m1*l1^2"),
+        ("+ lc2^2", "+ l2^2", "l2 should be lc2 in l2^2"),
+        ("l1*lc2", "lc1*lc2", "lc1 should be l1 in 2*lc1*lc2*c2"),
+        ("2*l1*lc2*c2", "l1*lc2*c2", "l1*lc2*c2 should be 2*l1*lc2*c2"),
+        ("lc2^2", "lc1^2", "lc1 should be lc2 in lc1^2"),
+    ],
+)
+def test_a_slip_in_a_books_names_is_told_in_them(old, new, told):
+    found = kl.diagnose("planar2r_rods", "M11", BOOKS.replace(old, new, 1))
+    assert [told in cause.sentence for cause in found.causes] == [True]
+    assert found.causes[0].shown["M11"].replace("**", "^") == BOOKS

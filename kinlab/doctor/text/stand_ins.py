@@ -22,6 +22,8 @@ from kinlab.tolerances import TOLERANCES
 
 STEPS, FREE = 12, 120
 """Steps in which the numbers of a formula are fitted, and how many of them at most."""
+_WHOLE = 3
+"""Digits of a whole number that may be a rounding where no other number is rounded."""
 _FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
 
@@ -214,7 +216,8 @@ class _Search:
             if abs(numbers[k] - literals[k].value)
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
-        if not changed or not all(self.meanings.credible(*pair) for pair in changed):
+        few = min((one.digits for one, _x in changed if not one.whole), default=_WHOLE)
+        if not changed or not all(self.meanings.credible(*pair, max(2, few)) for pair in changed):
             return None
         bare = [
             k
