@@ -44,7 +44,8 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     for said_of_all in rounding.roundings(case, engine, not written):
         return case, Excuse("rounded", said_of_all)
     if not written:
-        return case, verdicts.of_coefficients(case, engine)
+        odd = verdicts.unusual_and_rounded(case, engine)
+        return case, odd or verdicts.of_coefficients(case, engine)
     remarks: list[str] = []
     settled, right = np.array(case.hand), True
     for entry in entries(case, engine):
@@ -114,8 +115,12 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
         return [*text.rounded, *rounding_remarks(changed, at)]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
-    said = verdicts.of_data(text, entry, derived, case) if derived is not None else None
-    return [said] if said is not None else None
+    if derived is None:
+        return None
+    said = verdicts.of_data(text, entry, derived, case)
+    if said is not None:
+        return [said]
+    return verdicts.of_bare_numbers(text, entry, derived, case)
 
 
 def _in_numbers(

@@ -4,16 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.rounding import coefficients, coefficients_rounded, data_rounded, same_values
+from kinlab.doctor.rounding import (
+    coefficients,
+    coefficients_rounded,
+    data_rounded,
+    gravity_rounded,
+    same_values,
+    weightless,
+)
 from kinlab.doctor.terms import anywhere, as_rods, names_for
 from kinlab.doctor.text.stand_ins import FREE, fitted
 from kinlab.doctor.text.written import Written
@@ -372,6 +380,56 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
         "digits" if largest <= TOLERANCES.coefficient_digits else "near",
         (said.format(digits=_digits(largest)), *dict.fromkeys(remarks)),
     )
+
+
+def of_bare_numbers(
+    text: Written, entry: AnswerEntry, derived: Derivation, case: Case
+) -> list[str] | None:
+    """Rounded coefficients of a text without any of the robot's names, in words."""
+    if not tree.names(text.node).isdisjoint(derived.arm.trig.parameters):
+        return None
+    found = _of_function(entry, derived, case)
+    return found[0] or None if found is not None else None
+
+
+def unusual_and_rounded(case: Case, engine: Array) -> Excuse | None:
+    """A function's potential with another zero, or another valid C, and rounded numbers in it."""
+    name, hand = case.quantity.name, case.hand
+    if hand.shape != engine.shape or not np.isfinite(hand).all() or case.index:
+        return None
+    if name == "coriolis_matrix":
+        said = _("C*qd is right, but C is not Christoffel's")
+        torques, mine = (np.einsum("nij,nj->ni", x, case.arguments["v"]) for x in (engine, hand))
+        asked = replace(case, quantity=find_quantity("coriolis_torques"), hand=mine)
+        found = of_coefficients(asked, torques)
+    elif name in ENERGIES and engine.ndim == 1:
+        weight = engine - replace(case, robot=weightless(case.robot)).answer(())
+        columns = np.stack([np.ones(len(hand)), weight], axis=1)
+        (size, _share), *_rest = np.linalg.lstsq(columns, hand - (engine - weight), rcond=None)
+        said = zero_moved(float(f"{size:.3g}"))
+        asked = replace(case, hand=hand - size)
+        weighed = gravity_rounded(asked, engine)
+        found = Excuse("rounded", weighed) if weighed else _of_potential(case, engine)
+    else:
+        return None
+    if found is None or found.form != "rounded":
+        return None
+    return Excuse("unusual", (said, *found.remarks))
+
+
+def _of_potential(case: Case, engine: Array) -> Excuse | None:
+    """Coefficients that are the derived ones, rounded, beside a constant that is any."""
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None or not searchable(derived.polys.item()):
+        return None
+    right = derived.tree(derived.polys.item())
+    words = joint_functions([right], names_for(derived, case.quantity.arguments))
+    at = numbers_at(case)
+    rows = [np.broadcast_to(tree.evaluate(w, at), case.hand.shape) for w in words]
+    moving = [row for row in rows if np.ptp(row) > 0] + [np.ones(len(case.hand))]
+    mine, *_rest = np.linalg.lstsq(np.array(moving).T, case.hand - engine, rcond=None)
+    return of_coefficients(replace(case, hand=case.hand - mine[-1]), engine)
 
 
 def _of_function(

@@ -230,11 +230,13 @@ def bare(text: str) -> str:
 
 
 _POWER = re.compile(r"(?<![\w.])(?:power|pow)\s*(?=\()")
+_MATHEMATICA = re.compile(r"(?<![\w.])(?:Sin|Cos|Tan|Sqrt|Abs)(?=\()")
 _DEGREES = re.compile(r"(?<![\w.])a?(sin|cos|tan)d\s*\(")
 
 
 def _plain_signs(text: str, place: str) -> str:
-    text = _with_powers(_PREFIX.sub("", _ELEMENTWISE.sub(r"\1", text)))
+    text = _MATHEMATICA.sub(lambda found: found[0].lower(), _PREFIX.sub("", text))
+    text = _with_powers(_ELEMENTWISE.sub(r"\1", text))
     if found := _DEGREES.search(text):
         raise ExpressionError(
             f"{place}: {found[0]}...) takes degrees, and joints are in radians; write {found[1]}"
@@ -343,7 +345,7 @@ def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
 
 # -------- Left sides and matrices
 
-_ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?)?)", re.ASCII)
+_ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
 """What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
 _OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
@@ -361,7 +363,7 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     """
     typeset = is_latex(text)
     text = bare(text)
-    parts = text.replace("&=", "=").replace("=&", "=").replace(":=", "=").split("=")
+    parts = re.sub(r"&?\s*:?=\s*(?:\{\s*\})?\s*&?", "=", text).split("=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
         raise ExpressionError(
             f"{place}: {len(parts) - 1} signs of equality; write one name = formula, and of "
@@ -377,17 +379,26 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
 
 
 _NEXT = re.compile(r"(\n|;|\\\\(?:\[[^\]]*\])?)")
+_WHERE = re.compile(
+    r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*"
+    r"|,?\s*\\q?quad(?=\s*[\\\w{}]+\s*=)\s*"
+)
+"""What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 
 
 def explained(text: str) -> tuple[dict[str, str], str]:
-    """A formula with what its writer explains in front of it: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
+    """A formula with what its writer explains: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
 
     Returns:
-        The writer's names with their formulas, as typed; and the formula itself, the last one.
+        The writer's names with their formulas, as typed; and the formula itself: the last one, or
+        the one in front of ``where``.
     """
     lines = [line.strip("& ") for line in _lines(bare(text)) if line.strip("& ")]
+    if len(lines) == 1:
+        first, *behind = _WHERE.split(lines[0])
+        lines = [*behind, first]
     own = [line.partition("=") for line in lines[:-1]]
     counts = [line.count("=") for line in lines]
     if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
@@ -430,7 +441,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in _LONG):
         return typed  # a quantity by its own name
     if is_latex(typed) or not typed.isascii():
-        typed = re.sub(r"_\{\s*(\d)\s*,\s*(\d)\s*\}", r"_{\1\2}", typed)
+        typed = re.sub(r"(?<=\d)\s*,\s*(?=\d\s*[,}])", "", typed)
         name = latex.expression(ascii_text(typed, place, as_latex=True), place)
     else:
         name = re.sub(r"\(\s*(\d)\s*,\s*(\d)\s*\)$", r"\1\2", typed)
@@ -487,7 +498,8 @@ def _head_and_places(name: str) -> tuple[str, str]:
 _MATRIX = re.compile(
     r"(?:\\left\s*[(\[.]\s*|[(\[]\s*)?"
     r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(\{[lcr| ]*\})?"
-    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?",
+    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?"
+    r"(\s*\^\{?(?:\\top|T|\\mathrm\{?\s*T\}?)\}?)?",
     re.DOTALL,
 )
 _ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
@@ -512,6 +524,8 @@ def cells(text: str, place: str = "expression") -> list[list[str]] | None:
     if found:
         lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[3]) if row.strip()]
         rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
+        if found[4] and len({len(row) for row in rows}) == 1:
+            rows = [list(column) for column in zip(*rows, strict=True)]
     else:
         inside = _ARRAY.fullmatch(text)
         rows = _listed((inside[1] if inside else text).strip(), place)

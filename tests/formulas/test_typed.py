@@ -298,12 +298,31 @@ def test_a_left_side_of_another_entry_is_refused(entry, left):
         ("h = -m2*l1*s2; C11 = h*qd2;", {"h": "-m2*l1*s2"}, "C11 = h*qd2"),
         ("a = 2*m1\nb = a*l1\na + b", {"a": "2*m1", "b": "a*l1"}, "a + b"),
         (r"\phi = q_1+q_2 \\ g_2 = \cos\phi", {"phi": "$q_1+q_2$"}, r"$g_2 = \cos\phi$"),
+        (r"C_{11} = h \dot q_2, \quad h = -m_2", {"h": "$-m_2$"}, r"$C_{11} = h \dot q_2$"),
+        ("C11 = h*qd2, where h = -m2", {"h": "-m2"}, "C11 = h*qd2"),
         ("M = [m1, 0; 0, m2]", {}, "M = [m1, 0; 0, m2]"),
         ("tau1 = m1 +\n m2", {}, "tau1 = m1 +\n m2"),
     ],
 )
 def test_what_a_writer_explains_in_front_of_a_formula(typed, own, formula):
     assert explained(typed) == (own, formula)
+
+
+@pytest.mark.parametrize(
+    ("typed", "plain"),
+    [
+        (r"\left\{ m_1 + 0{,}5 m_2 \right\} \dot{q_1^2}", "(m1 + 0.5*m2)*qd1**2"),
+        ("l1*Cos(q1) + Sqrt(m1)", "l1*cos(q1) + sqrt(m1)"),
+        (r"\mathcal{L} ={}& m_1", "m1"),
+    ],
+)
+def test_marks_of_other_hands(typed, plain):
+    assert plain_formula(sides(typed)[1]) == plain
+
+
+def test_a_row_with_a_mark_is_a_column():
+    assert cells(r"\begin{bmatrix} a & b \end{bmatrix}^T") == [["$a$"], ["$b$"]]
+    assert entry_name("D_{1,1,2}") == "D112"
 
 
 def test_a_formula_over_several_lines():
