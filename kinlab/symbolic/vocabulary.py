@@ -147,6 +147,9 @@ def _spatial_lengths(words: Vocabulary, table: DHTable) -> None:
         words.put(f"a{i}", f"a{i - before}", link.a)
         words.put(f"d{i}", f"d{i}", link.d)
         _inertial(words, i, link)
+    for i, link in enumerate(table.links, 1):
+        behind = f"a{i + before}" if i + before <= table.n else "toolx"
+        _as_in_books(words, i, link, behind, before)
 
 
 def _inertial(words: Vocabulary, i: int, link: DHLink) -> None:
@@ -156,6 +159,24 @@ def _inertial(words: Vocabulary, i: int, link: DHLink) -> None:
         for m in range(k, 3):
             pair = axis + _AXES[m]
             words.put(f"inertia{i}{pair}", f"I{pair}{i}", tensor[k, m])
+
+
+def _as_in_books(words: Vocabulary, i: int, link: DHLink, behind: str, modified: int) -> None:
+    """l_i, lc_i and I_i of a link, where only one number of the table can be meant."""
+    length = [words.entries[name] for name in (behind, f"d{i}") if words.entries.get(name)]
+    centre = [words.entries[f"com{i}{axis}"] for axis in _AXES if words.entries[f"com{i}{axis}"]]
+    parallel = not modified and abs(np.sin(link.alpha)) <= TOLERANCES.right_angle
+    if link.joint == "revolute" and (len(length) == 1 or (length and parallel and link.a)):
+        words.others[f"l{i}"] = length[0]
+    along = () if modified else words.entries[f"a{i}"]
+    if len(centre) == 1 and (modified or centre[0] == words.entries[f"com{i}x"] or not length):
+        from_joint = _add(along, centre[0]) if along else centre[0]
+        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
+        if not length:
+            words.others[f"l{i}"] = from_joint
+    moments = {words.entries[f"inertia{i}{axis}{axis}"] for axis in _AXES} - {()}
+    if len(moments) == 1:
+        words.others |= dict.fromkeys((f"I{i}", f"J{i}"), moments.pop())
 
 
 def _add(one: Linear, two: Linear) -> Linear:

@@ -79,12 +79,16 @@ def _name(line: Line, place: Place, name: str) -> None:
                 _node(line, place, tree.add(*pair), "missing term", 1.25)
         for word, value in line.atoms.items() if head == "q" else ():
             line.instead(place, f"({name} + {word})", place.value + value, "missing term", 1.5)
+            if name in line.slides:
+                line.instead(place, word, value, "parameter", 1.4)
         for order in line.names.letters:
             if order != head:
                 other = tree.sym(f"{order}{index}")
                 _node(line, place, other, "velocity for acceleration", 1.3)
                 _node(line, place, tree.power(other, Fraction(2)), "velocity for acceleration", 1.5)
         return
+    for word, value in line.slides.items():
+        line.instead(place, word, value, "parameter", 1.4)
     for word, value in line.atoms.items():
         if word != name:
             near = _letters(word) == _letters(name)
