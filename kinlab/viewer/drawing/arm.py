@@ -6,12 +6,15 @@ so that moving one joint node carries along everything behind it.
 
 from __future__ import annotations
 
+import sys
+import threading
+from importlib.abc import MetaPathFinder
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from pinocchio.visualize import MeshcatVisualizer
 
 from kinlab.arrays import Array
 from kinlab.model.library import example_robots
@@ -25,7 +28,35 @@ _GHOSTLY = 0.3
 """Opacity of a ghost."""
 
 
-class NestedVisualizer(MeshcatVisualizer):  # type: ignore[misc]
+class _Withheld(MetaPathFinder):
+    """One module that this thread does not find."""
+
+    def __init__(self, name: str) -> None:
+        self.name, self.thread = name, threading.get_ident()
+
+    def find_spec(self, name: str, path: Any = None, target: Any = None) -> None:
+        """Nothing but for the one name."""
+        if name == self.name and threading.get_ident() == self.thread:
+            raise ModuleNotFoundError(f"No module named {name!r}", name=name)
+
+
+def _visualizer() -> Any:
+    """Pinocchio's MeshcatVisualizer, without what its package loads for a viewer that is not there.
+
+    The package's viewer by way of viser loads trimesh, which takes longer than all else of a first
+    view, and only then finds that viser is not installed. Without trimesh it goes on alike.
+    """
+    withheld = [] if find_spec("viser") else [_Withheld("trimesh")]
+    sys.meta_path[:0] = withheld
+    try:
+        from pinocchio.visualize import MeshcatVisualizer
+    finally:
+        for finder in withheld:
+            sys.meta_path.remove(finder)
+    return MeshcatVisualizer
+
+
+class NestedVisualizer(_visualizer()):  # type: ignore[misc]
     """Pinocchio's visualizer, drawing each body below the node of the joint that carries it."""
 
     def __init__(self, model: Any, visuals: Any, root: str) -> None:
