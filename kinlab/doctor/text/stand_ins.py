@@ -52,7 +52,11 @@ def stand_ins(
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
     found = search.among(rest)
-    if found is None and len(rest) < len(inexact):
+    numbers = np.array([one.value for one in literals])
+    every = [k for k, one in enumerate(literals) if not one.exponent]
+    if found is not None or not told_apart(text, at, numbers, every):
+        return found  # a number beside another in its term is what it says
+    if len(rest) < len(inexact):
         found = search.among(inexact)
     if found is None and max(literals[k].digits for k in inexact) <= _ROUGHLY:
         rough = tuple(map(_roughly, literals))  # 2 beside 35 and 13 may be 1.962
