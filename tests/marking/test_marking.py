@@ -516,10 +516,13 @@ def q3(q):
 """
 
 
-@pytest.mark.parametrize(("first", "told"), [("1.115", ""), ("1.12", "mark it by hand"), ("2", "")])
+@pytest.mark.parametrize(
+    ("first", "told"),
+    [("1.115", ""), ("1.12", "right to 2 decimals"), ("1.119", "mark it by hand"), ("2", "")],
+)
 def test_what_is_nearly_right_is_left_to_the_teacher(first, told):
-    """1.12 is 1.115 rounded, and it is what a mass of 2.02 kg instead of 2 gives."""
+    """1.12 is 1.115 rounded, as every number there is; 1.119 is what another mass gives."""
     program = Submission("a.py", "ada", program=NEARLY.format(first=first))
     outcomes, _ = judge_program(sheet_of(SHEET, "s"), program, "cause")
-    assert outcomes[2].right == (first == "1.115")
+    assert outcomes[2].right == (first in ("1.115", "1.12"))
     assert told in outcomes[2].remark and bool(told) == bool(outcomes[2].remark)
