@@ -274,10 +274,12 @@ def told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: lis
         moved[k] += _step(text.literals[k])
         column = text.values(at, moved) - here
         size = float(np.linalg.norm(column))
-        if size == 0.0 or not np.isfinite(size):
+        if not np.isfinite(size):
             return False
-        columns.append(column / size)
-    return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(free))
+        if size:  # what changes nothing is no matter
+            columns.append(column / size)
+    rank = np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) if columns else 0
+    return bool(rank == len(columns))
 
 
 def _step(one: Literal) -> float:
