@@ -36,7 +36,7 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     """
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
-        return case, odd
+        return case, _with_numbers(odd, case, engine, written)
     if not written and (cut := verdicts.answers_rounded(case, engine)) is not None:
         return case, cut
     if not written and (digits := verdicts.by_differences(case, engine)) is not None:
@@ -58,13 +58,11 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
             place: Any = (slice(None), *entry.local)
             settled[place] = entry.engine
     if right and remarks:
-        told = [*dict.fromkeys(remarks)]
-        return case, Excuse(
-            "rounded", (*told, *_only_for(_in_numbers(case, engine, written, told)))
-        )
+        found = Excuse("rounded", tuple(dict.fromkeys(remarks)))
+        return case, _with_numbers(found, case, engine, written)
     odd = None if right else _unusual_and_rounded(case, engine, written)
     if odd is not None:
-        return case, odd
+        return case, _with_numbers(odd, case, engine, written)
     if not right and (weighed := rounding.gravity_rounded(case, engine, False)) is not None:
         return case, Excuse("rounded", weighed)  # 5.88 for m2*g*l2: it was worked out with 9.8
     return replace(case, hand=settled), None
@@ -123,20 +121,19 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     return verdicts.of_bare_numbers(text, entry, derived, case)
 
 
-def _in_numbers(
-    case: Case, engine: Array, written: dict[str, Written], told: list[str]
-) -> list[str]:
-    """What a text has numbers for and no name, but for those of which it is told: ``g = 9.81``."""
+def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, Written]) -> Excuse:
+    """An excuse with what the texts have numbers for and no name, but for those told: g = 9.81."""
     table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
+    derived = derivation(table, case.quantity.name) if table is not None and written else None
     if derived is None:
-        return []
+        return found
     right: set[str] = set()
     for entry in entries(replace(case, hand=engine), engine):
         poly = derived.polys[entry.index] if entry.index else derived.polys.item()
         right |= verdicts.unnamed(written.get(entry.label), derived, poly)
     own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
-    return [one for one in own if not any(one in remark for remark in told)]
+    only = [one for one in own if not any(one in remark for remark in found.remarks)]
+    return replace(found, remarks=(*found.remarks, *_only_for(only)))
 
 
 def _only_for(numbers: Sequence[str]) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -170,15 +170,18 @@ def coefficients(
     return mine, theirs
 
 
-def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> list[str] | None:
+def coefficients_rounded(
+    mine: Array, theirs: Array, at: dict[str, Array], shown: Iterable[Literal] = ()
+) -> list[str] | None:
     """Coefficients that are the derived ones to a few digits, in words, or None.
 
     Empty where they may be: their digits are not seen, as they are in a text, and 1.12 for 1.115
     may as well be a mass of 2.02.
     """
-    throughout = _throughout(mine, theirs)
-    if throughout:
-        return [throughout]
+    seen = [*shown]
+    throughout = _throughout(mine, theirs, seen)
+    if throughout or seen:
+        return [throughout] if throughout else None
     meanings, size = Meanings.at(at), float(np.max(np.abs(theirs)))
     said = []
     for one, two in zip(mine.tolist(), theirs.tolist(), strict=True):
@@ -193,20 +196,26 @@ def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> li
     return list(dict.fromkeys(said)) if all(said) else []
 
 
-def _throughout(mine: Array, theirs: Array) -> str:
-    """That all coefficients are the derived ones to the same digits or decimals, in words."""
+def _throughout(mine: Array, theirs: Array, shown: list[Literal]) -> str:
+    """That all coefficients are the derived ones to the same digits or decimals, in words.
+
+    Not to fewer than are ``shown``, where that is seen.
+    """
     exact, largest = mine[theirs == 0], float(np.max(np.abs(theirs)))
     near = TOLERANCES.same_number * largest
     if len(mine) < _SEVERAL or np.any(np.abs(exact) > near):
         return ""
     one, two = mine[theirs != 0], theirs[theirs != 0]
     sizes = np.floor(np.log10(np.abs(two)))
+    digits = max((one.digits for one in shown if not one.whole), default=0)
+    places = max((len(one.text.partition(".")[2]) for one in shown), default=0)
     for count in range(2, 7):
-        for units, said in (
-            (10.0 ** (sizes + 1 - count), _("its coefficients are right to {count} digits")),
-            (np.full(len(two), 10.0**-count), _("its coefficients are right to {count} decimals")),
+        for least, powers, said in (
+            (digits, sizes + 1 - count, _("its coefficients are right to {count} digits")),
+            (places, 0 * sizes - count, _("its coefficients are right to {count} decimals")),
         ):
-            if np.max(units) > _FINE * largest:
+            units = 10.0**powers
+            if count < least or np.max(units) > _FINE * largest:
                 continue
             whole = np.abs(np.round(one / units) * units - one) <= near
             close = np.abs(one - two) <= 0.5 * units * (1 + TOLERANCES.formula_agrees)

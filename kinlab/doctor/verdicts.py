@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -24,7 +24,7 @@ from kinlab.doctor.rounding import (
 )
 from kinlab.doctor.terms import anywhere, as_rods, names_for
 from kinlab.doctor.text.stand_ins import FREE, fitted
-from kinlab.doctor.text.written import Written
+from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -234,9 +234,9 @@ def _kept(
     count = len(next(iter(at.values())))
     here = {**at, **{name: np.full(count, value) for name, value in own.items()}}
     found = []
-    written = {one.value for one in text.literals if not one.exponent}
-    asked = missing | {n for n, x in own.items() if x in written} if missing else {*own}
-    for name in sorted(asked):
+    # of a rod the moment follows its mass and length, which moved alone would seem to be held
+    rods = any(name[0] == "I" for name in missing)
+    for name in sorted(missing if rods else own):
         moved = {**here, name: here[name] * 1.37 + 0.1}
         target = np.broadcast_to(tree.evaluate(right, moved), (count,))
         gap = np.max(np.abs(text.values(moved) - target))
@@ -388,7 +388,8 @@ def of_bare_numbers(
     """Rounded coefficients of a text without any of the robot's names, in words."""
     if not tree.names(text.node).isdisjoint(derived.arm.trig.parameters):
         return None
-    found = _of_function(entry, derived, case)
+    shown = [one for one in text.literals if not one.exponent]
+    found = _of_function(entry, derived, case, shown)
     return found[0] or None if found is not None else None
 
 
@@ -433,7 +434,7 @@ def _of_potential(case: Case, engine: Array) -> Excuse | None:
 
 
 def _of_function(
-    entry: AnswerEntry, derived: Derivation, case: Case
+    entry: AnswerEntry, derived: Derivation, case: Case, shown: Iterable[Literal] = ()
 ) -> tuple[list[str], float] | None:
     """Rounded coefficients of a function's entry, in words; else how far they are off, relative."""
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
@@ -445,7 +446,7 @@ def _of_function(
     both = coefficients(entry.hand, entry.engine, entry.scale, words, at)
     if both is None:
         return None
-    told = coefficients_rounded(*both, at)
+    told = coefficients_rounded(*both, at, shown)
     if told:
         return told, 0.0
     mine, theirs = both

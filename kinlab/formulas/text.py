@@ -125,7 +125,7 @@ def formula_file(
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
     for key, value in entries.items():
-        own, entries[key] = typed.explained(_text(value, f"{place}: {key}"))
+        own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
         for name, formula in own.items():
             if symbols.setdefault(name, formula) != formula:
                 said = (

@@ -388,17 +388,22 @@ _GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
 
 
-def explained(text: str) -> tuple[dict[str, str], str]:
+def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     """A formula with what its writer explains: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
 
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+
     Returns:
-        The writer's names with their formulas, as typed; and the formula itself: the last one, or
-        the one in front of ``where``.
+        The writer's names with their formulas, as typed; and the formula itself: the one with the
+        entry's name, the one in front of ``where``, or the last one.
     """
     lines = [line.strip("& ") for line in _lines(bare(text)) if line.strip("& ")]
     if len(lines) == 1:
         first, *behind = _WHERE.split(lines[0])
         lines = [*behind, first]
+    lines.sort(key=lambda line: _begins_with(line, entry))
     own = [line.partition("=") for line in lines[:-1]]
     counts = [line.count("=") for line in lines]
     if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
@@ -408,6 +413,17 @@ def explained(text: str) -> tuple[dict[str, str], str]:
     dollars = "$" if is_latex(text) else ""
     formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _begins_with(line: str, entry: str) -> bool:
+    """Whether a line gives the entry by its own name."""
+    left, sign, _right = line.partition("=")
+    if not sign or not entry:
+        return False
+    try:
+        return _head_and_places(entry_name(left)) == _head_and_places(entry_name(entry))
+    except ExpressionError:
+        return False
 
 
 def _lines(text: str) -> list[str]:
@@ -545,6 +561,10 @@ def _listed(text: str, place: str) -> list[list[str]]:
         return []
     inside = text[1:-1]
     rows = _parts(inside, ";")
+    if len(rows) > 1 and "," not in inside:
+        apart = [_beside(row) for row in rows if row]
+        if "*" in text or all(_PLAIN_ENTRY.fullmatch(cell) for row in apart for cell in row):
+            return apart
     if len(rows) == 1:
         members = [member for member in _parts(inside, ",") if member]
         if members and all(m.startswith("[") and _closes(m) == len(m) - 1 for m in members):
@@ -553,6 +573,25 @@ def _listed(text: str, place: str) -> list[list[str]]:
             return []
         return [[member] for member in members]
     return [_parts(row, ",") for row in rows if row]
+
+
+_PLAIN_ENTRY = re.compile(r"-?(?:[A-Z]\d\d|\d+(?:\.\d+)?)")
+"""M11, 0: what is no factor of a product without a sign."""
+
+
+def _beside(row: str) -> list[str]:
+    """A row of MATLAB's, whose entries are set apart by blanks: ``a + b -c`` are two."""
+    entries, depth = [""], 0
+    for k, character in enumerate(row):
+        depth += (character in "([{") - (character in ")]}")
+        before, behind = entries[-1].rstrip()[-1:], row[k:].lstrip()[:2]
+        signed = behind[:1] in "+-" and not behind[1:].isspace()
+        apart = before not in "+-*/^.(" and (behind[:1] not in "+-*/^.)" or signed)
+        if character.isspace() and depth == 0 and before and behind and apart:
+            entries.append("")
+        else:
+            entries[-1] += character
+    return [entry.strip() for entry in entries if entry.strip()]
 
 
 def _closes(text: str) -> int:
@@ -595,6 +634,8 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
         at = f"{place}: {key}"
         left, right = sides(value, at)
         name = entry_name(key, at, writing)
+        if left and _begins_with(f"{right.strip('$ ')} =", name) and not _OWN_NAME.fullmatch(left):
+            left, right = "", f"${left}$" if right[:1] == "$" else left  # ... = tau2
         if left and not _of_one_name(entry_name(left, at, writing), name):
             raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
         grid = cells(right, at)

@@ -320,6 +320,24 @@ def test_marks_of_other_hands(typed, plain):
     assert plain_formula(sides(typed)[1]) == plain
 
 
+def test_entries_set_apart_by_blanks():
+    assert cells("[m1*l1 m2; m2 -m1*l2]") == [["m1*l1", "m2"], ["m2", "-m1*l2"]]
+    assert cells("[m1*l1 + m2 -m2; m2 - m1 (m1 + m2)]") == [["m1*l1 + m2", "-m2"],
+                                                           ["m2 - m1", "(m1 + m2)"]]  # fmt: skip
+    assert cells("[m1*l1 + m2; m2 * c1]") == [["m1*l1 + m2"], ["m2 * c1"]]
+    assert cells("[M11 M12; M12 0]") == [["M11", "M12"], ["M12", "0"]]
+
+
+@pytest.mark.parametrize("entry", ["x", "y"])
+def test_of_several_equations_the_one_of_the_entry(entry):
+    text = r"x = l_1 c_1, \quad y = l_1 s_1"
+    assert explained(text, entry)[1] == ("$x = l_1 c_1$" if entry == "x" else "$y = l_1 s_1$")
+
+
+def test_an_equation_the_other_way_round():
+    assert opened({"g2": "m2*g*l2*c12 = g2"}, "f.toml") == {"g2": "m2*g*l2*c12"}
+
+
 def test_a_row_with_a_mark_is_a_column():
     assert cells(r"\begin{bmatrix} a & b \end{bmatrix}^T") == [["$a$"], ["$b$"]]
     assert entry_name("D_{1,1,2}") == "D112"

@@ -52,7 +52,11 @@ def stand_ins(
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
     found = search.among(rest)
-    if found is None and len(rest) < len(inexact):
+    numbers = np.array([one.value for one in literals])
+    every = [k for k, one in enumerate(literals) if not one.exponent]
+    if found is not None or not told_apart(text, at, numbers, every):
+        return found  # a number beside another in its term is what it says
+    if len(rest) < len(inexact):
         found = search.among(inexact)
     if found is None and max(literals[k].digits for k in inexact) <= _ROUGHLY:
         rough = tuple(map(_roughly, literals))  # 2 beside 35 and 13 may be 1.962
@@ -270,10 +274,12 @@ def told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: lis
         moved[k] += _step(text.literals[k])
         column = text.values(at, moved) - here
         size = float(np.linalg.norm(column))
-        if size == 0.0 or not np.isfinite(size):
+        if not np.isfinite(size):
             return False
-        columns.append(column / size)
-    return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(free))
+        if size:  # what changes nothing is no matter
+            columns.append(column / size)
+    rank = np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) if columns else 0
+    return bool(rank == len(columns))
 
 
 def _step(one: Literal) -> float:
