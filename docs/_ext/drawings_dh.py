@@ -172,9 +172,12 @@ class Picture:
         best, least = at, np.inf
         for far in (14.0, 20.0, 28.0, 38.0, 50.0):
             for turn in (0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6, 2.4, -2.4, 3.1):
+                away = 2.0 * (far - 14.0) + 6.0 * abs(turn)
+                if away >= least:
+                    continue
                 u = np.array([np.cos(start + turn), np.sin(start + turn)])
                 centre = at + (far + 0.4 * wide * abs(u[0])) * u
-                cost = self._covered(centre, wide, high) + 2.0 * (far - 14.0) + 6.0 * abs(turn)
+                cost = self._covered(centre, wide, high) + away
                 if cost < least:
                     best, least = centre, cost
         x, y = best
