@@ -18,7 +18,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
-from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, quietly
+from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -91,12 +91,14 @@ class WrongLines:
         causes: the likeliest first.
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
+        numbers: the sizes of the numbers that the program comes to at the first state, sorted.
         digits: of a program that is nearly right, what its rounded numbers stand for, if they are
             all of it; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
+    numbers: Array
     digits: tuple[str, ...] | None = None
 
 
@@ -118,18 +120,19 @@ def lines(
         return
     try:
         search = LineSearch(program, case, wanted, allowed)
-    except Exception:  # noqa: BLE001  what does not run where it was not written is not tried
+    except FailedError:  # what does not run where it was not written is not tried
         return
     if not search.faithful:
         return
+    numbers = search.observed.numbers(len(search.states))
     if nearly(case.hand, wanted):
-        yield WrongLines([], search.written_out, to_the_digits(search))
+        yield WrongLines([], search.written_out, numbers, to_the_digits(search))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
-        yield WrongLines([cause_of(one, search) for one in told], search.written_out)
+        yield WrongLines([cause_of(one, search) for one in told], search.written_out, numbers)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
@@ -139,12 +142,31 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
         edited: what lines should be, the likeliest first.
         read: what the formula does otherwise, as a whole.
     """
-    if not read or len(edited[0].kinds) > 1:
-        return edited[:1]
-    line, cause = edited[0], min(read, key=lambda one: one.cost)
+    line = edited[0]
+    known = [cause for cause in read if len(line.kinds) == 1 and _same_slip(cause, line.kinds[0])]
+    if not known:
+        return [line]
+    cause = min(known, key=lambda one: one.cost)
     said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
     places = (*line.places, *cause.places)
     return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
+
+
+def _same_slip(reading: Cause, edit: str) -> bool:
+    """Whether a reading of the whole may be what an edit of a line is; not by its numbers alone."""
+    kinds = ["missing term" if kind.endswith(" term") else kind for kind in reading.kinds]
+    return all(edit in _SLIPS.get(kind, (edit,)) for kind in kinds)
+
+
+_SLIPS = {
+    "missing term": ("missing term", "missing statement", "sum"),
+    "sign": ("sign", "order"),
+    "factor": ("factor", "number", "missing factor", "extra factor", "parentheses"),
+    "transposed": ("transposed", "inverse"),
+    "power": ("power", "number", "missing factor"),
+    "order": ("order", "sign"),
+}
+"""Of kinds of readings the kinds of edit that are the same slip; any of others."""
 
 
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
@@ -342,12 +364,12 @@ def _fewer(repair: ProgramRepair, search: LineSearch) -> bool:
 
 
 def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
-    """Whether the number that should be another is the robot's own, of the same name."""
+    """Whether the number that should be another is the robot's own: of the same name, or at all."""
     table = table_of(search.case.robot)
-    if edit.part != DATA or edit.place or edit.numbers is None or table is None:
+    if edit.part != DATA or edit.numbers is None or table is None:
         return False
-    own = vocabulary(table).values.get(edit.node)
-    return own is not None and float(own) == edit.numbers[0]
+    own = None if edit.place else vocabulary(table).values.get(edit.node)
+    return (own is not None and float(own) == edit.numbers[0]) or search.makes_up(*edit.numbers)
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:

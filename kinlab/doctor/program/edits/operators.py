@@ -12,7 +12,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
-_SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
+SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
 """Functions whose numbers are no quantities."""
 _SUMS = (ast.Add, ast.Sub)
 _PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
@@ -329,7 +329,7 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         return
-    if isinstance(here.parent, ast.Call) and called(here.parent) not in _SIZES and value:
+    if isinstance(here.parent, ast.Call) and called(here.parent) not in SIZES and value:
         yield here.within(here.node, "value", 0, "number", 1.12)
     if index:
         if isinstance(here.parent, ast.Slice):

@@ -1,0 +1,158 @@
+"""The numbers of a program as the arm's table has them, where all but a few of a column are so."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit, number
+from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.model.dh import DHTable
+from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.tolerances import TOLERANCES
+
+_COST = 0.96
+"""Less than anything else in the numbers of a program: the table says so."""
+_PARTS = 12
+"""Into how many parts of pi a number may fall."""
+
+
+def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
+    """Numbers with the arm's own names, and columns of which the others are the table's.
+
+    A row in which several columns are off is one edit: somebody copied another row.
+    """
+    table = table_of(robot)
+    if table is None:
+        return
+    known = vocabulary(table).values
+    for leaf in leaves(trial):
+        if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
+            yield leaf.edit(float(known[leaf.node]), "number", _COST)
+    off: dict[tuple[Any, int], list[tuple[_Cell, float]]] = {}
+    for name, found in _columns_of(trial, observed).items():
+        if sorted(found) == [*range(table.n)]:
+            values = [found[i].value for i in range(table.n)]
+            for k, right in _wrong(values, _columns(table)):
+                off.setdefault((name[0], k), []).append((found[k], right))
+    for (_name, k), some in off.items():
+        for cell, right in some:
+            yield cell.edit(right)
+        if len(some) > 1:
+            yield _row(k, some)
+
+
+@dataclass(frozen=True, eq=False)
+class _Cell:
+    """A number of a table: in the data, or in the text of a program, where it hangs."""
+
+    value: float
+    place: NumberPlace | None = None
+    part: int = DATA
+    holder: Any = None
+    field: Any = None
+    node: Any = None
+
+    def edit(self, right: float) -> ProgramEdit:
+        """The table's number there."""
+        kind = "sign" if right == -self.value else "number"
+        if self.place is not None:
+            return self.place.edit(right, kind, _COST)
+        change = FieldChange(self.holder, self.field, _typed(right))
+        both = (self.value, right)
+        return ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
+
+
+def _row(k: int, some: Sequence[tuple[_Cell, float]]) -> ProgramEdit:
+    """Several numbers of a row."""
+    first = some[0][0]
+    if first.place is None:
+        changes = [change for cell, right in some for change in cell.edit(right).changes]
+        return ProgramEdit(first.part, tuple(changes), "number", _COST, first.node)
+    both = [(cell.place, right) for cell, right in some if cell.place is not None]
+    changes = [change for edit in together(both) for change in edit.changes]
+    rows = ([cell.value for cell, _right in some], [right for _cell, right in some])
+    old, new = (", ".join(f"{x:.6g}" for x in row) for row in rows)
+    name = first.place.node
+    return ProgramEdit(DATA, tuple(changes), "number", _COST, name, (k,), exchanged=(old, new))
+
+
+def _typed(value: float) -> ast.expr:
+    """A number as it is typed: parts of pi as such."""
+    part = Fraction(value / np.pi).limit_denominator(_PARTS)
+    if not value or abs(value - float(part) * np.pi) > TOLERANCES.same_number * abs(value):
+        return number(int(value) if value == int(value) else value)
+    pi: ast.expr = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
+    top = abs(part.numerator)
+    pi = ast.BinOp(number(top), ast.Mult(), pi) if top > 1 else pi
+    pi = ast.UnaryOp(ast.USub(), pi) if value < 0 else pi
+    return ast.BinOp(pi, ast.Div(), number(part.denominator)) if part.denominator > 1 else pi
+
+
+def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]:
+    """The columns of the tables of a program, each by the row."""
+    found: dict[Any, dict[int, _Cell]] = {}
+    for leaf in leaves(trial):
+        first = leaf.place[0] if leaf.place else None
+        if isinstance(first, int):
+            cell = _Cell(float(leaf.value), leaf)
+            found.setdefault((leaf.node, *leaf.place[1:]), {})[first] = cell
+    for part, tree in enumerate(trial.trees):
+        for table in nodes(tree):
+            if isinstance(table, ast.List | ast.Tuple) and isinstance(table.ctx, ast.Load):
+                for k, row in enumerate(table.elts):
+                    for key, holder, field in _cells(table.elts, k, row):
+                        node = FieldChange(holder, field, None).now
+                        seen = observed.of(node)
+                        if seen is not None and seen.shape == () and seen.values:
+                            value = float(seen.values[0])
+                            cell = _Cell(value, None, part, holder, field, node)
+                            found.setdefault((id(table), key), {})[k] = cell
+    return found
+
+
+def _cells(rows: list[ast.expr], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, Any]]:
+    """The numbers of a row: the key of each, and where it hangs."""
+    if isinstance(row, ast.List | ast.Tuple):
+        yield from ((j, row.elts, j) for j in range(len(row.elts)))
+    elif isinstance(row, ast.Dict):
+        keys = [getattr(key, "value", None) for key in row.keys]
+        yield from ((key, row.values, j) for j, key in enumerate(keys))
+    elif isinstance(row, ast.Call):
+        yield from ((j, row.args, j) for j in range(len(row.args)))
+        yield from ((word.arg, word, "value") for word in row.keywords)
+    else:
+        yield None, rows, k
+
+
+def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[int, float]]:
+    """The numbers that are not as in a column of which most others are, and are not all alike."""
+    for column in columns:
+        same = [_same(float(x), y) for x, y in zip(column, values, strict=True)]
+        apart = {float(x) for x, good in zip(column, same, strict=True) if good}
+        if not all(same) and 2 * sum(same) > len(same):
+            for k in np.flatnonzero(np.logical_not(same)):
+                if column[k] or len(apart) > 1:
+                    yield int(k), float(column[k])
+
+
+def _columns(table: DHTable) -> list[Array]:
+    """The columns of a table: its lengths, angles, masses, centres of mass."""
+    links = table.links
+    plain = [[getattr(k, name) for k in links] for name in ("a", "alpha", "d", "theta", "mass")]
+    centres = np.array([k.com for k in links], dtype=float).T
+    return [np.array(column, dtype=float) for column in (*plain, *centres)]
+
+
+def _same(one: float, other: float) -> bool:
+    return abs(one - other) <= TOLERANCES.same_number * max(abs(one), abs(other))
