@@ -274,7 +274,7 @@ class Trial:
         old = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
-        held = self._contents.now()
+        held, edit = self._contents.now(), self.space["_edit"]
         reached = {k for part in parts for k in self.above[part]}
         self._touched = outer | reached
         with self.as_loaded():
@@ -299,7 +299,7 @@ class Trial:
                 if self._contents.put_back(held):  # answers may rest on what was written
                     self._forget()
                 self._touched, self._made = outer, before
-                self.space["_edit"] = 0
+                self.space["_edit"] = edit
                 for k in every:
                     self.place(k, kept[k])
 

@@ -19,8 +19,8 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
-from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.edits.operators import SIZES
+from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, called
 from kinlab.doctor.program.trial import Trial
 from kinlab.errors import KinlabError, already_said
