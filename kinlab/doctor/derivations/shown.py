@@ -26,10 +26,10 @@ def shown(found: Found, case: Case, numbers: Array) -> bool:
     Args:
         found: what explains the program's answer.
         case: the states.
-        numbers: the sizes of the program's numbers at the first state, sorted.
+        numbers: those that the program came to at the first state, sorted.
     """
     first = case.few(1)
-    given, answer = _sizes([*first.arguments.values()]), _sizes([first.hand])
+    given, answer = _telling([*first.arguments.values()]), _telling([first.hand])
     _values, plain = found.road.walked([()], case.few(_STATES).arguments)
     told = (_Told(plain, found.steps, step) for step in found.steps)
     return all(one.among(numbers, given, answer) for one in told)
@@ -52,11 +52,11 @@ class _Told(Walk):
 
     def among(self, numbers: Array, given: Array, answer: Array) -> bool:
         """Whether one of them is among some numbers; of a line that is the answer a piece of it."""
-        own = _sizes(self.otherwise)
+        own = _telling(self.otherwise)
         own = own[~_near(own, given)]
         answers = _near(own, answer)
         if answers.all():
-            own = _sizes(self.alike) if len(own) else own
+            own = _telling(self.alike) if len(own) else own
             answers = _near(own, given)
         return bool(_near(own[~answers], numbers).any())
 
@@ -78,12 +78,12 @@ class _Told(Walk):
         return found
 
 
-def _sizes(arrays: Iterable[Array]) -> Array:
-    """The sizes of all numbers that are not plain, sorted."""
-    flat = [np.abs(np.ravel(x)) for x in arrays if x.dtype.kind in "fc"]
-    sizes = np.sort(np.concatenate([*flat, np.empty(0)]))
-    plain = np.abs(2.0 * sizes - np.round(2.0 * sizes)) <= TOLERANCES.plain_value
-    return np.asarray(sizes[~plain & np.isfinite(sizes)])
+def _telling(arrays: Iterable[Array]) -> Array:
+    """All numbers that are not plain, sorted."""
+    flat = [np.ravel(x) for x in arrays if x.dtype.kind == "f"]
+    every = np.sort(np.concatenate([*flat, np.empty(0)]))
+    plain = np.abs(2.0 * every - np.round(2.0 * every)) <= TOLERANCES.plain_value
+    return np.asarray(every[~plain & np.isfinite(every)])
 
 
 def _near(some: Array, numbers: Array) -> Any:
@@ -92,4 +92,4 @@ def _near(some: Array, numbers: Array) -> Any:
         return np.zeros(len(some), dtype=bool)
     at = np.searchsorted(numbers, some).clip(1, max(1, len(numbers) - 1))
     gaps = [np.abs(numbers[(at - k).clip(0, len(numbers) - 1)] - some) for k in (0, 1)]
-    return np.asarray(np.minimum(*gaps) <= TOLERANCES.formula_agrees * some)
+    return np.asarray(np.minimum(*gaps) <= TOLERANCES.formula_agrees * np.abs(some))

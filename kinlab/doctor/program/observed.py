@@ -76,9 +76,9 @@ class Observed:
         return None if seen is None else seen.shape
 
     def numbers(self, states: int) -> Array:
-        """The sizes of all the numbers at the first of so many states, sorted."""
+        """All the numbers at the first of so many states, sorted."""
         found = [
-            np.abs(np.ravel(value))
+            np.ravel(value).astype(float)
             for seen in self._seen.values()
             for value in seen.values[: -(-seen.count // states)]
         ]

@@ -24,7 +24,7 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, meanings
-from kinlab.doctor.program.edits.as_the_arm import of_table
+from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.grounds.evidence import Grounds
@@ -40,7 +40,9 @@ from kinlab.formulas.record import state_by_state
 from kinlab.tolerances import TOLERANCES
 
 _WORK = 45_000_000
-"""Operations of numbers, or what amounts to them, that may be done for single edits."""
+"""Operations of numbers, or what amounts to them, of which all searches have their share."""
+_ALONE = 75_000_000
+"""What may be done for single edits beside which none stands."""
 _NODE = 30
 """What compiling one node amounts to."""
 _SHARE = 6
@@ -51,6 +53,8 @@ _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
 _DOUBTED = 0.12
 """The same where a factor is found that a name of the program has as its value."""
+_ROUGH, _ROUGHER = 0.15, 100.0
+"""What a repair costs more that leaves differences; how much more one may leave than another."""
 _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _SAME = 0.011
@@ -234,6 +238,8 @@ class LineSearch:
         with quietly():
             every = edits(self.trial, self.observed)
             every += of_table(self.trial, self.observed, self.case.robot)
+            sure = as_it_is(self.trial, self.observed, self.case.robot)
+            every = [edit for edit in every if edit.part != DATA or not sure(edit)]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
@@ -241,7 +247,7 @@ class LineSearch:
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work += self.cost_of(edit)
-                if self.work > self.most:
+                if self.work > (self.most if self.stand else _ALONE):
                     break
                 try:
                     with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
@@ -254,7 +260,8 @@ class LineSearch:
                     continue
                 if repair is not None:
                     found.append(repair)
-                    best = min(best, self.likely(edit))
+                    rough = repair.error > TOLERANCES.formula_agrees
+                    best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
@@ -266,15 +273,17 @@ class LineSearch:
 
         What nothing tells apart is marked as tied.
         """
-        found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
+        least = max(TOLERANCES.formula_agrees, _ROUGHER * min([x.error for x in found], default=0))
+        found = [repair for repair in found if repair.error <= least]
+        found.sort(key=lambda repair: self.likely(repair.edits[-1]))
         if len(found) < 2 or not self.evidence.known:
             return found
         found = self.of_any_arm(found)
-        least = self.likely(found[0].edits[-1])
+        likeliest = self.likely(found[0].edits[-1])
         lines: dict[int, ProgramRepair] = {}
         for repair in found:
             edit = repair.edits[-1]
-            if edit.part != DATA and self.likely(edit) <= least + _ALIKE:
+            if edit.part != DATA and self.likely(edit) <= likeliest + _ALIKE:
                 lines.setdefault(row_of(edit), repair)
         if len(lines) < 2:
             return found
@@ -382,7 +391,7 @@ class LineSearch:
         every = [*numbers(self.trial, self.observed)]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
         for place in every:
-            if self.work > self.most + _SOLVED:
+            if self.work > (self.most if self.stand else _ALONE) + _SOLVED:
                 break
             value = self._solved(place)
             if value is not None and not self.makes_up(float(place.value), value):

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import Array
@@ -53,6 +54,7 @@ _WHAT = {
     "rows": N_("the rows are others: the linear ones, or the angular"),
     "inverse": N_("the inverse is wrong"),
     "function": N_("the function is another"),
+    "operator": N_("a sum stands for a product, or a product for a sum"),
     "product": N_("it is a matrix product"),
     "sum": N_("the sum forgets what was there before"),
     "extra statement": N_("the line is one too many"),
@@ -91,7 +93,7 @@ class WrongLines:
         causes: the likeliest first.
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
-        numbers: the sizes of the numbers that the program comes to at the first state, sorted.
+        numbers: those that the program comes to at the first state, sorted.
         digits: of a program that is nearly right, what its rounded numbers stand for, if they are
             all of it; nothing else is said then.
     """
@@ -143,7 +145,8 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
         read: what the formula does otherwise, as a whole.
     """
     line = edited[0]
-    known = [cause for cause in read if len(line.kinds) == 1 and _same_slip(cause, line.kinds[0])]
+    one = len(line.kinds) == 1
+    known = [cause for cause in read if one and _same_slip(cause, line.kinds[0])]
     if not known:
         return [line]
     cause = min(known, key=lambda one: one.cost)
@@ -155,18 +158,53 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
 def _same_slip(reading: Cause, edit: str) -> bool:
     """Whether a reading of the whole may be what an edit of a line is; not by its numbers alone."""
     kinds = ["missing term" if kind.endswith(" term") else kind for kind in reading.kinds]
-    return all(edit in _SLIPS.get(kind, (edit,)) for kind in kinds)
+    return all(edit in _SLIPS.get(kind, (kind,)) for kind in kinds)
 
 
+_LEFT_OUT = ("missing term", "missing statement", "sum")
+_NUMBERS = ("number", "sign", "factor", "entries swapped", "rows swapped", "columns swapped")
 _SLIPS = {
-    "missing term": ("missing term", "missing statement", "sum"),
+    "missing term": _LEFT_OUT,
+    "velocity left out": _LEFT_OUT,
+    "acceleration left out": _LEFT_OUT,
+    "gravity left out": (*_LEFT_OUT, "number"),
+    "Coriolis terms": (*_LEFT_OUT, "factor", "number", "missing factor"),
+    "centrifugal terms": _LEFT_OUT,
     "sign": ("sign", "order"),
     "factor": ("factor", "number", "missing factor", "extra factor", "parentheses"),
     "transposed": ("transposed", "inverse"),
+    "inverse": ("inverse", "transposed", "function"),
     "power": ("power", "number", "missing factor"),
     "order": ("order", "sign"),
+    "exchanged": ("entries swapped", "order", "sin/cos", "name", "names exchanged"),
+    "sin/cos": ("sin/cos", "name"),
+    "index": ("index", "name", "loop", "argument"),
+    "another quantity": ("index", "name", "function", "argument"),
+    "Christoffel": ("index", "order", "name"),
+    "missing factor": ("missing factor", "missing matrix", "power", "function"),
+    "rotation left out": ("missing matrix", "missing factor"),
+    "extra factor": ("extra factor", "power", "factor"),
+    "rotated twice": ("extra factor",),
+    "tensor not rotated": ("missing matrix",),
+    "tensor transposed": ("transposed", "order"),
+    "sum": ("sum", "loop", "index", "condition"),
+    "own joint": ("loop", "condition"),
+    "slide as hinge": ("condition",),
+    "hinge as slide": ("condition",),
+    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor"),
+    "degrees": ("degrees", "function", "factor", "number"),
+    "absolute angles": ("name", "argument", "function", "sum"),
+    "table entry": _NUMBERS,
+    "tool": _NUMBERS,
+    "mass": (*_NUMBERS, "index"),
+    "row shift": (*_NUMBERS, "index"),
+    "centre": (*_NUMBERS, "index", "name", "missing factor"),
+    "gravity axis": (*_NUMBERS, "index"),
+    "alpha sign": ("sign", "number"),
+    "a sign": ("sign", "number"),
+    "gravity sign": ("sign", "number"),
 }
-"""Of kinds of readings the kinds of edit that are the same slip; any of others."""
+"""Of kinds of readings the kinds of edit that are the same slip; of others only their own."""
 
 
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
@@ -254,8 +292,12 @@ def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial)
 
 
 def _line(edit: ProgramEdit, trial: Trial) -> str:
-    part = trial.program.parts[edit.part]
-    if edit.part:
+    part, first = trial.program.parts[edit.part], trial.program.parts[0]
+    file, own = (Path(one.function.__code__.co_filename).name for one in (part, first))
+    if file != own:
+        said = {"number": row_of(edit), "file": file, "function": part.name}
+        return _("line {number} of {file} (in {function})").format(**said)
+    if edit.part and not part.sets:
         return _("line {number} (in {function})").format(number=row_of(edit), function=part.name)
     return _("line {number}").format(number=row_of(edit))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -46,10 +46,24 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             for k, right in _wrong(values, _columns(table)):
                 off.setdefault((name[0], k), []).append((found[k], right))
     for (_name, k), some in off.items():
-        for cell, right in some:
-            yield cell.edit(right)
-        if len(some) > 1:
-            yield _row(k, some)
+        yield _row(k, some) if len(some) > 1 else some[0][0].edit(some[0][1])
+
+
+def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
+    """Whether an edit of the data is of what the arm's table has as it is."""
+    table = table_of(robot)
+    if table is None:
+        return lambda _edit: False
+    known, same = vocabulary(table).values, set()
+    for leaf in leaves(trial):
+        if not leaf.place and leaf.node in known and _same(float(known[leaf.node]), leaf.value):
+            same.add((leaf.node,))
+    for name, found in _columns_of(trial, observed).items():
+        values = [found[i].value for i in sorted(found)]
+        told = len(values) == table.n and len({*map(abs, values)}) > 1
+        if told and any(all(map(_same, column, values)) for column in _columns(table)):
+            same.add(name)
+    return lambda edit: (edit.node, *edit.place[1:]) in same
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,15 +90,15 @@ class _Cell:
 def _row(k: int, some: Sequence[tuple[_Cell, float]]) -> ProgramEdit:
     """Several numbers of a row."""
     first = some[0][0]
+    old, new = ([cell.value for cell, _right in some], [right for _cell, right in some])
+    kind = "entries swapped" if sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
-        return ProgramEdit(first.part, tuple(changes), "number", _COST, first.node)
+        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
-    rows = ([cell.value for cell, _right in some], [right for _cell, right in some])
-    old, new = (", ".join(f"{x:.6g}" for x in row) for row in rows)
-    name = first.place.node
-    return ProgramEdit(DATA, tuple(changes), "number", _COST, name, (k,), exchanged=(old, new))
+    told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
+    return ProgramEdit(DATA, tuple(changes), kind, _COST, first.place.node, (k,), exchanged=told)
 
 
 def _typed(value: float) -> ast.expr:
@@ -114,11 +128,27 @@ def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]
                     for key, holder, field in _cells(table.elts, k, row):
                         node = FieldChange(holder, field, None).now
                         seen = observed.of(node)
-                        if seen is not None and seen.shape == () and seen.values:
+                        names_ = {one.id for one in nodes(node) if isinstance(one, ast.Name)}
+                        typed = names_ <= {"np", "numpy", "math", "pi"}
+                        typed = typed and all(isinstance(one, _TYPED) for one in nodes(node))
+                        if typed and seen is not None and seen.shape == () and seen.values:
                             value = float(seen.values[0])
                             cell = _Cell(value, None, part, holder, field, node)
                             found.setdefault((id(table), key), {})[k] = cell
     return found
+
+
+_TYPED = (
+    ast.Constant,
+    ast.UnaryOp,
+    ast.BinOp,
+    ast.Attribute,
+    ast.Name,
+    ast.operator,
+    ast.unaryop,
+    ast.Load,
+)
+"""What a number is typed with: ``-np.pi/2``."""
 
 
 def _cells(rows: list[ast.expr], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, Any]]:

@@ -26,6 +26,7 @@ from kinlab.doctor.program.trial import Trial
 from kinlab.errors import KinlabError, already_said
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _LONGER, _HEAVIER, _STEP = 1.25, 1.375, 0.0625
@@ -34,7 +35,7 @@ _TWISTED = 0.8
 """How much the axes are turned towards each other: no sine or cosine of that is 0 or 1."""
 _PARTS = 12
 """Denominator up to which a fraction, or one of pi, is nobody's length or mass."""
-_WAYS = 12
+_WAYS = 32
 """Ways of understanding a program's numbers that are tried."""
 _NOBODYS = (0.0, 1.0, 2.0)
 """Sizes of numbers with a name that need be nothing of an arm's."""
@@ -101,13 +102,15 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     twisted = _TWISTED if turned else 1.0
     kinds = _kinds(robot, table, twisted)
     meant = _alike(found, [_meant(kinds, one.value) for one in found])
+    names = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True
     choices: dict[Any, tuple[list[_Number], list[float]]] = {}
     for one, some in zip(found, meant, strict=True):
         own = _of_one_arm(one.value)
         if (one.alone or own or one.given) and some:
-            factors = sorted({factor for _kind, factor in some}.union([1.0] * one.given))
+            plain = not own and not one.place.place and one.place.node not in names
+            factors = sorted({factor for _kind, factor in some}.union([1.0] * plain))
             choices.setdefault((_key(one), *factors), ([], factors))[0].append(one)
         elif own or (some and not one.alone):
             whole = whole and not own and _among(one.value, carried)
@@ -241,10 +244,26 @@ def _alike(
     for one, some in zip(found, meant, strict=True):
         kind = next((common[key] for key in _groups(one.place) if common.get(key)), None)
         left = {x for x in some if kind is None or x[0] in kind}
-        at = one.place.place[0] if one.place.place else None
-        here = {x for x in left if at is not None and x[1] in (-1, at)}
-        out.append({(what, by) for what, _k, by in here or left})
+        out.append({(what, by) for what, _k, by in _as_called(one.place, left)})
     return out
+
+
+def _as_called(
+    place: NumberPlace, left: set[tuple[str, int, float]]
+) -> set[tuple[str, int, float]]:
+    """Of what a number may be what its name says, and of the link at whose place it stands."""
+    if place.part != DATA:
+        return left
+    kind = _LETTERS.get(place.node[:1].lower())
+    left = {x for x in left if x[0] == kind} or left
+    digits = place.node.lstrip("".join(set(place.node) - set("0123456789")))
+    at = place.place[0] if place.place else int(digits) - 1 if digits.isdigit() else None
+    return {x for x in left if at is not None and x[1] in (-1, at)} or left
+
+
+_LETTERS = {"m": "mass", "l": "length", "a": "length", "d": "length", "r": "length"}
+_LETTERS |= {"i": "moment", "j": "moment", "g": "kept"}
+"""What numbers are called, by the first letter of their names."""
 
 
 def _groups(place: NumberPlace) -> list[Any]:
