@@ -8,6 +8,9 @@ import hypothesis
 import pytest
 
 os.environ["KINLAB_LANG"] = "en"  # ours and that of all we start, whatever the locale
+# workers fill the processors; BLAS's own threads would wait for each other in loops: a quarter of
+# the doctor's time, more where other work goes on beside
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 hypothesis.settings.register_profile(
     "kinlab",

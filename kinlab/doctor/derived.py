@@ -83,8 +83,10 @@ def _rate(a: SymbolicArm, poly: Poly) -> Poly:
 # -------- The engine's quantities as derived formulas, entry by entry, for arms with a DH
 #          table
 
-_DYNAMIC_JOINTS = 3
-"""More joints make the expressions of M, C, g and tau too long to search for a slip in."""
+_DYNAMIC_JOINTS = 4
+_OF_MORE = 100
+"""Terms of an entry of M, C, g or tau up to which an arm of more than three joints is derived: of a
+SCARA they are few, of others too many to search for a slip in."""
 _KINEMATIC_JOINTS = 7
 _FACTORED = 20
 """Terms of one entry up to which its factors are looked for."""
@@ -263,7 +265,12 @@ def derivation(table: DHTable, quantity: str) -> Derivation | None:
         return None
     named = _with_wrench(arm(table)) if quantity in _LOADED else arm(table)
     made = make(named)
-    return Derivation(named, _objects(made)) if made is not None else None
+    if made is None:
+        return None
+    polys = _objects(made)
+    if table.n > 3 and quantity not in _KINEMATIC and max(map(len, polys.ravel())) > _OF_MORE:
+        return None
+    return Derivation(named, polys)
 
 
 def _with_wrench(a: SymbolicArm) -> SymbolicArm:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import relative_errors
+from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
@@ -17,8 +17,10 @@ from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
+from kinlab.doctor.text.habits import NOTHING
+from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
-from kinlab.doctor.text.written import Written
+from kinlab.doctor.text.written import Beyond, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
@@ -34,13 +36,16 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     """
     odd = verdicts.unusual(case, engine, 0.0 if written else TOLERANCES.finite_differences)
     if odd is not None:
-        return case, odd
+        return case, _with_numbers(odd, case, engine, written)
+    if not written and (cut := verdicts.answers_rounded(case, engine)) is not None:
+        return case, cut
     if not written and (digits := verdicts.by_differences(case, engine)) is not None:
         return case, digits
     for said_of_all in rounding.roundings(case, engine, not written):
         return case, Excuse("rounded", said_of_all)
     if not written:
-        return case, verdicts.of_coefficients(case, engine)
+        odd = verdicts.unusual_and_rounded(case, engine)
+        return case, odd or verdicts.of_coefficients(case, engine)
     remarks: list[str] = []
     settled, right = np.array(case.hand), True
     for entry in entries(case, engine):
@@ -53,10 +58,49 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
             place: Any = (slice(None), *entry.local)
             settled[place] = entry.engine
     if right and remarks:
-        return case, Excuse("rounded", tuple(dict.fromkeys(remarks)))
+        found = Excuse("rounded", tuple(dict.fromkeys(remarks)))
+        return case, _with_numbers(found, case, engine, written)
+    odd = None if right else _unusual_and_rounded(case, engine, written)
+    if odd is not None:
+        return case, _with_numbers(odd, case, engine, written)
     if not right and (weighed := rounding.gravity_rounded(case, engine, False)) is not None:
         return case, Excuse("rounded", weighed)  # 5.88 for m2*g*l2: it was worked out with 9.8
     return replace(case, hand=settled), None
+
+
+def _unusual_and_rounded(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
+    """A potential's other zero, or another valid C, with rounded numbers in it."""
+    name, every = case.quantity.name, entries(replace(case, hand=engine), engine)
+    texts = {entry.local: written.get(entry.label) for entry in every}
+    at = verdicts.numbers_at(case)
+    rows: list[tuple[Written, Array]] = []
+    said = ""
+    only = next(iter(texts.values())) if len(texts) == 1 else None
+    if only is not None and name in verdicts.ENERGIES:
+        same = {field.name: getattr(only, field.name) for field in fields(only)}
+        rows = [(Beyond(**same), engine.ravel() - engine.ravel()[0])]
+        said = verdicts.zero_moved(float(f"{np.median(case.hand - engine):.3g}"))
+    elif name == "coriolis_matrix" and len(texts) == engine[0].size > 1 and not case.index:
+        torques = np.einsum("nij,nj->ni", engine, case.arguments["v"])
+        rates = range(engine.shape[2])
+        for i, torque in enumerate(torques.T):
+            row = [texts.get((i, j)) for j in rates]
+            first = row[0]
+            if first is None or any(one is None for one in row):
+                return None
+            sum_ = " + ".join(f"({one.text})*qd{j + 1}" for j, one in enumerate(row) if one)
+            rows.append((replace(first, text=sum_), torque))
+        said = _("C*qd is right, but C is not Christoffel's")
+    remarks: list[str] = []
+    for text, wanted in rows:
+        scale = error_sizes(wanted[:, None])
+        gap = np.abs(text.values(at) - wanted) / scale
+        if np.max(gap) > TOLERANCES.formula_agrees:
+            changed = stand_ins(text, at, wanted, scale)
+            if changed is None:
+                return None
+            remarks += rounding_remarks(changed, at)
+    return Excuse("unusual", (said, *dict.fromkeys(remarks))) if rows else None
 
 
 def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] | None:
@@ -69,8 +113,32 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
         return [*text.rounded, *rounding_remarks(changed, at)]
     table = table_of(case.robot)
     derived = derivation(table, case.quantity.name) if table is not None else None
-    said = verdicts.of_data(text, entry, derived, case) if derived is not None else None
-    return [said] if said is not None else None
+    if derived is None:
+        return None
+    said = verdicts.of_data(text, entry, derived, case)
+    if said is not None:
+        return [said]
+    return verdicts.of_bare_numbers(text, entry, derived, case)
+
+
+def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, Written]) -> Excuse:
+    """An excuse with what the texts have numbers for and no name, but for those told: g = 9.81."""
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None and written else None
+    if derived is None:
+        return found
+    right: set[str] = set()
+    for entry in entries(replace(case, hand=engine), engine):
+        poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+        right |= verdicts.unnamed(written.get(entry.label), derived, poly)
+    own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
+    only = [one for one in own if not any(one in remark for remark in found.remarks)]
+    return replace(found, remarks=(*found.remarks, *_only_for(only)))
+
+
+def _only_for(numbers: Sequence[str]) -> list[str]:
+    said = together(numbers)
+    return [_("but it holds only for {numbers}").format(numbers=said)] if numbers else []
 
 
 def covered_up(
@@ -86,6 +154,7 @@ def covered_up(
         return [], 0.0, []
     slips: list[Slip] = []
     only: list[str] = []
+    nothing: list[str] = []
     largest = 0.0
     for entry in entries(case, engine):
         poly = derived.polys[entry.index] if entry.index else derived.polys.item()
@@ -94,14 +163,20 @@ def covered_up(
             continue
         kept, plain = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
         only += [name for name in kept if name not in only]
+        zero = (name for name in words_in(text.text) if text.symbols.get(name) == NOTHING)
+        nothing += [name for name in zero if name not in nothing]
         gap = plain if not kept else 0.0
         if gap > TOLERANCES.formula_agrees:
             # a term put in for another of the same value is no slip, but another form
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    said = together(f"{name} = {derived.arm.values[name]:.7g}" for name in only)
-    remarks = [_("but it holds only for {numbers}").format(numbers=said)] if only else []
+    remarks = _only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
+    if nothing:
+        zeros = together(f"{name} = 0" for name in nothing)
+        remarks.append(
+            _("of this robot {names}: what stands with it is not judged").format(names=zeros)
+        )
     return ([slip_cause(tuple(slips))] if slips else []), largest, remarks
 
 

@@ -208,9 +208,11 @@ def rounded_robots(robot: Robot) -> Iterator[tuple[Robot, tuple[str, ...]]]:
     for changed, said in plain:
         try:
             with already_said():
-                yield Robot.from_dh(changed), said
+                rounded = Robot.from_dh(changed)
         except KinlabError:
             continue  # rounded, it is no body's tensor
+        if bool(rounded.singular_mass) == bool(robot.singular_mass):
+            yield rounded, said
 
 
 def _angles(table: DHTable) -> Iterator[tuple[DHTable, tuple[str, ...]]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -22,6 +22,10 @@ from kinlab.host.language import _
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
 
+_SEVERAL = 2
+"""Coefficients that agree to the same digits by no accident."""
+_FINE = 0.1
+"""Share of the largest coefficient that the last digit of all is at most."""
 _ROUGH = 0.03
 """Share of a function's answer that rounded constants may change: g = 10 is 2 %."""
 
@@ -99,7 +103,7 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     size = float(np.linalg.norm(g))
     if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
-    none = replace(case, robot=with_gravity(case.robot, 0 * g)).answer(())
+    none = replace(case, robot=weightless(case.robot)).answer(())
     weight, rest = engine - none, case.hand - none
     total = float(np.sum(weight * weight))
     if total <= 0:
@@ -115,6 +119,11 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     ):
         return None
     return (stands_for(f"g = {one.text}", f"{size:.10g}"),)
+
+
+def weightless(robot: Robot) -> Robot:
+    """The robot without gravity."""
+    return with_gravity(robot, np.zeros(3))
 
 
 def _decimal(value: float) -> Literal | None:
@@ -161,12 +170,18 @@ def coefficients(
     return mine, theirs
 
 
-def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> list[str] | None:
+def coefficients_rounded(
+    mine: Array, theirs: Array, at: dict[str, Array], shown: Iterable[Literal] = ()
+) -> list[str] | None:
     """Coefficients that are the derived ones to a few digits, in words, or None.
 
     Empty where they may be: their digits are not seen, as they are in a text, and 1.12 for 1.115
     may as well be a mass of 2.02.
     """
+    seen = [*shown]
+    throughout = _throughout(mine, theirs, seen)
+    if throughout or seen:
+        return [throughout] if throughout else None
     meanings, size = Meanings.at(at), float(np.max(np.abs(theirs)))
     said = []
     for one, two in zip(mine.tolist(), theirs.tolist(), strict=True):
@@ -179,6 +194,34 @@ def coefficients_rounded(mine: Array, theirs: Array, at: dict[str, Array]) -> li
     if not said:
         return None
     return list(dict.fromkeys(said)) if all(said) else []
+
+
+def _throughout(mine: Array, theirs: Array, shown: list[Literal]) -> str:
+    """That all coefficients are the derived ones to the same digits or decimals, in words.
+
+    Not to fewer than are ``shown``, where that is seen.
+    """
+    exact, largest = mine[theirs == 0], float(np.max(np.abs(theirs)))
+    near = TOLERANCES.same_number * largest
+    if len(mine) < _SEVERAL or np.any(np.abs(exact) > near):
+        return ""
+    one, two = mine[theirs != 0], theirs[theirs != 0]
+    sizes = np.floor(np.log10(np.abs(two)))
+    digits = max((one.digits for one in shown if not one.whole), default=0)
+    places = max((len(one.text.partition(".")[2]) for one in shown), default=0)
+    for count in range(2, 7):
+        for least, powers, said in (
+            (digits, sizes + 1 - count, _("its coefficients are right to {count} digits")),
+            (places, 0 * sizes - count, _("its coefficients are right to {count} decimals")),
+        ):
+            units = 10.0**powers
+            if count < least or np.max(units) > _FINE * largest:
+                continue
+            whole = np.abs(np.round(one / units) * units - one) <= near
+            close = np.abs(one - two) <= 0.5 * units * (1 + TOLERANCES.formula_agrees)
+            if whole.all() and close.all():
+                return said.format(count=count)
+    return ""
 
 
 def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:

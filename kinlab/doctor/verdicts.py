@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
 from kinlab.doctor.regression import joint_functions
-from kinlab.doctor.rounding import coefficients, coefficients_rounded, data_rounded, same_values
+from kinlab.doctor.rounding import (
+    coefficients,
+    coefficients_rounded,
+    data_rounded,
+    gravity_rounded,
+    same_values,
+    weightless,
+)
 from kinlab.doctor.terms import anywhere, as_rods, names_for
 from kinlab.doctor.text.stand_ins import FREE, fitted
-from kinlab.doctor.text.written import Written
+from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
@@ -31,7 +39,9 @@ _FEW = 8
 """States at which the noise of a function is measured."""
 _COORDINATES = 6
 """Of a twist."""
-_ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
+_DIGITS_LEFT = 100.0
+"""Units of the last decimal that rounded answers reach at least."""
+ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
 
 
 @dataclass(frozen=True)
@@ -122,17 +132,22 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
                 "sums over qd_j qd_k are the same"
             )
             return Excuse("unusual", (said,))
-    if name in _ENERGIES:
+    if name in ENERGIES:
         gap = hand - engine
         constant = gap[:1]
         if same_values(gap, np.broadcast_to(constant, gap.shape), engine, slack):
             size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
-            said = _(
-                "the potential has another zero (the difference is {size:.6g} J everywhere), "
-                "which changes no torque"
-            )
-            return Excuse("unusual", (said.format(size=size),))
+            return Excuse("unusual", (zero_moved(size),))
     return None
+
+
+def zero_moved(size: float) -> str:
+    """What is said of a potential that is another everywhere, by so much."""
+    said = _(
+        "the potential has another zero (the difference is {size:.6g} J everywhere), "
+        "which changes no torque"
+    )
+    return said.format(size=size)
 
 
 def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
@@ -199,6 +214,14 @@ def elsewhere(
     return [], gap if plain else 0.0
 
 
+def unnamed(text: Written | None, derived: Derivation, poly: Poly) -> set[str]:
+    """The robot's numbers in a derived entry that a text has no name for."""
+    if text is None or not searchable(poly):
+        return set()
+    right = derived.tree(derived.held(poly, tree.names(text.node)))
+    return tree.names(right) & {*derived.arm.trig.parameters} - tree.names(text.node)
+
+
 def _one_robot(at: dict[str, Array], parameters: tuple[str, ...]) -> dict[str, Array]:
     """The same numbers for the robot at every state."""
     return {n: np.full_like(x, x[0]) if n in parameters else x for n, x in at.items()}
@@ -211,7 +234,9 @@ def _kept(
     count = len(next(iter(at.values())))
     here = {**at, **{name: np.full(count, value) for name, value in own.items()}}
     found = []
-    for name in sorted(missing or own):
+    # of a rod the moment follows its mass and length, which moved alone would seem to be held
+    rods = any(name[0] == "I" for name in missing)
+    for name in sorted(missing if rods else own):
         moved = {**here, name: here[name] * 1.37 + 0.1}
         target = np.broadcast_to(tree.evaluate(right, moved), (count,))
         gap = np.max(np.abs(text.values(moved) - target))
@@ -225,6 +250,22 @@ def by_differences(case: Case, engine: Array) -> Excuse | None:
     error, size = _own_error(case, engine)
     near = error <= TOLERANCES.slips_leave and _takes_differences(case, size)
     return of_digits(error) if near else None
+
+
+def answers_rounded(case: Case, engine: Array) -> Excuse | None:
+    """A function whose answers are the engine's, rounded to so many decimals."""
+    size = float(np.max(np.abs(engine)))
+    for places in range(2, 10):
+        unit = 10.0**-places
+        if size < _DIGITS_LEFT * unit:
+            continue
+        off = np.abs(np.round(case.hand / unit) * unit - case.hand)
+        if float(np.max(off)) > TOLERANCES.same_number * size:
+            continue
+        near = np.abs(case.hand - engine) <= 0.5 * unit * (1 + TOLERANCES.formula_agrees)
+        said = _("its answers are rounded to {places} decimals").format(places=places)
+        return Excuse("rounded", (said,)) if np.all(near) else None
+    return None
 
 
 def _own_error(case: Case, engine: Array) -> tuple[float, float]:
@@ -341,8 +382,59 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
     )
 
 
+def of_bare_numbers(
+    text: Written, entry: AnswerEntry, derived: Derivation, case: Case
+) -> list[str] | None:
+    """Rounded coefficients of a text without any of the robot's names, in words."""
+    if not tree.names(text.node).isdisjoint(derived.arm.trig.parameters):
+        return None
+    shown = [one for one in text.literals if not one.exponent]
+    found = _of_function(entry, derived, case, shown)
+    return found[0] or None if found is not None else None
+
+
+def unusual_and_rounded(case: Case, engine: Array) -> Excuse | None:
+    """A function's potential with another zero, or another valid C, and rounded numbers in it."""
+    name, hand = case.quantity.name, case.hand
+    if hand.shape != engine.shape or not np.isfinite(hand).all() or case.index:
+        return None
+    if name == "coriolis_matrix":
+        said = _("C*qd is right, but C is not Christoffel's")
+        torques, mine = (np.einsum("nij,nj->ni", x, case.arguments["v"]) for x in (engine, hand))
+        asked = replace(case, quantity=find_quantity("coriolis_torques"), hand=mine)
+        found = of_coefficients(asked, torques)
+    elif name in ENERGIES and engine.ndim == 1:
+        weight = engine - replace(case, robot=weightless(case.robot)).answer(())
+        columns = np.stack([np.ones(len(hand)), weight], axis=1)
+        (size, _share), *_rest = np.linalg.lstsq(columns, hand - (engine - weight), rcond=None)
+        said = zero_moved(float(f"{size:.3g}"))
+        asked = replace(case, hand=hand - size)
+        weighed = gravity_rounded(asked, engine)
+        found = Excuse("rounded", weighed) if weighed else _of_potential(case, engine)
+    else:
+        return None
+    if found is None or found.form != "rounded":
+        return None
+    return Excuse("unusual", (said, *found.remarks))
+
+
+def _of_potential(case: Case, engine: Array) -> Excuse | None:
+    """Coefficients that are the derived ones, rounded, beside a constant that is any."""
+    table = table_of(case.robot)
+    derived = derivation(table, case.quantity.name) if table is not None else None
+    if derived is None or not searchable(derived.polys.item()):
+        return None
+    right = derived.tree(derived.polys.item())
+    words = joint_functions([right], names_for(derived, case.quantity.arguments))
+    at = numbers_at(case)
+    rows = [np.broadcast_to(tree.evaluate(w, at), case.hand.shape) for w in words]
+    moving = [row for row in rows if np.ptp(row) > 0] + [np.ones(len(case.hand))]
+    mine, *_rest = np.linalg.lstsq(np.array(moving).T, case.hand - engine, rcond=None)
+    return of_coefficients(replace(case, hand=case.hand - mine[-1]), engine)
+
+
 def _of_function(
-    entry: AnswerEntry, derived: Derivation, case: Case
+    entry: AnswerEntry, derived: Derivation, case: Case, shown: Iterable[Literal] = ()
 ) -> tuple[list[str], float] | None:
     """Rounded coefficients of a function's entry, in words; else how far they are off, relative."""
     poly = derived.polys[entry.index] if entry.index else derived.polys.item()
@@ -354,7 +446,7 @@ def _of_function(
     both = coefficients(entry.hand, entry.engine, entry.scale, words, at)
     if both is None:
         return None
-    told = coefficients_rounded(*both, at)
+    told = coefficients_rounded(*both, at, shown)
     if told:
         return told, 0.0
     mine, theirs = both

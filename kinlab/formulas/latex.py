@@ -15,19 +15,19 @@ _LENGTH = 20_000
 _NESTING = 40
 
 _WORD = (
-    r"\\(?:mathrm|mathit|mathsf|mathbf|boldsymbol|bm|text|textrm|textit|operatorname)(?![A-Za-z])\*?"
-    r"\s*\{[A-Za-z0-9_ ]*\}"
+    r"\\(?:mathrm|mathcal|mathit|mathsf|mathbf|boldsymbol|bm|text|textrm|textit|operatorname)"
+    r"(?![A-Za-z])\*?\s*\{[A-Za-z0-9_ ]*\}"
 )
 _TOKEN = re.compile(
-    rf"{_WORD}|\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])|[A-Za-z]"
-    r"|[-+*/^_{}()\[\]=,&|.~]|\s+",
+    rf"{_WORD}|\\[A-Za-z]+|\\.|\d+(?:(?:\.|\{{,\}})\d+)?|(?:sin|cos|tan|sqrt|atan2)(?![A-Za-z])"
+    r"|[A-Za-z]|[-+*/^_{}()\[\]=,&|.~]|\s+",
     re.ASCII,
 )
 _BLANKS = (
     r"\, \; \: \! \quad \qquad ~ \left \right \big \Big \bigg \Bigg \bigl \bigr \Bigl \Bigr "
     r"\biggl \biggr \displaystyle \textstyle \mathbf \boldsymbol \bm"
 )
-_SPACE = {"\\ ", *_BLANKS.split()}
+_SPACE = {"\\ ", "\\\\", "&", *_BLANKS.split()}
 _CALLED = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _TIMES = {"*", r"\cdot", r"\times"}
 _FRACTIONS = {r"\frac", r"\dfrac", r"\tfrac"}
@@ -40,6 +40,7 @@ _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
+_BRACES = {r"\{": "(", r"\}": ")"}
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -77,7 +78,8 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
         found = _TOKEN.match(text, at)
         if found is None:
             raise ExpressionError(f"{place}: {text[at]!r} has no meaning in LaTeX of a formula")
-        token, at = found.group(), found.end()
+        token, at = found.group().replace("{,}", "."), found.end()
+        token = _BRACES.get(token, token)
         if token in _SPACE or token.isspace():
             glued = glued and token in (r"\left", r"\right")
             continue
@@ -327,7 +329,7 @@ class _Reader:
         return inside
 
     def name(self) -> str:
-        dots, first = "", self.at
+        dots, power, first = "", "", self.at
         if self.next in _DOTS:
             dots = _DOTS[self.take()]
             braced = self.next == "{"
@@ -335,7 +337,8 @@ class _Reader:
                 self.take()
             head = self.letter()
             below = self.subscript()
-            if braced:
+            if braced:  # \\dot{q_1^2} is the rate squared
+                power = _raised(self.argument()) if self.raised() else ""
                 self.take("}")
             below = below or self.subscript()
         else:
@@ -344,7 +347,7 @@ class _Reader:
             raise ExpressionError(
                 f"{self.place}: LaTeX: a dot over {head}; only over q, theta and a slide's d"
             )
-        if self.next == "^" and not below:  # l^2_1 is l_1^2
+        if self.next == "^" and not below and not power:  # l^2_1 is l_1^2
             mark, noted = self.at, len(self.leaves)
             self.take()
             exponent = self.argument()
@@ -356,7 +359,7 @@ class _Reader:
                 return f"{base}{_raised(exponent)}"
             self.at = mark
             del self.leaves[noted:]
-        return self.leaf(f"{head}{dots}{below}", first)
+        return self.leaf(f"{head}{dots}{below}", first) + power
 
     def letter(self) -> str:
         token = self.next

@@ -43,12 +43,13 @@ _FORMULAS = 200
 SHORTHAND = re.compile(r"([cs])_?([1-9]+)")
 """c12 is cos(q1 + q2), s1 is sin(q1), as in every textbook."""
 
-_DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_dot_?|q_dot_?|qdot_?"
-_TWICE_DOTTED = r"ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_ddot_?|q_ddot_?|qddot_?"
+_DOTTED = r"dtheta|thetad|dth|thd|qd|dq|theta_?dot_?|q_?dot_?|th_?dot_?"
+_TWICE_DOTTED = r"ddtheta|thetadd|ddth|thdd|qdd|ddq|theta_?ddot_?|q_?ddot_?|th_?ddot_?"
 _JOINT = tuple(
     (re.compile(rf"(?:{heads})_?([1-9]\d?)"), letter)
     for heads, letter in (("theta|th|q", "q"), (_DOTTED, "qd"), (_TWICE_DOTTED, "qdd"))
 )
+_DOTTED_BEHIND = re.compile(r"(?:theta|th|q)_?([1-9]\d?)_?(d{1,2})(?:ot)?")
 _ABSOLUTE = re.compile(r"(?:theta|th)(d{0,2})_?((?=[1-9]{2})1?2?3?4?5?6?7?8?9?)")
 """theta12 is q1 + q2, as c12 is its cosine: joints in ascending order."""
 _UNDERSCORED = re.compile(r"[A-Za-z]+(?:_[A-Za-z]+)?_?[0-9]+")
@@ -123,6 +124,14 @@ def formula_file(
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    for key, value in entries.items():
+        own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        for name, formula in own.items():
+            if symbols.setdefault(name, formula) != formula:
+                said = (
+                    f"{name} is explained twice; keep one, in front of the formula or in [symbols]"
+                )
+                raise ExpressionError(f"{place}: {key}: {said}")
     as_typed, writing = _opened(entries, symbols, place, writing)
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
@@ -236,6 +245,9 @@ def canonical(name: str) -> Node:
         found = pattern.fullmatch(name)
         if found:
             return tree.sym(f"{letter}{found.group(1)}")
+    found = _DOTTED_BEHIND.fullmatch(name)
+    if found:
+        return tree.sym(f"q{found.group(2)}{found.group(1)}")
     found = SHORTHAND.fullmatch(name)
     if found:
         angle = tree.add(*(tree.sym(f"q{digit}") for digit in found.group(2)))
@@ -399,10 +411,9 @@ def _opened(
     entries: dict[str, Any], symbols: dict[str, Any], place: str, writing: typed.Hand | None
 ) -> tuple[dict[str, str], typed.Hand]:
     """Formulas as typed, a matrix as its entries; and what they say about the writing."""
-    given = {key: _text(value, f"{place}: {key}") for key, value in entries.items()}
     meant = [value for value in symbols.values() if isinstance(value, str)]
-    writing = writing or typed.hand([*given.values(), *meant], symbols)
-    return typed.opened(given, place, writing), writing
+    writing = writing or typed.hand([*entries.values(), *meant], symbols)
+    return typed.opened(entries, place, writing), writing
 
 
 def _plain(

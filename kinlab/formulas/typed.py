@@ -230,11 +230,13 @@ def bare(text: str) -> str:
 
 
 _POWER = re.compile(r"(?<![\w.])(?:power|pow)\s*(?=\()")
+_MATHEMATICA = re.compile(r"(?<![\w.])(?:Sin|Cos|Tan|Sqrt|Abs)(?=\()")
 _DEGREES = re.compile(r"(?<![\w.])a?(sin|cos|tan)d\s*\(")
 
 
 def _plain_signs(text: str, place: str) -> str:
-    text = _with_powers(_PREFIX.sub("", _ELEMENTWISE.sub(r"\1", text)))
+    text = _MATHEMATICA.sub(lambda found: found[0].lower(), _PREFIX.sub("", text))
+    text = _with_powers(_ELEMENTWISE.sub(r"\1", text))
     if found := _DEGREES.search(text):
         raise ExpressionError(
             f"{place}: {found[0]}...) takes degrees, and joints are in radians; write {found[1]}"
@@ -343,10 +345,12 @@ def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
 
 # -------- Left sides and matrices
 
-_ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?)?)", re.ASCII)
+_ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
 """What ``kinlab derive`` calls a quantity whose name elsewhere is another."""
 _OF_STATE = re.compile(r"\s*(?:\\left)?\s?\(([^()]*[A-Za-zθ][^()]*)\)$")
+_IN_BASE = re.compile(r"^(?:\{\s*\})?\^(?:0|\{\s*0\s*\})(?:_(?:\w|\{\s*\w\s*\}))?")
+"""The base frame in front of a name, and of which frame: {}^0_4T."""
 _NAMED = re.compile(r"([a-z_]{2,})(\[[\d:,\s-]+\])?")
 _LONGEST_NAME = 120
 
@@ -359,7 +363,7 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     """
     typeset = is_latex(text)
     text = bare(text)
-    parts = text.replace("&=", "=").replace("=&", "=").replace(":=", "=").split("=")
+    parts = re.sub(r"&?\s*:?=\s*(?:\{\s*\})?\s*&?", "=", text).split("=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
         raise ExpressionError(
             f"{place}: {len(parts) - 1} signs of equality; write one name = formula, and of "
@@ -370,7 +374,69 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     if not parts[1].strip():
         raise ExpressionError(f"{place}: nothing stands behind the sign of equality")
     left, right = (part.strip() for part in parts)
+    typeset = typeset and (is_latex(right) or "*" not in right or "$" in text)
     return left, f"${right}$" if typeset else right
+
+
+_NEXT = re.compile(r"(\n|;|\\\\(?:\[[^\]]*\])?)")
+_WHERE = re.compile(
+    r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*"
+    r"|,?\s*\\q?quad(?=\s*[\\\w{}]+\s*=)\s*"
+)
+"""What stands between a formula and what is explained behind it."""
+_GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
+_OWN_NAME = re.compile(r"[\\\w{} ]+")
+
+
+def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
+    """A formula with what its writer explains: ``h = m2*l1*l2*s2; C11 = -h*qd2``.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+
+    Returns:
+        The writer's names with their formulas, as typed; and the formula itself: the one with the
+        entry's name, the one in front of ``where``, or the last one.
+    """
+    lines = [line.strip("& ") for line in _lines(bare(text)) if line.strip("& ")]
+    if len(lines) == 1:
+        first, *behind = _WHERE.split(lines[0])
+        lines = [*behind, first]
+    lines.sort(key=lambda line: _begins_with(line, entry))
+    own = [line.partition("=") for line in lines[:-1]]
+    counts = [line.count("=") for line in lines]
+    if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
+        return {}, text
+    if not all(_OWN_NAME.fullmatch(name) for name, *_rest in own):
+        return {}, text
+    dollars = "$" if is_latex(text) else ""
+    formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
+    return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _begins_with(line: str, entry: str) -> bool:
+    """Whether a line gives the entry by its own name."""
+    left, sign, _right = line.partition("=")
+    if not sign or not entry:
+        return False
+    try:
+        return _head_and_places(entry_name(left)) == _head_and_places(entry_name(entry))
+    except ExpressionError:
+        return False
+
+
+def _lines(text: str) -> list[str]:
+    """The text, cut where a line or a statement ends outside of brackets and matrices."""
+    lines = [""]
+    for piece in _NEXT.split(_GOES_ON.sub(" ", text)):
+        last = lines[-1]
+        depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
+        if _NEXT.fullmatch(piece) and depth == 0 and last.count("\\begin") == last.count("\\end"):
+            lines.append("")
+        else:
+            lines[-1] += piece
+    return lines
 
 
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
@@ -386,12 +452,12 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     """
     if len(text) > _LONGEST_NAME:
         raise ExpressionError(f"{place}: {text[:30]}... is no name of an entry")
-    typed = _OF_STATE.sub("", bare(text).strip("& ")).strip()
+    typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in _LONG):
         return typed  # a quantity by its own name
     if is_latex(typed) or not typed.isascii():
-        typed = re.sub(r"_\{\s*(\d)\s*,\s*(\d)\s*\}", r"_{\1\2}", typed)
+        typed = re.sub(r"(?<=\d)\s*,\s*(?=\d\s*[,}])", "", typed)
         name = latex.expression(ascii_text(typed, place, as_latex=True), place)
     else:
         name = re.sub(r"\(\s*(\d)\s*,\s*(\d)\s*\)$", r"\1\2", typed)
@@ -403,15 +469,53 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
     return f"{_PRINTED.get(head, head)}{index.replace('_', '')}"
 
 
+_IN_BOOKS = (
+    "M D H B A mass_matrix",
+    "C coriolis_matrix",
+    "g phi gravity_torques",
+    "V P U Ep potential potential_energy",
+    "T K Ek kinetic kinetic_energy",
+    "L lagrangian",
+    "T A H fk",
+    "J planar_jacobian jacobian jacobian_tool jacobian_spatial",
+    "tau u Q inverse_dynamics",
+    "V C H N B coriolis_torques",
+)
+"""What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
+_MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
+_PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
+
+
 def _of_one_name(left: str, name: str) -> bool:
-    """Whether a left side may stand before an entry: G2 before g2, tau before tau1."""
-    return left.lower() == name.lower() or (left.isalpha() and f"{left}1" == name)
+    """Whether a left side may stand before an entry: G2 and phi_2 before g2, tau before tau1.
+
+    A name that no book has for anything else may be the writer's own.
+    """
+    (head, places), (mine, wanted) = _head_and_places(left), _head_and_places(name)
+    known = [group for group in _MEANT if head in group]
+    if not known and not places and head != mine:
+        return True
+    if places != wanted and (places or wanted not in ("", "1")):
+        return False
+    return head == mine or not known or any(mine in group for group in known)
+
+
+def _head_and_places(name: str) -> tuple[str, str]:
+    """``("m", "12")`` of M12, ``("mass_matrix", "12")`` of ``mass_matrix[0,1]``."""
+    found = _PLACES.fullmatch(name.replace(" ", ""))
+    if found is None:
+        return name.lower(), ""
+    head, places = found.groups()
+    if "[" in name:
+        places = "".join(str(int(k) + 1) for k in places.split(",") if k)
+    return head.lower(), places.replace(",", "")
 
 
 _MATRIX = re.compile(
     r"(?:\\left\s*[(\[.]\s*|[(\[]\s*)?"
     r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(\{[lcr| ]*\})?"
-    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?",
+    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?"
+    r"(\s*\^\{?(?:\\top|T|\\mathrm\{?\s*T\}?)\}?)?",
     re.DOTALL,
 )
 _ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
@@ -436,6 +540,8 @@ def cells(text: str, place: str = "expression") -> list[list[str]] | None:
     if found:
         lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[3]) if row.strip()]
         rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
+        if found[4] and len({len(row) for row in rows}) == 1:
+            rows = [list(column) for column in zip(*rows, strict=True)]
     else:
         inside = _ARRAY.fullmatch(text)
         rows = _listed((inside[1] if inside else text).strip(), place)
@@ -455,6 +561,10 @@ def _listed(text: str, place: str) -> list[list[str]]:
         return []
     inside = text[1:-1]
     rows = _parts(inside, ";")
+    if len(rows) > 1 and "," not in inside:
+        apart = [_beside(row) for row in rows if row]
+        if "*" in text or all(_PLAIN_ENTRY.fullmatch(cell) for row in apart for cell in row):
+            return apart
     if len(rows) == 1:
         members = [member for member in _parts(inside, ",") if member]
         if members and all(m.startswith("[") and _closes(m) == len(m) - 1 for m in members):
@@ -463,6 +573,25 @@ def _listed(text: str, place: str) -> list[list[str]]:
             return []
         return [[member] for member in members]
     return [_parts(row, ",") for row in rows if row]
+
+
+_PLAIN_ENTRY = re.compile(r"-?(?:[A-Z]\d\d|\d+(?:\.\d+)?)")
+"""M11, 0: what is no factor of a product without a sign."""
+
+
+def _beside(row: str) -> list[str]:
+    """A row of MATLAB's, whose entries are set apart by blanks: ``a + b -c`` are two."""
+    entries, depth = [""], 0
+    for k, character in enumerate(row):
+        depth += (character in "([{") - (character in ")]}")
+        before, behind = entries[-1].rstrip()[-1:], row[k:].lstrip()[:2]
+        signed = behind[:1] in "+-" and not behind[1:].isspace()
+        apart = before not in "+-*/^.(" and (behind[:1] not in "+-*/^.)" or signed)
+        if character.isspace() and depth == 0 and before and behind and apart:
+            entries.append("")
+        else:
+            entries[-1] += character
+    return [entry.strip() for entry in entries if entry.strip()]
 
 
 def _closes(text: str) -> int:
@@ -505,6 +634,8 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
         at = f"{place}: {key}"
         left, right = sides(value, at)
         name = entry_name(key, at, writing)
+        if left and _begins_with(f"{right.strip('$ ')} =", name) and not _OWN_NAME.fullmatch(left):
+            left, right = "", f"${left}$" if right[:1] == "$" else left  # ... = tau2
         if left and not _of_one_name(entry_name(left, at, writing), name):
             raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
         grid = cells(right, at)

@@ -24,7 +24,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.compiled import kernel
-from kinlab.engine.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.kinematics_kernels import columns, frames, put
 
 CONVERGED, OUTSIDE, STALLED, RUNNING = 0, 1, 2, 3
 """How the best search ended: tolerance met; met, but outside the limits; no more progress;
@@ -308,7 +308,7 @@ def search_rows(problem, targets, guesses, guessed, q_out, outcome, first, last)
         tries = 1 if math.sqrt(far) > problem.reach + tol_position else problem.searches
         while tried < tries:
             if guessed and tried == 0:
-                q[:] = centre
+                put(centre, q)
             else:
                 if not measured:
                     nearest(problem.table, target, weight, distance)
@@ -319,9 +319,9 @@ def search_rows(problem, targets, guesses, guessed, q_out, outcome, first, last)
                             distance[i] = 0.0
                 choice = np.argmin(distance)
                 distance[choice] = np.inf
-                q[:] = starts[choice]
+                put(starts[choice], q)
             tried += 1
-            free[:] = problem.wide
+            put(problem.wide, free)
             corrected = False
             end, mark, energy = RUNNING, np.inf, np.inf
             for step in range(problem.iterations):
@@ -342,7 +342,7 @@ def search_rows(problem, targets, guesses, guessed, q_out, outcome, first, last)
                     end = OUTSIDE
                     if best_end != OUTSIDE:
                         best, best_end = 0.0, OUTSIDE
-                        q_out[row] = q
+                        put(q, q_out[row])
                     if corrected:
                         break
                     corrected = True
@@ -370,7 +370,7 @@ def search_rows(problem, targets, guesses, guessed, q_out, outcome, first, last)
                         q[i] = min(max(q[i], lower[i]), upper[i])
             if end == CONVERGED:
                 best_end = CONVERGED
-                q_out[row] = q
+                put(q, q_out[row])
                 break
             if best_end != OUTSIDE:
                 wrap(prismatic, lower, upper, centre, q)
@@ -381,7 +381,7 @@ def search_rows(problem, targets, guesses, guessed, q_out, outcome, first, last)
                 energy = half_square(weight, e)
                 if energy < best:
                     best, best_end = energy, end
-                    q_out[row] = q
+                    put(q, q_out[row])
         outcome[row, 0], outcome[row, 1], outcome[row, 2] = best_end, total, tried
 
 
@@ -407,7 +407,7 @@ def settle_rows(problem, iterations, targets, q, first, last):  # type: ignore[n
     partly = some_angles(weight)
     for row in range(first, last):
         target = targets[row]
-        trial[:] = q[row]
+        put(q[row], trial)
         energy, mu = np.inf, 1e-2
         for _ in range(iterations):
             frames(fixed, prismatic, trial, axes, pose)
@@ -416,7 +416,7 @@ def settle_rows(problem, iterations, targets, q, first, last):  # type: ignore[n
             if now < energy:
                 rest = now > (1.0 - 1e-12) * energy
                 energy = now
-                q[row] = trial
+                put(trial, q[row])
                 mu = max(0.2 * mu, 1e-12)
                 if rest:
                     break

@@ -31,15 +31,18 @@ class Vocabulary:
         values: what each name stands for, SI units.
         entries: entry of the table, such as ``"a2"`` or ``"com1x"``, as a sum of names.
             Rows are numbered from 1 as they stand in the table.
+        others: names by which books call what has another name here, or is zero: ``lc1`` is
+            l1/2 of a rod, ``I1`` nothing where all the mass is in one point.
     """
 
     values: dict[str, float] = field(default_factory=dict)
     entries: dict[str, Linear] = field(default_factory=dict)
+    others: dict[str, Linear] = field(default_factory=dict)
 
     def put(self, entry: str, name: str, value: float, sign: int = 1) -> None:
         """Calls an entry ``sign`` times ``name``; an entry of zero stays zero."""
         if value == 0.0:
-            self.entries[entry] = ()
+            self.entries[entry] = self.others[name] = ()
             return
         self.values[name] = sign * value
         self.entries[entry] = ((Fraction(sign), name),)
@@ -113,6 +116,7 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
             words.put(f"a{i}", f"l{i}", length)
             centre, behind = float(np.asarray(link.com)[0]) + length, length
         from_joint = _centre(words, i, centre, length)
+        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
         minus = ((Fraction(-1), f"l{i}"),) if behind else ()
         words.entries[f"com{i}x"] = _add(from_joint, minus)
         words.entries[f"com{i}y"] = words.entries[f"com{i}z"] = ()
@@ -120,6 +124,8 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
         for k, axis in enumerate(_AXES):  # only the moment about z can be felt
             words.entries[f"inertia{i}{axis}{axis}"] = ((exact(tensor[k, k]), ""),)
         words.put(f"inertia{i}zz", f"I{i}", tensor[2, 2])
+        moment = words.entries[f"inertia{i}zz"]
+        words.others |= dict.fromkeys((f"I{i}", f"Izz{i}", f"Iz{i}", f"J{i}"), moment)
         for pair in ("xy", "xz", "yz"):
             words.entries[f"inertia{i}{pair}"] = ()
 
@@ -141,6 +147,9 @@ def _spatial_lengths(words: Vocabulary, table: DHTable) -> None:
         words.put(f"a{i}", f"a{i - before}", link.a)
         words.put(f"d{i}", f"d{i}", link.d)
         _inertial(words, i, link)
+    for i, link in enumerate(table.links, 1):
+        behind = f"a{i + before}" if i + before <= table.n else "toolx"
+        _as_in_books(words, i, link, behind, before)
 
 
 def _inertial(words: Vocabulary, i: int, link: DHLink) -> None:
@@ -150,6 +159,24 @@ def _inertial(words: Vocabulary, i: int, link: DHLink) -> None:
         for m in range(k, 3):
             pair = axis + _AXES[m]
             words.put(f"inertia{i}{pair}", f"I{pair}{i}", tensor[k, m])
+
+
+def _as_in_books(words: Vocabulary, i: int, link: DHLink, behind: str, modified: int) -> None:
+    """l_i, lc_i and I_i of a link, where only one number of the table can be meant."""
+    length = [words.entries[name] for name in (behind, f"d{i}") if words.entries.get(name)]
+    centre = [words.entries[f"com{i}{axis}"] for axis in _AXES if words.entries[f"com{i}{axis}"]]
+    parallel = not modified and abs(np.sin(link.alpha)) <= TOLERANCES.right_angle
+    if link.joint == "revolute" and (len(length) == 1 or (length and parallel and link.a)):
+        words.others[f"l{i}"] = length[0]
+    along = () if modified else words.entries[f"a{i}"]
+    if len(centre) == 1 and (modified or centre[0] == words.entries[f"com{i}x"] or not length):
+        from_joint = _add(along, centre[0]) if along else centre[0]
+        words.others |= dict.fromkeys((f"lc{i}", f"r{i}"), from_joint)
+        if not length:
+            words.others[f"l{i}"] = from_joint
+    moments = {words.entries[f"inertia{i}{axis}{axis}"] for axis in _AXES} - {()}
+    if len(moments) == 1:
+        words.others |= dict.fromkeys((f"I{i}", f"J{i}"), moments.pop())
 
 
 def _add(one: Linear, two: Linear) -> Linear:

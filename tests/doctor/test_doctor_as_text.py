@@ -121,3 +121,54 @@ def test_no_repair_holds_at_the_robots_own_numbers_alone(robot, entry, text, rig
         right,
         right.replace("m1+m2", "m2+m1"),
     )
+
+
+BOOKS = "m1*lc1^2 + I1 + m2*(l1^2 + lc2^2 + 2*l1*lc2*c2) + I2"
+"""Spong's entry of the mass matrix."""
+
+
+@pytest.mark.parametrize("letters", [("lc", "I"), ("r", "J"), ("L_c", "I_zz")])
+def test_a_books_names_have_a_meaning_where_the_robot_has_others(letters):
+    """The centre of a rod is at l/2, of a point mass at l: its table has no name for it."""
+    typed = BOOKS.replace("lc", letters[0]).replace("I", letters[1])
+    rods = kl.diagnose("planar2r_rods", "M11", typed)
+    assert rods.agrees and not rods.remarks
+    points = kl.diagnose("planar2r", "M11", typed)
+    assert points.agrees
+    zeros = " and ".join(f"{letters[1]}{k} = 0" for k in (1, 2))
+    assert points.remarks == (f"of this robot {zeros}: what stands with it is not judged",)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("m1*lc1^2", "m1*l1^2", "l1 should be lc1 in m1*l1^2"),
+        ("+ lc2^2", "+ l2^2", "l2 should be lc2 in l2^2"),
+        ("l1*lc2", "lc1*lc2", "lc1 should be l1 in 2*lc1*lc2*c2"),
+        ("2*l1*lc2*c2", "l1*lc2*c2", "l1*lc2*c2 should be 2*l1*lc2*c2"),
+        ("lc2^2", "lc1^2", "lc1 should be lc2 in lc1^2"),
+    ],
+)
+def test_a_slip_in_a_books_names_is_told_in_them(old, new, told):
+    found = kl.diagnose("planar2r_rods", "M11", BOOKS.replace(old, new, 1))
+    assert [told in cause.sentence for cause in found.causes] == [True]
+    assert found.causes[0].shown["M11"].replace("**", "^") == BOOKS
+
+
+def test_a_books_names_of_arms_that_are_not_planar():
+    """Craig's arm with a hinge and a slide: l1 is how far the first centre of mass is."""
+    hinge = kl.DHLink(alpha=np.pi / 2, theta=np.pi / 2, mass=2.4, com=(0, 0, 0.4))
+    slide = kl.DHLink("prismatic", lower=0.2, upper=0.9, mass=1.1)
+    table = kl.DHTable("rp", "standard", [hinge, slide], gravity=(0, -9.81, 0))
+    text = r"\tau_1 = (m_1 l_1^2 + m_2 d_2^2)\ddot\theta_1 + 2 m_2 d_2 \dot\theta_1 \dot d_2"
+    weight = r" + (m_1 l_1 + m_2 d_2) g \cos\theta_1"
+    assert kl.diagnose(table, "tau1", text + weight).agrees
+    wrong = kl.diagnose(table, "tau1", text + weight.replace("m_2 d_2", "m_2 l_1"))
+    assert "l_1 should be d_2 in m_2 l_1" in wrong.causes[0].sentence
+
+
+def test_a_scaras_torque_has_few_terms():
+    """Four joints, and a formula as short as of two: what is rounded away is told as that."""
+    arm = kl.load("scara")
+    right = kl.diagnose(arm, "tau3", "m3*(qdd3 - g) + m4*(qdd3 - g)")
+    assert right.agrees or "cause unknown" not in str(right)

@@ -17,6 +17,19 @@ def judged(robot=ARM, **formulas):
 @pytest.mark.parametrize(
     ("entry", "text"),
     [
+        ("tau1", "m*l**2*qdd1/3 + m*g*l*cos(q1)/2"),
+        ("tau1", r"\frac13 m l^2 \ddot\theta + m g l_c \cos\theta"),
+        ("V", "m*g*lc*sin(theta)"),
+        ("tau1", "m1*l1^2*theta1_ddot/3 + m*g*l/2*cos(q)"),
+    ],
+)
+def test_the_only_joint_needs_no_number(entry, text):
+    assert judged("single_link", **{entry: text})[0] == [True]
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
         ("x", "L1*cos(q1) + L2*cos(q1+q2)"),
         ("x", "L_1 cos(t1) + L_2 cos(t1 + t2)"),
         ("x", "a1*cos(q1) + a2*cos(q12)"),

@@ -11,7 +11,7 @@ import sympy
 from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
 from kinlab.formulas.text import canonical, formula_file, parse
-from kinlab.formulas.typed import cells, entry_name, plain_formula
+from kinlab.formulas.typed import cells, entry_name, explained, opened, plain_formula, sides
 
 PLAIN = ("q1", "q2", "qd1", "qd2", "qdd1", "qdd2", "l1", "l2", "lc1", "m1", "m2", "I2", "g")
 AT = dict(zip(PLAIN, np.random.default_rng(8).uniform(0.4, 1.9, (len(PLAIN), 7)), strict=True))
@@ -264,3 +264,85 @@ def test_a_left_side_of_the_same_entry_by_another_letter():
     assert formula_file(given, "f.toml").texts == {"g2": "m2*g", "tau1": "m1"}
     with pytest.raises(ExpressionError, match="another"):
         formula_file({"robot": "planar2r", "formulas": {"g2": "G_1 = m2*g"}}, "f.toml")
+
+
+@pytest.mark.parametrize(
+    ("entry", "left"),
+    [
+        ("M11", "d_{11}"),
+        ("M11", "B_{11}(q)"),
+        ("mass_matrix[0,0]", "H11"),
+        ("g1", r"\phi_1"),
+        ("V", "P"),
+        ("V", r"E_p(\theta)"),
+        ("V", "my_potential"),
+        ("g2", "^{0}G_2"),
+    ],
+)
+def test_a_left_side_by_the_name_of_another_book(entry, left):
+    assert list(opened({entry: f"{left} = 2*m1"}, "f.toml").values()) == ["2*m1"]
+
+
+@pytest.mark.parametrize(
+    ("entry", "left"),
+    [("M11", "d_{22}"), ("V", "T"), ("V", "K"), ("g1", "phi2"), ("M11", "tau1"), ("tau", "tau2")],
+)
+def test_a_left_side_of_another_entry_is_refused(entry, left):
+    with pytest.raises(ExpressionError, match="which is another"):
+        opened({entry: f"{left} = 2*m1"}, "f.toml")
+
+
+@pytest.mark.parametrize(
+    ("typed", "own", "formula"),
+    [
+        ("h = -m2*l1*s2; C11 = h*qd2;", {"h": "-m2*l1*s2"}, "C11 = h*qd2"),
+        ("a = 2*m1\nb = a*l1\na + b", {"a": "2*m1", "b": "a*l1"}, "a + b"),
+        (r"\phi = q_1+q_2 \\ g_2 = \cos\phi", {"phi": "$q_1+q_2$"}, r"$g_2 = \cos\phi$"),
+        (r"C_{11} = h \dot q_2, \quad h = -m_2", {"h": "$-m_2$"}, r"$C_{11} = h \dot q_2$"),
+        ("C11 = h*qd2, where h = -m2", {"h": "-m2"}, "C11 = h*qd2"),
+        ("M = [m1, 0; 0, m2]", {}, "M = [m1, 0; 0, m2]"),
+        ("tau1 = m1 +\n m2", {}, "tau1 = m1 +\n m2"),
+    ],
+)
+def test_what_a_writer_explains_in_front_of_a_formula(typed, own, formula):
+    assert explained(typed) == (own, formula)
+
+
+@pytest.mark.parametrize(
+    ("typed", "plain"),
+    [
+        (r"\left\{ m_1 + 0{,}5 m_2 \right\} \dot{q_1^2}", "(m1 + 0.5*m2)*qd1**2"),
+        ("l1*Cos(q1) + Sqrt(m1)", "l1*cos(q1) + sqrt(m1)"),
+        (r"\mathcal{L} ={}& m_1", "m1"),
+    ],
+)
+def test_marks_of_other_hands(typed, plain):
+    assert plain_formula(sides(typed)[1]) == plain
+
+
+def test_entries_set_apart_by_blanks():
+    assert cells("[m1*l1 m2; m2 -m1*l2]") == [["m1*l1", "m2"], ["m2", "-m1*l2"]]
+    assert cells("[m1*l1 + m2 -m2; m2 - m1 (m1 + m2)]") == [["m1*l1 + m2", "-m2"],
+                                                           ["m2 - m1", "(m1 + m2)"]]  # fmt: skip
+    assert cells("[m1*l1 + m2; m2 * c1]") == [["m1*l1 + m2"], ["m2 * c1"]]
+    assert cells("[M11 M12; M12 0]") == [["M11", "M12"], ["M12", "0"]]
+
+
+@pytest.mark.parametrize("entry", ["x", "y"])
+def test_of_several_equations_the_one_of_the_entry(entry):
+    text = r"x = l_1 c_1, \quad y = l_1 s_1"
+    assert explained(text, entry)[1] == ("$x = l_1 c_1$" if entry == "x" else "$y = l_1 s_1$")
+
+
+def test_an_equation_the_other_way_round():
+    assert opened({"g2": "m2*g*l2*c12 = g2"}, "f.toml") == {"g2": "m2*g*l2*c12"}
+
+
+def test_a_row_with_a_mark_is_a_column():
+    assert cells(r"\begin{bmatrix} a & b \end{bmatrix}^T") == [["$a$"], ["$b$"]]
+    assert entry_name("D_{1,1,2}") == "D112"
+
+
+def test_a_formula_over_several_lines():
+    text = r"\begin{aligned}\tau_1 &= m_1 l_1 \\&\quad + m_2 l_2\end{aligned}"
+    assert plain_formula(sides(text)[1]) == "m1*l1 + m2*l2"

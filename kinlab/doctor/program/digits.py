@@ -38,7 +38,7 @@ def nearly(hand: Array, wanted: Array) -> bool:
     """Whether answers differ by so little that rounded numbers may be all of it."""
     if hand.shape != wanted.shape:
         return False
-    return bool(np.max(relative_errors(hand, wanted)) <= TOLERANCES.nearly_agrees)
+    return bool(np.max(relative_errors(hand, wanted)) <= TOLERANCES.may_be_rounded)
 
 
 def to_the_digits(search: LineSearch) -> tuple[str, ...]:
@@ -74,6 +74,7 @@ def _stands(value: float, meant: float) -> bool:
 
 def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tuple[str, ...]:
     units = [abs(place.value) / _PARTS for place in places]
+    reach = np.array([literal(f"{abs(place.value):.15g}").half for place in places]) / units
     own = search.values(which)
     if own is None:
         return ()
@@ -87,8 +88,9 @@ def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tupl
     matrix, wanted = np.array(columns).T, search.wanted[list(which)].ravel()
     moved, now = np.zeros(len(places)), own.ravel()
     for _turn in range(_TURNS):
-        step, *_rest = np.linalg.lstsq(matrix, wanted - now, rcond=1e-9)
-        moved = moved + step
+        # what cannot be told apart is laid into the roughest number
+        step, *_rest = np.linalg.lstsq(matrix * reach, wanted - now, rcond=1e-9)
+        moved = moved + reach * step
         meant = [
             place.value + unit * x
             for place, unit, x in zip(places, units, moved.tolist(), strict=True)

@@ -30,6 +30,8 @@ from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
+_LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
+"""A link's length, and how far its centre of mass is: the one is taken for the other."""
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 
 
@@ -77,20 +79,40 @@ def _name(line: Line, place: Place, name: str) -> None:
                 _node(line, place, tree.add(*pair), "missing term", 1.25)
         for word, value in line.atoms.items() if head == "q" else ():
             line.instead(place, f"({name} + {word})", place.value + value, "missing term", 1.5)
+            if name in line.slides:
+                line.instead(place, word, value, "parameter", 1.4)
         for order in line.names.letters:
             if order != head:
                 other = tree.sym(f"{order}{index}")
                 _node(line, place, other, "velocity for acceleration", 1.3)
                 _node(line, place, tree.power(other, Fraction(2)), "velocity for acceleration", 1.5)
         return
+    for word, value in line.slides.items():
+        line.instead(place, word, value, "parameter", 1.4)
     for word, value in line.atoms.items():
         if word != name:
-            near = re.sub(r"\d+", "", word) == re.sub(r"\d+", "", name)
+            near = _letters(word) == _letters(name)
             cost = 1.2 if near else 1.4 if word[0].lower() == name[0].lower() else 1.8
+            if word[-1] == name[-1] and {_letters(word), _letters(name)} in _LENGTHS:
+                cost = 1.3 if _beside_a_length(line, place) else 1.1
             line.instead(place, word, value, "index" if near else "parameter", cost)
             more, less = f"({name} + {word})", f"({name} - {word})"
             line.instead(place, more, place.value + value, "missing term", 1.5)
             line.instead(place, less, place.value - value, "missing term", 1.7)
+
+
+def _letters(name: str) -> str:
+    return re.sub(r"[\d_]+", "", name)
+
+
+def _beside_a_length(line: Line, place: Place) -> bool:
+    """Whether a length stands beside another link's without a 2, which is lost there as often."""
+    name = line.segment(place)
+    while place.above is not None and is_product(place.above.node):
+        place = place.above
+    known, product = set().union(*_LENGTHS), line.segment(place)
+    others = (w for w in words_in(product) if _letters(w) in known and w[-1] != name[-1])
+    return any(others) and not re.search(r"(?<![\w.*^])\d", product)
 
 
 def _node(line: Line, place: Place, node: Node, kind: str, cost: float) -> None:
@@ -378,10 +400,10 @@ def _as_term(line: Line, place: Place) -> None:
     if not chain or place.above is None:
         return
     inside = line.segment(place)
-    there = [_factors(term) for term in re.split(r"[-+]", inside)]
+    there = [_factors(line, term) for term in re.split(r"[-+]", inside)]
     told, end = N_("the term {term} is missing in {sum}"), place.span[1]
     for piece, value in line.pieces.items():
-        twice = 0.4 * (_factors(piece) in there)
+        twice = 0.4 * (_factors(line, piece) in there)
         for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
             cost = near + 0.03 * piece.count("*") + twice
             shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
@@ -389,9 +411,11 @@ def _as_term(line: Line, place: Place) -> None:
             line.edit(place, place.value + added, span, "missing term", cost, told, shown)
 
 
-def _factors(term: str) -> list[str]:
-    """The names of a product, whatever number stands in front of it."""
-    return sorted(re.findall(r"[A-Za-z_]\w*(?:\*\*\d)?", term))
+def _factors(line: Line, term: str) -> list[str]:
+    """The robot's names of a product, whatever number stands in front of it."""
+    found = re.findall(r"([A-Za-z_]\w*)((?:\*\*\d)?)", term)
+    own = ((words_in(line.text.symbols.get(name, name)), power) for name, power in found)
+    return sorted(f"{word}{power}" for words, power in own for word in words)
 
 
 def _whole_terms(line: Line) -> None:

@@ -51,6 +51,7 @@ def _by_letter(table: dict[str, str]) -> dict[str, str]:
 _VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
 _VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
 _MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
+_CUBE = re.compile(r"D_?(\d)_?(\d)_?(\d)")
 
 
 def quantity_of(entry: str, table: DHTable | None) -> str:
@@ -74,6 +75,9 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
         if name == "jacobian" and table is not None and is_planar(table):
             name = "planar_jacobian"
         return f"{name}[{int(matrix.group(2)) - 1},{int(matrix.group(3)) - 1}]"
+    cube = _CUBE.fullmatch(entry)
+    if cube:
+        return f"christoffel[{','.join(str(int(k) - 1) for k in cube.groups())}]"
     vector = _VECTOR.fullmatch(entry)
     if vector and vector.group(1) in _VECTOR_OF:
         return f"{_VECTOR_OF[vector.group(1)]}[{int(vector.group(2)) - 1}]"

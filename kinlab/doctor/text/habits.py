@@ -1,4 +1,4 @@
-"""Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of a slide.
+"""Names by habit: ``L1`` for l1, ``lc1`` for half of it, ``t1`` for an angle, ``d3`` of a slide.
 
 A name that the writer explains nowhere is read so where the robot has no such name and nothing else
 can be meant. ``M12`` in another formula is the formula that the file gives it.
@@ -14,7 +14,7 @@ from kinlab.formulas.text import FormulaFile, canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.symbolic.vocabulary import Linear, vocabulary
 
 _INDEXED = re.compile(r"([A-Za-z]+)(\d*)")
 _MOTION = re.compile(r"q(d{0,2})\d+")
@@ -22,6 +22,8 @@ _SEVERAL = re.compile(r"(q|qd|qdd|dq|ddq)([1-9]{2,})")
 _SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
 _FIRST = {"w1": "qd1", "alpha1": "qdd1"}
 """Of the first link, which turns as its joint does; of others it may be the link or the joint."""
+NOTHING = "0"
+"""What a name of a book's stands for where the robot has none of it."""
 
 
 def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
@@ -34,7 +36,8 @@ def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
     if robot.table is None:
         return file
     file = _with_entries(file)
-    words = set(vocabulary(robot.table).values)
+    named = vocabulary(robot.table)
+    words = set(named.values)
     nodes = (*file.formulas.values(), *file.symbols.values())
     used = {name for node in nodes for name in tree.names(node)}
     turning = {name for node in nodes for name in _in_functions(node)}
@@ -49,10 +52,30 @@ def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
         if not found and plain in _FIRST and name not in turning:
             found = _FIRST[plain]
         found = found or _of_several(plain, robot.n)
+        if not found and robot.n == 1:  # m and l of the only link
+            alone = f"{plain}1"
+            if tree.names(canonical(alone)) <= motion | words:
+                found = alone
+            elif alone in named.others:
+                found = _as_text(named.others[alone])
         if found:
             new[name] = found
+            continue
+        for k in range(robot.n) if _in_books(name) in named.others else ():
+            alike = f"{name[:-1]}{k + 1}"  # lc2 may be meant where lc1 stands
+            meant = named.others.get(_in_books(alike))
+            if meant is not None and alike not in words and alike not in file.symbols:
+                new[alike] = _as_text(meant)
     symbols = file.symbols | {name: parse(value) for name, value in new.items()}
     return replace(file, symbols=symbols, symbol_texts=file.symbol_texts | new)
+
+
+def _in_books(name: str) -> str:
+    return name.replace("_", "").replace("Lc", "lc")
+
+
+def _as_text(total: Linear) -> str:
+    return " + ".join(f"{factor}*{word}" for factor, word in total) or NOTHING
 
 
 def _of_several(plain: str, joints: int) -> str:

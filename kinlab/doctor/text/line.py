@@ -212,6 +212,12 @@ class Line:
                 found[name] = np.asarray(self.at[name])
         return found
 
+    @cached_property
+    def slides(self) -> dict[str, Array]:
+        """The writer's names of joints that slide, with their values: d3 is q3."""
+        own = {name: meaning for name, meaning in self.text.symbols.items() if name[0] == "d"}
+        return {name: np.asarray(self.at[q]) for name, q in own.items() if _POSITION.fullmatch(q)}
+
     def _named(self, name: str) -> Array:
         return replace(self.text, text=name).values(self.at)
 
@@ -336,6 +342,7 @@ def _in_proportion(old: Array, new: Array) -> bool:
     return bool(np.max(np.abs(gap)) <= TOLERANCES.same_relation * size)
 
 
+_POSITION = re.compile(r"q\d+")
 _LONGEST = 90
 """Letters of a piece of a formula in a sentence above which its middle is left out."""
 

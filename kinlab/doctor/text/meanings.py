@@ -97,7 +97,8 @@ class Meanings:
 
     def around(self, one: Literal) -> list[float]:
         """Those that a number may be rounded from: the robot's own first, then the nearest."""
-        low, high = np.searchsorted(self.values, (one.value - one.reach, one.value + one.reach))
+        reach = one.reach * (1 + TOLERANCES.same_relation)  # 0.303 may be 0.3025
+        low, high = np.searchsorted(self.values, (one.value - reach, one.value + reach))
         found = [float(x) for x in self.values[low:high]]
         return sorted(found, key=lambda x: (self.parameter(x) is None, abs(x - one.value)))
 
@@ -119,10 +120,16 @@ class Meanings:
                 return above if found.denominator == 1 else f"{above}/{found.denominator}"
         return f"{value:.7g}"
 
-    def credible(self, one: Literal, value: float) -> bool:
-        """Whether so few digits are a rounding at all: 0.33 may be 1/3, but 0.3 is not."""
+    def credible(self, one: Literal, value: float, digits: int = 3) -> bool:
+        """Whether so few digits are a rounding at all: 0.33 may be 1/3, but 0.3 is not.
+
+        Args:
+            one: what is written.
+            value: what it may stand for.
+            digits: how many of them a whole number has that is no other number of the robot.
+        """
         name = self.parameter(value)
-        if one.whole:
+        if one.whole and not (one.half and one.digits >= digits):
             return name is not None
         gap = abs(value - one.value)
         if gap > one.half * (1 + TOLERANCES.same_relation):

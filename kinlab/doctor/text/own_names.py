@@ -146,7 +146,7 @@ def written_as(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Writt
             known[name] = meant
             exact = words[str(meant.value)]
             if abs(float(given.value) - exact) > TOLERANCES.same_number * abs(exact):
-                rounded[name] = _("{name} = {written} in [symbols] stands for {meant:.10g}").format(
+                rounded[name] = _("{name} = {written} stands for {meant:.10g}").format(
                     name=name, written=texts[name], meant=exact
                 )
     inside = tree.names(file.formulas[entry])

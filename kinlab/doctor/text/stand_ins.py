@@ -17,11 +17,15 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.text.meanings import Meanings, stands_for
-from kinlab.doctor.text.written import Literal, Written
+from kinlab.doctor.text.written import Literal, Written, literal
 from kinlab.tolerances import TOLERANCES
 
 STEPS, FREE = 12, 120
 """Steps in which the numbers of a formula are fitted, and how many of them at most."""
+_ROUGHLY = 2
+"""Digits of all a text's numbers where a whole number of one digit may be a rounding, too."""
+_WHOLE = 3
+"""Digits of a whole number that may be a rounding where no other number is rounded."""
 _FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
 
@@ -44,21 +48,30 @@ def stand_ins(
     inexact = [k for k, one in enumerate(literals) if one.half > 0]
     if not inexact or len(inexact) > FREE:
         return None
-    search = _Search(text, at, target, scale, Meanings.at(at))
+    search = _Search(text, literals, at, target, scale, Meanings.at(at))
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
-    groups: dict[str, list[int]] = {}
-    for k in rest:
-        groups.setdefault(literals[k].text, []).append(k)
-    singly = [search.explained([members]) for members in groups.values()]
-    found = [way for way in singly if way]
-    if found:
-        return min(found, key=lambda way: search.oddness(*way[0]))
-    for ways in (list(groups.values()), [[k] for k in rest]):
-        together = search.explained(ways) if len(ways) > 1 else None
-        if together is not None:
-            return together
-    return None
+    found = search.among(rest)
+    numbers = np.array([one.value for one in literals])
+    every = [k for k, one in enumerate(literals) if not one.exponent]
+    if found is not None or not told_apart(text, at, numbers, every):
+        return found  # a number beside another in its term is what it says
+    if len(rest) < len(inexact):
+        found = search.among(inexact)
+    if found is None and max(literals[k].digits for k in inexact) <= _ROUGHLY:
+        rough = tuple(map(_roughly, literals))  # 2 beside 35 and 13 may be 1.962
+        search = _Search(text, rough, at, target, scale, search.meanings)
+        found = search.among([k for k, one in enumerate(rough) if one.half > 0])
+        shown = {f"{one.text}.0": one for one in literals}
+        return found and [(shown.get(one.text, one), x) for one, x in found]
+    return found
+
+
+def _roughly(one: Literal) -> Literal:
+    """A whole number of one digit as one of two."""
+    if one.exponent or one.half or one.text not in "23456789":
+        return one
+    return literal(f"{one.text}.0")
 
 
 def fitted(
@@ -106,11 +119,27 @@ class _Search:
     """Looks for numbers that explain a text's difference."""
 
     text: Written
+    literals: tuple[Literal, ...]
     at: Mapping[str, Array]
     target: Array
     scale: Array
     meanings: Meanings
     left: int = _FITS
+
+    def among(self, rest: list[int]) -> list[tuple[Literal, float]] | None:
+        """The same where those numbers may be others, alike ones together or each by itself."""
+        groups: dict[str, list[int]] = {}
+        for k in rest:
+            groups.setdefault(self.literals[k].text, []).append(k)
+        singly = [self.explained([members]) for members in groups.values()]
+        found = [way for way in singly if way]
+        if found:
+            return min(found, key=lambda way: self.oddness(*way[0]))
+        for ways in (list(groups.values()), [[k] for k in rest]):
+            together = self.explained(ways) if len(ways) > 1 else None
+            if together is not None:
+                return together
+        return None
 
     def oddness(self, one: Literal, value: float) -> tuple[bool, int]:
         """Of several numbers that would do, the one that means something, and the roughest."""
@@ -136,7 +165,7 @@ class _Search:
         numbers, loose = fitted
         if loose is None:
             return self._sound(ways, numbers, own or not fixed)
-        one = self.text.literals[loose[0]]
+        one = self.literals[loose[0]]
         for value in (one.value, *self.meanings.around(one)):
             if not own or value == one.value or self.meanings.parameter(value) is not None:
                 found = self._settled(ways, {**fixed, loose[0]: value}, own)
@@ -148,7 +177,7 @@ class _Search:
         self, ways: list[list[int]], fixed: Mapping[int, float]
     ) -> tuple[Array, list[int] | None] | None:
         """All literals' numbers, and a group that the values leave undecided."""
-        literals = self.text.literals
+        literals = self.literals
         start = np.array([one.value for one in literals])
         for members in ways:
             start[members] = fixed.get(members[0], literals[members[0]].value)
@@ -207,14 +236,15 @@ class _Search:
         self, ways: list[list[int]], numbers: Array, alone: bool
     ) -> list[tuple[Literal, float]] | None:
         """What changes, if every number means something or, as is allowed, is alone in its term."""
-        literals = self.text.literals
+        literals = self.literals
         changed = [
             (literals[k], float(numbers[k]))
             for k in (members[0] for members in ways)
             if abs(numbers[k] - literals[k].value)
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
-        if not changed or not all(self.meanings.credible(*pair) for pair in changed):
+        few = min((one.digits for one, _x in changed if not one.whole), default=_WHOLE)
+        if not changed or not all(self.meanings.credible(*pair, max(2, few)) for pair in changed):
             return None
         bare = [
             k
@@ -244,10 +274,12 @@ def told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: lis
         moved[k] += _step(text.literals[k])
         column = text.values(at, moved) - here
         size = float(np.linalg.norm(column))
-        if size == 0.0 or not np.isfinite(size):
+        if not np.isfinite(size):
             return False
-        columns.append(column / size)
-    return bool(np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) == len(free))
+        if size:  # what changes nothing is no matter
+            columns.append(column / size)
+    rank = np.linalg.matrix_rank(np.array(columns), TOLERANCES.same_relation) if columns else 0
+    return bool(rank == len(columns))
 
 
 def _step(one: Literal) -> float:

@@ -210,6 +210,16 @@ class Written:
         return [int(k) for k in np.concatenate([[0], np.cumsum(counts)[:-1]])]
 
 
+@dataclass(frozen=True, eq=False)
+class Beyond(Written):
+    """A formula by what it changes from its first value: a potential, wherever its zero is."""
+
+    def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """The differences from the first state's value."""
+        found = super().values(at, numbers)
+        return np.asarray(found - found[0])
+
+
 def _called(trees: Iterable[ast.expr]) -> set[str]:
     calls = (node.func for part in trees for node in ast.walk(part) if isinstance(node, ast.Call))
     return {name.id for name in calls if isinstance(name, ast.Name)}

@@ -23,6 +23,7 @@ LOGGER = logging.getLogger("kinlab.engine.fast.compiled")
 
 _OPTIONS: dict[str, Any] = {
     "nogil": True,
+    "no_cfunc_wrapper": True,  # nobody calls a kernel from C
     "error_model": "numpy",  # no test for zero in front of each division
     # fused multiply-add and signed zeros only: NaN must stay visible and the order of sums fixed
     "fastmath": {"contract", "nsz"},

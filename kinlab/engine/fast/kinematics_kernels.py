@@ -26,6 +26,17 @@ _ORTHOGONAL = 1e-15
 
 
 @kernel
+def put(values, out):  # type: ignore[no-untyped-def]
+    """Copies (n,) into ``out``, (n,).
+
+    ``out[:] = values`` does so, too, and brings numba's words for shapes that differ into the
+    machine code of whoever calls: strings, which take longer to compile than the arithmetic.
+    """
+    for i in range(out.shape[0]):
+        out[i] = values[i]
+
+
+@kernel
 def frames(fixed, prismatic, q, axes, pose):  # type: ignore[no-untyped-def]
     """Joint axes and tool pose.
 
@@ -196,5 +207,5 @@ def singular_value_rows(fixed, prismatic, q, task, out, first, last):  # type: i
         frames(fixed, prismatic, q[row], axes, pose)
         columns(prismatic, axes, pose, jac)
         for i in range(r):
-            part[i] = jac[task[i]]
+            put(jac[task[i]], part[i])
         singular_values(part, work, out[row])

@@ -23,6 +23,7 @@ import math
 import numpy as np
 
 from kinlab.engine.fast.compiled import kernel
+from kinlab.engine.fast.kinematics_kernels import put
 from kinlab.inverse.branches.equations import (
     add_square,
     circle_pair,
@@ -75,7 +76,7 @@ def inverse(a, out):  # type: ignore[no-untyped-def]
 @kernel
 def move(a, value, slides, out):  # type: ignore[no-untyped-def]
     """a M(value): behind a, a turn about z or a slide along it."""
-    out[:] = a
+    put(a, out)
     if slides:
         for i in range(3):
             out[4 * i + 3] += value * a[4 * i + 2]
@@ -89,7 +90,7 @@ def move(a, value, slides, out):  # type: ignore[no-untyped-def]
 @kernel
 def back(a, value, slides, out):  # type: ignore[no-untyped-def]
     """M(value)^-1 a; out may be a itself."""
-    out[:] = a
+    put(a, out)
     if slides:
         out[11] -= value
     else:
@@ -267,7 +268,7 @@ def spherical_wrist(fixed, prismatic, centre, centre_tool, target, out):  # type
     size, middle = math.hypot(cosine, sine), math.atan2(sine, cosine)
     count = 0
     for k in range(number):
-        one[:] = fixed[0]
+        put(fixed[0], one)
         for joint in range(3):
             move(one, firsts[k, joint], prismatic[joint], two)
             times(two, fixed[joint + 1], one)
@@ -315,7 +316,7 @@ def spherical_wrist(fixed, prismatic, centre, centre_tool, target, out):  # type
                     xx, xy = along, across
                 else:
                     yx, yy = along, across
-            out[count, :3] = firsts[k]
+            put(firsts[k], out[count, :3])
             out[count, 3], out[count, 4] = q4, q5
             out[count, 5] = math.atan2(yx - xy, xx + yy)
             count += 1
@@ -434,7 +435,7 @@ def in_the_plane(fixed, prismatic, target, whole, out):  # type: ignore[no-untyp
     for i in range(n):
         if i > 0:
             times(one, fixed[i], two)
-            one[:] = two
+            put(two, one)
         signs[i] = 1.0 if one[10] > 0.0 else -1.0
         if prismatic[i]:
             slide = i
@@ -488,10 +489,10 @@ def onto_plane(fixed, height, target, out):  # type: ignore[no-untyped-def]
     one, two, g = np.empty(12), np.empty(12), np.empty(12)
     inverse(fixed[0], one)
     times(one, target, g)
-    one[:] = fixed[1]
+    put(fixed[1], one)
     for i in range(2, n + 1):
         times(one, fixed[i], two)
-        one[:] = two
+        put(two, one)
     if not height:
         g[11] = one[11]
     angle = turn_about_z(g, one)

@@ -32,7 +32,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.compiled import kernel
-from kinlab.engine.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.kinematics_kernels import columns, frames, put
 
 FOLLOWED, SINGULAR_END, LOST = 0, 1, 2
 """How a path ended: at a regular solution; where solutions run together; not at all."""
@@ -358,7 +358,7 @@ def follow_all(fixed, prismatic, length, poses, bank, target, ends, codes):  # t
         theta = plan_path(poses[nearest], goal, way)
         clean = True
         for i in range(k):
-            ends[i] = bank[nearest, i]
+            put(bank[nearest, i], ends[i])
             codes[i], _ = follow(fixed, prismatic, length, goal, way, theta, trust, ends[i])
             clean = clean and codes[i] != LOST
         for i in range(k):
@@ -382,8 +382,9 @@ def follow_all(fixed, prismatic, length, poses, bank, target, ends, codes):  # t
 def _carry(fixed, prismatic, length, poses, closed, q, ends, good):  # type: ignore[no-untyped-def]
     """Carries solutions q (k, 6) from pose to pose (m, 12), back to the first where closed."""
     way = np.empty((7, 6), np.complex128)
-    ends[:] = q
-    good[:] = True
+    for i in range(q.shape[0]):
+        put(q[i], ends[i])
+        good[i] = True
     count = poses.shape[0]
     for leg in range(count if closed else count - 1):
         target = poses[(leg + 1) % count]

@@ -125,7 +125,7 @@ def trig_quartic(f, out):  # type: ignore[no-untyped-def]
     c[4], c[3], c[2] = complex(f[3], -f[4]), complex(f[1], -f[2]), complex(2.0 * f[0], 0.0)
     c[1], c[0] = c[3].conjugate(), c[4].conjugate()
     roots = np.empty(4, np.complex128)
-    _aberth(c, 4, roots)
+    _aberth(c, len(roots), roots)
     count = 0
     for i in range(4):
         if abs(abs(roots[i]) - 1.0) < _NEAR_REAL:

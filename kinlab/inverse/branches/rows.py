@@ -13,7 +13,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.engine.fast.compiled import kernel
-from kinlab.engine.fast.kinematics_kernels import columns, frames
+from kinlab.engine.fast.kinematics_kernels import columns, frames, put
 from kinlab.engine.fast.threads import over_rows
 from kinlab.inverse.branches.closed_forms import (
     in_the_plane,
@@ -113,7 +113,7 @@ def sharpen(fixed, prismatic, target, q, axes, pose, jac, order, r, e):  # type:
         if now < best:
             far = now < 0.9 * best
             best, halved, damped = now, 0, 1.0
-            q[:] = trial[:n]
+            put(trial, q)
             if now < 1e-16 or (not far and now < 1e-14):
                 break
         else:
@@ -159,7 +159,7 @@ def posture(form, axes, pose, q, target):  # type: ignore[no-untyped-def]
         count = 0
         for i in range(n):
             if not form.arm_prismatic[i]:
-                bars[count] = axes[i, 3:]
+                put(axes[i, 3:], bars[count])
                 count += 1
         if count == 2:
             bars[2, 0], bars[2, 1], bars[2, 2] = pose[3], pose[7], pose[11]
@@ -306,10 +306,10 @@ def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-u
     nothing = False
     for row in range(first, last):
         target = goals[row]
-        target[:] = targets[row]
+        put(targets[row], target)
         state, number = 0, 0
         if form.family == WRIST or form.family == TRIPLE:
-            goal[:] = target
+            put(target, goal)
             if form.turned:
                 inverse(target, goal)
             fixed = form.turned_fixed if form.turned else form.fixed
@@ -328,7 +328,7 @@ def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-u
                 e[i] = target[4 * i + 3]
             number, state = place_point(form.fixed, form.prismatic[2], form.centre, e[:3], places)
             for i in range(number):
-                candidates[i, :3] = places[i]
+                put(places[i], candidates[i, :3])
         elif form.family == PLANE:
             slides = False
             for i in range(n):
@@ -337,7 +337,8 @@ def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-u
             number, state = in_the_plane(
                 form.fixed, form.prismatic, target, form.task == POSE, flat
             )
-            candidates[:number] = flat[:number]
+            for i in range(number):
+                put(flat[i], candidates[i])
         else:
             if not follow_all(
                 form.fixed, form.prismatic, form.length, form.poses, form.starts, target, ends, how
@@ -368,7 +369,7 @@ def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-u
             before = max(position, rotation)
             rough = form.family == GENERAL or before > _SHARP
             if rough and form.family != PLANE:
-                start[:] = trial
+                put(trial, start)
                 sharpen(form.fixed, form.prismatic, target, trial, axes, pose, jac, order, r, e)
                 frames(form.arm_fixed, form.arm_prismatic, trial, arm_axes, pose)
                 position, rotation = miss(form.task, pose, target, r, e)
@@ -394,7 +395,7 @@ def branch_rows(form, limits, targets, found, first, last):  # type: ignore[no-u
             at = count
             while at > 0 and _after(codes[row, at - 1], q[row, at - 1], code, trial):
                 codes[row, at] = codes[row, at - 1]
-                q[row, at] = q[row, at - 1]
+                put(q[row, at - 1], q[row, at])
                 at -= 1
             codes[row, at] = code
             for j in range(n):
