@@ -83,6 +83,8 @@ _MULTIPLES = (0.5, 2.0, 0.1, 10.0)
 """Times a number that somebody types for it."""
 _SOLVED = 1_200_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
+_STRANGE = 4
+"""Numbers of the data that are none of the robot's of which each is solved for."""
 _STANDING = 2
 """Edits beside which some number would do too easily."""
 _TURNS = 8
@@ -266,6 +268,8 @@ class LineSearch:
             found = self._by_evidence(found)
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
+            elif not self.stand and found[0].edits[-1].part != DATA:
+                found = self._numbers(strange=True) + found
         return found
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -320,13 +324,14 @@ class LineSearch:
         if self.case.quantity.read is not None or any(map(self._sets_a_number, several)):
             return False
         whole = self._other is not None and self._other.whole and self._larger is not None
-        return whole and not self._holds()
+        free = any(edit.numbers is not None and _is_free(edit.numbers[1]) for edit in several)
+        return (whole or free) and not self._holds()
 
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
         if edit.part == DATA:
             return True
-        return edit.numbers is not None and self._is_own(edit.numbers[1])
+        return edit.numbers is not None and self.is_own(edit.numbers[1])
 
     @property
     def _larger(self) -> LineSearch | None:
@@ -381,19 +386,27 @@ class LineSearch:
                 turn[edit] = min(every, _SUSPECTED * among)
         return sorted(ranked, key=lambda edit: turn[edit])
 
-    def _numbers(self) -> list[ProgramRepair]:
+    def _numbers(self, strange: bool = False) -> list[ProgramRepair]:
         """The single number, of the text or the data, with which the program is right.
 
         Of several the one that is typed with the fewest digits: others only make up for it.
+
+        Args:
+            strange: only those of the data that are none of the robot's, and become one.
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
         every = [*numbers(self.trial, self.observed)]
+        if strange:
+            own = len(own_numbers(self.case.robot)) > 0
+            every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
         for place in every:
             if self.work > (self.most if self.stand else _ALONE) + _SOLVED:
                 break
             value = self._solved(place)
+            if strange and value is not None and not self.is_own(value):
+                continue
             if value is not None and not self.makes_up(float(place.value), value):
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
@@ -404,12 +417,17 @@ class LineSearch:
 
     def makes_up(self, old: float, new: float) -> bool:
         """Whether a number of the robot's own would become one of nobody's."""
-        if not self._is_own(old) or self._is_own(new):
+        if not self.is_own(old) or self.is_own(new):
             return False
-        fraction = Fraction(new).limit_denominator(_SIMPLE)
-        return new == -old or not math.isclose(new, fraction, rel_tol=1e-9)
+        return new == -old or _is_free(new)
 
-    def _is_own(self, value: float) -> bool:
+    def _is_strange(self, place: NumberPlace) -> bool:
+        """Whether a number of the data is none of the robot's, and none that anything may have."""
+        value = abs(float(place.value))
+        plain = value in (0.0, 1.0, 2.0) or value <= TOLERANCES.is_step
+        return not plain and not (self.is_own(value) or self.is_own(-value))
+
+    def is_own(self, value: float) -> bool:
         """Whether the robot has a number, with its sign."""
         own = own_numbers(self.case.robot)
         return bool(np.isclose(own, value, rtol=TOLERANCES.same_number, atol=0).any())
@@ -513,6 +531,15 @@ class LineSearch:
         if values.shape != wanted.shape:
             return None
         return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
+
+
+def _is_free(value: float) -> bool:
+    """Whether a number is neither whole, nor half of one, nor a simple part of it or of pi."""
+    simple = (Fraction(x).limit_denominator(_SIMPLE) for x in (value, value / np.pi))
+    return not any(
+        math.isclose(x, float(part), rel_tol=TOLERANCES.same_number)
+        for x, part in zip((value, value / np.pi), simple, strict=True)
+    )
 
 
 def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextManager[None]:

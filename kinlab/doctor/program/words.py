@@ -312,7 +312,7 @@ def _of_data(edit: ProgramEdit) -> str:
     if edit.exchanged is not None:
         old_, new_ = edit.exchanged
         told = _("{name}, {what}: `{old}` should be `{new}`")
-        if edit.kind != "entries swapped":
+        if edit.kind in ("rows swapped", "columns swapped"):
             told = _("{name}, {what}: `{old}` and `{new}`")
         return told.format(**said, old=old_, new=new_)
     if edit.numbers is None:
@@ -411,7 +411,9 @@ def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
     if edit.part != DATA or edit.numbers is None or table is None:
         return False
     own = None if edit.place else vocabulary(table).values.get(edit.node)
-    return (own is not None and float(own) == edit.numbers[0]) or search.makes_up(*edit.numbers)
+    old, new = edit.numbers
+    named_so = own is not None and float(own) == old
+    return named_so or (search.is_own(old) and not search.is_own(new))
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:

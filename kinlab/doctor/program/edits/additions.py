@@ -286,6 +286,10 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
             yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
+            if isinstance(scalar, ast.Name | ast.Subscript):
+                square = ast.BinOp(scalar, ast.Pow(), number(2))
+                new = ast.BinOp(node, ast.Mult(), square)
+                yield here.instead(new, "missing factor", 1.12 + dear)
         elif named and operated and (text[0] == own[0] or not dear):
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)

@@ -6,6 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,8 @@ from kinlab.tolerances import TOLERANCES
 
 _COST = 0.96
 """Less than anything else in the numbers of a program: the table says so."""
+_ROWS = 4
+"""Rows that several columns of the table may make of one."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -39,14 +42,17 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     for leaf in leaves(trial):
         if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
             yield leaf.edit(float(known[leaf.node]), "number", _COST)
-    off: dict[tuple[Any, int], list[tuple[_Cell, float]]] = {}
+    off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
     for name, found in _columns_of(trial, observed).items():
         if sorted(found) == [*range(table.n)]:
             values = [found[i].value for i in range(table.n)]
-            for k, right in _wrong(values, _columns(table)):
-                off.setdefault((name[0], k), []).append((found[k], right))
-    for (_name, k), some in off.items():
-        yield _row(k, some) if len(some) > 1 else some[0][0].edit(some[0][1])
+            for k, right in dict.fromkeys(_wrong(values, _columns(table))):
+                off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
+    for (_name, k), cells in off.items():
+        several = [some for some in product(*cells.values()) if len(some) > 1][:_ROWS]
+        yield from (_row(k, some) for some in several)
+        if not several:
+            yield from (cell.edit(right) for some in cells.values() for cell, right in some)
 
 
 def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
@@ -170,7 +176,7 @@ def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[
     for column in columns:
         same = [_same(float(x), y) for x, y in zip(column, values, strict=True)]
         apart = {float(x) for x, good in zip(column, same, strict=True) if good}
-        if not all(same) and 2 * sum(same) > len(same):
+        if not all(same) and 2 * sum(same) >= len(same):
             for k in np.flatnonzero(np.logical_not(same)):
                 if column[k] or len(apart) > 1:
                     yield int(k), float(column[k])

@@ -64,6 +64,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
             yield from _turned(here)
         elif isinstance(op, ast.Mult):
+            if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
+                squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)
+                yield here.instead(squared, "parentheses", 1.12)
             yield here.within(node, "op", ast.Div(), "factor", 1.35)
             if all(shape for shape in matrices):
                 yield here.within(node, "op", ast.MatMult(), "product", 1.1)
@@ -86,6 +89,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
         yield here.instead(left, "power", 1.1)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
+            last = ast.BinOp(left.right, op, right)
+            yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
