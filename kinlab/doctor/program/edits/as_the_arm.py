@@ -43,14 +43,16 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
             yield leaf.edit(float(known[leaf.node]), "number", _COST)
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
-    for name, found in _columns_of(trial, observed).items():
+    columns = _columns_of(trial, observed)
+    for name, found in columns.items():
         if sorted(found) == [*range(table.n)]:
             values = [found[i].value for i in range(table.n)]
             for k, right in dict.fromkeys(_wrong(values, _columns(table))):
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
-    for (_name, k), cells in off.items():
+    for (name, k), cells in off.items():
+        whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]
         several = [some for some in product(*cells.values()) if len(some) > 1][:_ROWS]
-        yield from (_row(k, some) for some in several)
+        yield from (_row(k, some, whole) for some in several)
         if not several:
             yield from (cell.edit(right) for some in cells.values() for cell, right in some)
 
@@ -93,10 +95,12 @@ class _Cell:
         return ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
 
 
-def _row(k: int, some: Sequence[tuple[_Cell, float]]) -> ProgramEdit:
+def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) -> ProgramEdit:
     """Several numbers of a row."""
     first = some[0][0]
-    old, new = ([cell.value for cell, _right in some], [right for _cell, right in some])
+    put = {id(cell): right for cell, right in some}
+    old = [cell.value for cell in whole]
+    new = [put.get(id(cell), cell.value) for cell in whole]
     kind = "entries swapped" if sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
