@@ -446,7 +446,7 @@ _SLIPS = (_sign, _sign, _function, _digit, _index, _shifted, _power, _transpose,
 # -------- What is said, put into the text
 
 _SAID = re.compile(
-    r"line (?P<line>\d+)(?: \(in (?P<part>\w+)\))?, "
+    r"line (?P<line>\d+)(?: of \S+)?(?: \(in (?P<part>\w+)\))?, "
     r"(?:[^`:]*: `(?P<old>[^`]*)` should be `(?P<new>[^`]*)`"
     r"|`(?P<moved>[^`]*)`: [^;`]*; it should stand (?P<side>before|after) line (?P<to>\d+)"
     r"|`(?P<dropped>[^`]*)`: the line is one too many)"

@@ -30,6 +30,7 @@ from kinlab.doctor.derivations.joined import (
     taken_otherwise,
 )
 from kinlab.doctor.derivations.parts import Apart, apart, proved
+from kinlab.doctor.derivations.shown import shown
 from kinlab.doctor.excuses import (
     covered_up,
     excused,
@@ -135,7 +136,7 @@ def _explained(
     same = case.hand.shape == engine.shape
     silent = (without_value(case, engine) or rounding_alone(case)) if same else None
     tried = readings(case)
-    signs = _bare_signs(case.hand)
+    signs = _bare_signs(case.hand) or _next_to_nothing(case.hand, engine)
     if signs:
         # bare signs agree by accident: no evidence for anything about the robot
         tried = [reading for reading in tried if reading.stage == "answer"]
@@ -164,13 +165,22 @@ def _explained(
         # a slip that stands in the text comes before any step of a derivation
         loose = case if written else replace(case, slack=_left(worst))
         ways = [] if (written and causes) or signs else ready(case)
+
+        def backed(found: list[Found]) -> list[Cause]:
+            """Of a program's steps only those whose numbers it comes to; of formulas none."""
+            if program is not None and program.written_out:
+                return []
+            numbers = None if program is None else program.numbers
+            kept = [one for one in found if numbers is None or shown(one, case, numbers)]
+            return [*map(_as_steps, kept)]
+
         if edited:  # what that may well mean
             likely = [reading for reading in tried if reading.cost <= _FETCHED]
             every = [*singly(loose, likely)]
             known = [c.cost for c in every if c.error_after <= TOLERANCES.formula_agrees]
-            every += map(_as_steps, likeliest(loose, ways, min([_FETCHED, *known])))
+            every += backed(likeliest(loose, ways, min([_FETCHED, *known])))
         else:
-            every = [*singly(loose, tried), *map(_as_steps, taken_otherwise(loose, ways))]
+            every = [*singly(loose, tried), *backed(taken_otherwise(loose, ways))]
         exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
@@ -292,6 +302,12 @@ def _bare_signs(values: Array) -> bool:
     """Whether every number is -1, 0 or 1, to rounding."""
     signs = np.clip(np.nan_to_num(np.rint(values)), -1.0, 1.0)
     return bool(np.all(np.abs(values - signs) <= TOLERANCES.formula_agrees))
+
+
+def _next_to_nothing(values: Array, engine: Array) -> bool:
+    """Whether the answers are no more than what differences leave of the engine's."""
+    size = TOLERANCES.finite_differences * float(np.max(np.abs(engine), initial=0.0))
+    return bool(np.max(np.abs(values), initial=0.0) <= size)
 
 
 def _read(hand: Any, engine: Array, name: str, quantity: str) -> Array:

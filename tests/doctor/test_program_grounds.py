@@ -14,7 +14,7 @@ from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import changed
-from kinlab.doctor.program.trial import Trial, _outer
+from kinlab.doctor.program.trial import FailedError, Trial, _outer
 
 TORQUES = """
 import numpy as np
@@ -80,9 +80,9 @@ def test_the_program_with_another_arms_numbers_is_right_for_that_arm(arm) -> Non
     assert other is not None and other.whole  # 9.81 is the same for every arm
     twists = [link.alpha for link in other.robot.table.links]
     assert 0.1 < abs(np.cos(twists[1])) < 0.9 and twists[0] == twists[2] == 0
-    (edit,) = [one for one in other.edits if one.node == "a"]  # a tuple is made anew, once
+    (edit,) = [one for one in other.ways[0] if one.node == "a"]  # a tuple is made anew, once
     assert edit.changes[0].new == pytest.approx((0.0, 0.1, 0.475))
-    with changed(trial, other.edits):
+    with changed(trial, other.ways[0]):
         for (q,) in states:
             engine = kl.gravity_torques(other.robot, q)
             assert np.allclose(trial.function(q), engine, atol=1e-12)
@@ -151,7 +151,7 @@ def f(q):
     with pytest.raises(ValueError, match="so many"):
         _outer(np.ones(400), np.ones(400))
     grown = "import numpy as np\ndef f(q):\n    return np.outer(np.ones(400), np.ones(400))"
-    with pytest.raises(ValueError, match="so many"):
+    with pytest.raises(FailedError, match="so many"):
         Trial(read(made(grown))).function(np.zeros(2))
     found = kl.diagnose(arm, "fk", made(text))
     assert "line 7 (in A)" in found.causes[0].sentence

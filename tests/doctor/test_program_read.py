@@ -16,7 +16,7 @@ from hand_programs import lines_named
 
 import kinlab as kl
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.doctor.program.trial import FailedError, FieldChange, Trial
 
 RODS = "planar2r_rods"
 """Lengths 0.5 and 0.4, masses 2 and 1.5, uniform rods, y up."""
@@ -451,7 +451,10 @@ def test_a_name_that_is_set_later_is_not_put_in(load):
     tree = trial.trees[-1]
     moved = [*tree.body[1:], tree.body[0]]
     change = FieldChange(tree, "body", moved)
-    with trial.changed({len(trial.trees) - 1}, [change]), pytest.raises(NameError):
+    with (
+        trial.changed({len(trial.trees) - 1}, [change]),
+        pytest.raises(FailedError, match="NameError"),
+    ):
         trial.function(np.zeros(2))
     assert np.isfinite(trial.function(np.zeros(2))).all()
 

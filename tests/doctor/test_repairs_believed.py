@@ -74,7 +74,7 @@ def test_the_step_of_a_difference_is_no_slip():
 def test_a_number_of_the_arm_does_not_become_one_of_nobodys(old, new, makes_up) -> None:
     search = LineSearch.__new__(LineSearch)
     search.case = SimpleNamespace(robot=kl.load("planar2r"))
-    assert search._makes_up(old, new) is makes_up
+    assert search.makes_up(old, new) is makes_up
 
 
 def test_a_wrong_solution_is_not_left_out_by_giving_the_other_twice() -> None:

@@ -13,6 +13,8 @@ module          what it holds
                 for each
 ``roads``       Which derivation gives what: a quantity's roads, each walked with any of its steps
                 otherwise
+``shown``       Whether a program computes what a derivation does where a step of it is taken
+                otherwise
 ``steps``       Everything that one can do otherwise in one place of a derivation
 ``walk``        Walks a textbook's derivation, written as text, with one step or several taken
                 otherwise

@@ -48,11 +48,13 @@ class Found:
         steps: one, two or three.
         error: the relative error that is left.
         cost: how far-fetched they are.
+        road: the derivation.
     """
 
     steps: tuple[Step, ...]
     error: float
     cost: float
+    road: Road
 
 
 Shapes = dict[int, tuple[int, ...]]
@@ -273,7 +275,8 @@ def _tried(case: Case, road: Road, ways: Ways) -> Iterator[Found]:
     errors = _errors(road.walked(near, case.arguments)[0], case, size)
     for way, error in zip(near, errors, strict=True):
         if error <= case.slack:
-            yield Found(way, float(error), sum(s.cost for s in way) + _JOINED * (len(way) - 1))
+            cost = sum(s.cost for s in way) + _JOINED * (len(way) - 1)
+            yield Found(way, float(error), cost, road)
 
 
 def _errors(values: Array, case: Case, size: Array) -> Array:

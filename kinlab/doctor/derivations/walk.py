@@ -131,12 +131,16 @@ class Walk:
 
     def values(self, name: str) -> Array:
         """A name of the program after the walk, (B, N, ...)."""
+        self.walk()
+        return self.stacked(name)
+
+    def walk(self) -> None:
+        """Runs the program."""
         self.names = _lifted(self.inputs(self.q))
         self.given = frozenset(self.names)
         with np.errstate(all="ignore"):
             for statement in self.of.body:
                 self._run(statement)
-        return self.stacked(name)
 
     def stacked(self, name: str) -> Array:
         """A name after the walk, (B, N, ...); of an indexed one all entries."""

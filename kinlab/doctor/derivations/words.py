@@ -124,7 +124,13 @@ _SPELT = {
     "pull": "f",
 }
 
-_CALLED = {"arctan2": "atan2", "arctan": "atan", "arccos": "acos", "arcsin": "asin"}
+_CALLED = {
+    "both_": "diag",
+    "arctan2": "atan2",
+    "arctan": "atan",
+    "arccos": "acos",
+    "arcsin": "asin",
+}
 
 KNOWN = {
     "X^T Ic X": N_("the inertia of the links behind"),

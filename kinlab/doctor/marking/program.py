@@ -140,7 +140,9 @@ def _ask(
                 if ending or not told:
                     return
                 yield WrongLines(
-                    [_cause(**one) for one in told["causes"]], bool(told["written_out"])
+                    [_cause(**one) for one in told["causes"]],
+                    bool(told["written_out"]),
+                    np.array(told["numbers"], dtype=float),
                 )
                 request = b"\n"
         except (OSError, TypeError, ValueError, KeyError):

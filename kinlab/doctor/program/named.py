@@ -73,9 +73,12 @@ def _sense(node: ast.AST, observed: Observed, known: list[Glossary]) -> Sense | 
         return None
     found: list[Sense] = []
     for k in range(passes):
-        sense = meaning_of(known, [seen.values[k + passes * j] for j in range(len(known))])
+        values = [seen.values[k + passes * j] for j in range(len(known))]
+        sense = meaning_of(known, values)
         if sense is not None:
             found.append(sense)
+        elif any(map(np.any, values)):
+            return None  # it is that in some passes only
     if not found or len({(x.what, x.of, x.frame, x.form) for x in found}) > 1:
         return None
     one = {x.number for x in found}

@@ -33,7 +33,7 @@ class Seen:
 
     Attributes:
         count: how often it was evaluated.
-        values: the first of its values, where they are numbers.
+        values: the first of its values, where they are real numbers.
         whole: whether all of them are whole numbers, as an index is.
         shape: of all of them; None where they are no numbers, or change their shape.
         entries: of a list that grows, the shape of its entries.
@@ -75,6 +75,15 @@ class Observed:
         seen = self._seen.get(id(node))
         return None if seen is None else seen.shape
 
+    def numbers(self, states: int) -> Array:
+        """All the numbers at the first of so many states, sorted."""
+        found = [
+            np.ravel(value).astype(float)
+            for seen in self._seen.values()
+            for value in seen.values[: -(-seen.count // states)]
+        ]
+        return np.unique(np.concatenate([*found, np.empty(0)]))
+
     def _see(self, k: int, number: int, value: Any) -> Any:
         node = self._by_number[k][number]
         seen = self._seen.setdefault(id(node), Seen())
@@ -87,7 +96,7 @@ class Observed:
             return value
         seen.shape = numbers.shape
         seen.whole = seen.whole and numbers.dtype.kind in "iu"
-        if len(seen.values) < _KEPT:
+        if len(seen.values) < _KEPT and numbers.dtype.kind != "c":
             seen.values.append(numbers.copy())
         return value
 
@@ -143,14 +152,14 @@ def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
 def _numbers(value: Any) -> Array | None:
     if isinstance(value, bool | str) or value is None:
         return None
-    if isinstance(value, int | float | np.number):
+    if isinstance(value, int | float | complex | np.number):
         return np.asarray(value)
     if isinstance(value, list | tuple):
         try:
             value = np.asarray(value)
         except ValueError:
             return None
-    if isinstance(value, np.ndarray) and value.dtype.kind in "fiu":
+    if isinstance(value, np.ndarray) and value.dtype.kind in "fiuc":
         return value
     return None
 

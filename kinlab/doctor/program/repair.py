@@ -24,23 +24,25 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, meanings
+from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.grounds.evidence import Grounds
-from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm
+from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
-from kinlab.doctor.program.trial import NoProgramError, Trial, named_in, quietly
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
 from kinlab.errors import KinlabError
 from kinlab.formulas.record import state_by_state
-from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _WORK = 45_000_000
-"""Operations of numbers, or what amounts to them, that may be done for single edits."""
+"""Operations of numbers, or what amounts to them, of which all searches have their share."""
+_ALONE = 75_000_000
+"""What may be done for single edits beside which none stands."""
 _NODE = 30
 """What compiling one node amounts to."""
 _SHARE = 6
@@ -51,6 +53,8 @@ _TIED = 0.06
 """Cost beyond the first repair's up to which others are looked for."""
 _DOUBTED = 0.12
 """The same where a factor is found that a name of the program has as its value."""
+_ROUGH, _ROUGHER = 0.15, 100.0
+"""What a repair costs more that leaves differences; how much more one may leave than another."""
 _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _SAME = 0.011
@@ -79,6 +83,8 @@ _MULTIPLES = (0.5, 2.0, 0.1, 10.0)
 """Times a number that somebody types for it."""
 _SOLVED = 1_200_000
 """Work beyond that for single edits in which wrong numbers are solved for."""
+_STRANGE = 4
+"""Numbers of the data that are none of the robot's of which each is solved for."""
 _STANDING = 2
 """Edits beside which some number would do too easily."""
 _TURNS = 8
@@ -119,7 +125,6 @@ class LineSearch:
     def __init__(self, program: OwnProgram, case: Case, wanted: Array, allowed: float) -> None:
         self.program = program
         self.case, self.wanted = case, wanted
-        self.sizes = error_sizes(wanted)
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self.work, self.most = 0, _WORK
@@ -130,10 +135,16 @@ class LineSearch:
         self._add_a_wrong_one()
         self.differences = self._differences()
         self.allowed = allowed if self.differences else TOLERANCES.formula_agrees
-        self._asked = state_by_state(case.quantity.asked(case.robot, self.trial.function))
+        self._ask()
+        self._prepare()
+
+    def _ask(self) -> None:
+        """What is asked of the program at the first states, and what it should answer."""
+        asked = self.case.quantity.asked(self.case.robot, self.trial.function)
+        self.sizes = error_sizes(self.wanted)
+        self._asked = state_by_state(asked)
         self._few = self._at(self.first)
         self._near = max(TOLERANCES.tried_further, self.allowed) * self.scale
-        self._prepare()
 
     def _differences(self) -> bool:
         """Whether a number of the program may be the step of a difference."""
@@ -171,7 +182,8 @@ class LineSearch:
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
         self.evidence = Grounds(self.trial, self.observed, self.known)
-        self._larger = self._made_larger()
+        self._other = other_arm(self.case.robot, self.trial, self.observed)
+        self._there: list[LineSearch | None] = []
         self.suspected = suspects(self.trial, self.observed, self.known)
 
     @property
@@ -206,7 +218,8 @@ class LineSearch:
         """The same program asked at other states, all of which are its first."""
         other = copy.copy(self)
         other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
-        other._few, other._larger = other._at(other.first), None
+        other._there = [None]
+        other._ask()
         return other
 
     def beside(self, stand: tuple[ProgramEdit, ...]) -> LineSearch:
@@ -225,14 +238,18 @@ class LineSearch:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
-            tried = self._in_turn(sorted(edits(self.trial, self.observed), key=self._dear))
+            every = edits(self.trial, self.observed)
+            every += of_table(self.trial, self.observed, self.case.robot)
+            sure = as_it_is(self.trial, self.observed, self.case.robot)
+            every = [edit for edit in every if edit.part != DATA or not sure(edit)]
+            tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
                 farthest = best + (_DOUBTED if doubted else _TIED)
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work += self.cost_of(edit)
-                if self.work > self.most:
+                if self.work > (self.most if self.stand else _ALONE):
                     break
                 try:
                     with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
@@ -245,11 +262,14 @@ class LineSearch:
                     continue
                 if repair is not None:
                     found.append(repair)
-                    best = min(best, self.likely(edit))
+                    rough = repair.error > TOLERANCES.formula_agrees
+                    best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
+            elif not self.stand and found[0].edits[-1].part != DATA:
+                found = self._numbers(strange=True) + found
         return found
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
@@ -257,15 +277,17 @@ class LineSearch:
 
         What nothing tells apart is marked as tied.
         """
-        found = sorted(found, key=lambda repair: self.likely(repair.edits[-1]))
+        least = max(TOLERANCES.formula_agrees, _ROUGHER * min([x.error for x in found], default=0))
+        found = [repair for repair in found if repair.error <= least]
+        found.sort(key=lambda repair: self.likely(repair.edits[-1]))
         if len(found) < 2 or not self.evidence.known:
             return found
         found = self.of_any_arm(found)
-        least = self.likely(found[0].edits[-1])
+        likeliest = self.likely(found[0].edits[-1])
         lines: dict[int, ProgramRepair] = {}
         for repair in found:
             edit = repair.edits[-1]
-            if edit.part != DATA and self.likely(edit) <= least + _ALIKE:
+            if edit.part != DATA and self.likely(edit) <= likeliest + _ALIKE:
                 lines.setdefault(row_of(edit), repair)
         if len(lines) < 2:
             return found
@@ -287,29 +309,47 @@ class LineSearch:
 
     def _holds(self) -> bool:
         """Whether the program as it stands now is right for a larger arm."""
-        if self._larger is None:
+        there = self._larger
+        if there is None or self._other is None:
             return False
-        arm, wanted = self._larger
-        with changed(self.trial, arm.edits):
-            values = self.values(self.first)
-        return values is not None and bool(self.right(values, wanted).all())
+        for edits_ in self._other.ways:
+            with changed(self.trial, edits_):
+                values = there.values(there.first)
+            if values is not None and there.right(values).all():
+                return True
+        return False
 
     def _only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""
-        if self._larger is None or not self._larger[0].whole or self.case.quantity.read is not None:
+        if self.case.quantity.read is not None or any(map(self._sets_a_number, several)):
             return False
-        data = any(edit.part == DATA or edit.numbers is not None for edit in several)
-        return not data and not self._holds()
+        whole = self._other is not None and self._other.whole and self._larger is not None
+        free = any(edit.numbers is not None and _is_free(edit.numbers[1]) for edit in several)
+        return (whole or free) and not self._holds()
 
-    def _made_larger(self) -> tuple[OtherArm, Array] | None:
-        """A larger arm, and the right answers of it at the first states."""
-        arm = other_arm(self.case.robot, self.trial, self.observed)
-        if arm is None:
+    def _sets_a_number(self, edit: ProgramEdit) -> bool:
+        """Whether an edit gives the program a number that may be this arm's."""
+        if edit.part == DATA:
+            return True
+        return edit.numbers is not None and self.is_own(edit.numbers[1])
+
+    @property
+    def _larger(self) -> LineSearch | None:
+        """The search for what is right of the other arm, made when it is first asked for."""
+        if not self._there:
+            self._there.append(self._of_larger())
+        return self._there[0]
+
+    def _of_larger(self) -> LineSearch | None:
+        robot = None if self._other is None else self._other.robot
+        if robot is None:
             return None
-        few = self.case.few(max(self.first) + 1)
+        some = {name: stack[self.first] for name, stack in self.case.arguments.items()}
+        case = replace(self.case, robot=robot, arguments=some, hand=self.case.hand[self.first])
         try:
-            return arm, replace(few, robot=arm.robot).answer(())
-        except KinlabError:
+            with np.errstate(all="ignore"):
+                return self.at(case, np.asarray(case.answer(()), dtype=float))
+        except (KinlabError, np.linalg.LinAlgError):
             return None
 
     def left_right(self, several: tuple[ProgramEdit, ...]) -> int:
@@ -317,7 +357,7 @@ class LineSearch:
         with changed(self.trial, several):
             try:
                 return self.evidence.count(Observed(self.trial, self.states))
-            except Exception:  # noqa: BLE001  what cannot be watched tells nothing
+            except FailedError:  # what cannot be watched tells nothing
                 return 0
 
     def likely(self, edit: ProgramEdit) -> float:
@@ -346,20 +386,28 @@ class LineSearch:
                 turn[edit] = min(every, _SUSPECTED * among)
         return sorted(ranked, key=lambda edit: turn[edit])
 
-    def _numbers(self) -> list[ProgramRepair]:
+    def _numbers(self, strange: bool = False) -> list[ProgramRepair]:
         """The single number, of the text or the data, with which the program is right.
 
         Of several the one that is typed with the fewest digits: others only make up for it.
+
+        Args:
+            strange: only those of the data that are none of the robot's, and become one.
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
         every = [*numbers(self.trial, self.observed)]
+        if strange:
+            own = len(own_numbers(self.case.robot)) > 0
+            every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
         for place in every:
-            if self.work > self.most + _SOLVED:
+            if self.work > (self.most if self.stand else _ALONE) + _SOLVED:
                 break
             value = self._solved(place)
-            if value is not None and not self._makes_up(float(place.value), value):
+            if strange and value is not None and not self.is_own(value):
+                continue
+            if value is not None and not self.makes_up(float(place.value), value):
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):
                     repair = self.verdict((*self.stand, edit))
@@ -367,16 +415,22 @@ class LineSearch:
                     found.append((against(edit), len(f"{value:.12g}"), repair))
         return [min(found, key=lambda one: one[:2])[2]] if found else []
 
-    def _makes_up(self, old: float, new: float) -> bool:
+    def makes_up(self, old: float, new: float) -> bool:
         """Whether a number of the robot's own would become one of nobody's."""
-        table = table_of(self.case.robot)
-        if table is None:
+        if not self.is_own(old) or self.is_own(new):
             return False
-        own = np.abs([float(x) for x in vocabulary(table).values.values()])
-        known = [bool(np.isclose(own, abs(x), rtol=1e-9, atol=0).any()) for x in (old, new)]
-        return known == [True, False] and not math.isclose(
-            new, Fraction(new).limit_denominator(_SIMPLE), rel_tol=1e-9
-        )
+        return new == -old or _is_free(new)
+
+    def _is_strange(self, place: NumberPlace) -> bool:
+        """Whether a number of the data is none of the robot's, and none that anything may have."""
+        value = abs(float(place.value))
+        plain = value in (0.0, 1.0, 2.0) or value <= TOLERANCES.is_step
+        return not plain and not (self.is_own(value) or self.is_own(-value))
+
+    def is_own(self, value: float) -> bool:
+        """Whether the robot has a number, with its sign."""
+        own = own_numbers(self.case.robot)
+        return bool(np.isclose(own, value, rtol=TOLERANCES.same_number, atol=0).any())
 
     def _solved(self, place: NumberPlace) -> float | None:
         """The number with which the first states are right, if it is one of few digits."""
@@ -423,9 +477,9 @@ class LineSearch:
         with changed(self.trial, (edit,)):
             return self.values(self.first)
 
-    def right(self, values: Array, wanted: Array | None = None) -> Any:
+    def right(self, values: Array) -> Any:
         """Which entries of answers at the first states are right."""
-        gap = np.abs(values - (self._few[1] if wanted is None else wanted[self.first]))
+        gap = np.abs(values - self._few[1])
         return (gap <= self._near).all(axis=0).ravel()
 
     def verdict(
@@ -477,6 +531,15 @@ class LineSearch:
         if values.shape != wanted.shape:
             return None
         return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
+
+
+def _is_free(value: float) -> bool:
+    """Whether a number is neither whole, nor half of one, nor a simple part of it or of pi."""
+    simple = (Fraction(x).limit_denominator(_SIMPLE) for x in (value, value / np.pi))
+    return not any(
+        math.isclose(x, float(part), rel_tol=TOLERANCES.same_number)
+        for x, part in zip((value, value / np.pi), simple, strict=True)
+    )
 
 
 def changed(trial: Trial, several: tuple[ProgramEdit, ...]) -> AbstractContextManager[None]:

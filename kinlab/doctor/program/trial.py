@@ -35,6 +35,10 @@ class NoProgramError(Exception):
     """What an edit makes of a program is none."""
 
 
+class FailedError(Exception):
+    """A program ended with an error of its own."""
+
+
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _LARGEST = 100_000
@@ -103,7 +107,11 @@ class Trial:
         owners |= dict.fromkeys(map(_class_of, (program.space[name] for name in held)))
         self._copies: dict[int, Any] = {}
         self._at = {id(part.function): k for k, part in enumerate(program.parts) if not part.sets}
-        self.classes = {one: class_like(one) for one in owners if written(one, program.modules)}
+        self.classes = {
+            one: class_like(one)
+            for one in owners
+            if written(one, program.modules) and not issubclass(one, tuple)
+        }
         for name in held:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
@@ -216,15 +224,20 @@ class Trial:
                 setattr(self.classes[owner], name, held)
 
     def load(self) -> None:
-        """Runs the lines of the module."""
+        """Runs the lines of the module.
+
+        Raises:
+            FailedError: they end with an error.
+        """
         self._stale, self._turns = False, 0
         for name in self.sets:
             if name not in self._bodies:
                 self.space.pop(name, None)
         for one in self._fields:
             with_defaults(one)
-        for k in self._loads:
-            self._placed[k]()
+        with _its_own_errors():
+            for k in self._loads:
+                self._placed[k]()
 
     @contextmanager
     def as_loaded(self) -> Iterator[None]:
@@ -261,7 +274,7 @@ class Trial:
         old = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
-        held = self._contents.now()
+        held, edit = self._contents.now(), self.space["_edit"]
         reached = {k for part in parts for k in self.above[part]}
         self._touched = outer | reached
         with self.as_loaded():
@@ -286,7 +299,7 @@ class Trial:
                 if self._contents.put_back(held):  # answers may rest on what was written
                     self._forget()
                 self._touched, self._made = outer, before
-                self.space["_edit"] = 0
+                self.space["_edit"] = edit
                 for k in every:
                     self.place(k, kept[k])
 
@@ -295,15 +308,20 @@ class Trial:
             getattr(one, "known", {}).clear()
 
     def function(self, *state: Any) -> Any:
-        """The program at one state."""
+        """The program at one state.
+
+        Raises:
+            FailedError: it ends with an error, or ends itself.
+        """
         self._turns = 0
-        try:
-            if self._stale:
-                self.load()
-            return self._entry()(*self.bound, *state)
-        except (SystemExit, StopIteration) as end:  # an edit led to where the program ends itself
-            self._stale = self._stale or bool(self._loads)
-            raise RuntimeError("the program ended itself") from end
+        with _its_own_errors():
+            try:
+                if self._stale:
+                    self.load()
+                return self._entry()(*self.bound, *state)
+            except SystemExit as end:  # an edit led to where the program ends itself
+                self._stale = self._stale or bool(self._loads)
+                raise FailedError from end
 
     def _turn(self) -> bool:
         self._turns += 1
@@ -340,6 +358,17 @@ def _at_most(lines: int) -> Iterator[None]:
         yield
     finally:
         sys.settrace(before)
+
+
+@contextmanager
+def _its_own_errors() -> Iterator[None]:
+    """What a program raises, which may be anything, as one error."""
+    try:
+        yield
+    except FailedError:
+        raise
+    except Exception as problem:
+        raise FailedError(f"{type(problem).__name__}: {problem}") from problem
 
 
 @contextmanager
@@ -445,16 +474,16 @@ def _remembering(function: FunctionType) -> Any:
     if function.__code__.co_flags & inspect.CO_GENERATOR or function.__code__.co_name == "<module>":
         return function  # what it gives is used up; what it does is done each time
 
-    def remembered(*asked: Any) -> Any:
+    def remembered(*asked: Any, **named: Any) -> Any:
         try:
-            key = tuple(_key(one) for one in asked)
+            key = (*map(_key, asked), *((name, _key(one)) for name, one in named.items()))
             hash(key)
         except TypeError:
-            return function(*asked)
+            return function(*asked, **named)
         if key not in known:
             if len(known) >= _REMEMBERED:
                 known.clear()
-            answer = function(*asked)
+            answer = function(*asked, **named)
             if isinstance(answer, Iterator):
                 return answer
             known[key] = answer

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any
 
 from kinlab.arrays import Array
@@ -18,7 +19,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
-from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, quietly
+from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -53,6 +54,7 @@ _WHAT = {
     "rows": N_("the rows are others: the linear ones, or the angular"),
     "inverse": N_("the inverse is wrong"),
     "function": N_("the function is another"),
+    "operator": N_("a sum stands for a product, or a product for a sum"),
     "product": N_("it is a matrix product"),
     "sum": N_("the sum forgets what was there before"),
     "extra statement": N_("the line is one too many"),
@@ -91,12 +93,14 @@ class WrongLines:
         causes: the likeliest first.
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
+        numbers: those that the program comes to at the first state, sorted.
         digits: of a program that is nearly right, what its rounded numbers stand for, if they are
             all of it; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
+    numbers: Array
     digits: tuple[str, ...] | None = None
 
 
@@ -118,18 +122,19 @@ def lines(
         return
     try:
         search = LineSearch(program, case, wanted, allowed)
-    except Exception:  # noqa: BLE001  what does not run where it was not written is not tried
+    except FailedError:  # what does not run where it was not written is not tried
         return
     if not search.faithful:
         return
+    numbers = search.observed.numbers(len(search.states))
     if nearly(case.hand, wanted):
-        yield WrongLines([], search.written_out, to_the_digits(search))
+        yield WrongLines([], search.written_out, numbers, to_the_digits(search))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
-        yield WrongLines([cause_of(one, search) for one in told], search.written_out)
+        yield WrongLines([cause_of(one, search) for one in told], search.written_out, numbers)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
@@ -139,12 +144,67 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
         edited: what lines should be, the likeliest first.
         read: what the formula does otherwise, as a whole.
     """
-    if not read or len(edited[0].kinds) > 1:
-        return edited[:1]
-    line, cause = edited[0], min(read, key=lambda one: one.cost)
+    line = edited[0]
+    one = len(line.kinds) == 1
+    known = [cause for cause in read if one and _same_slip(cause, line.kinds[0])]
+    if not known:
+        return [line]
+    cause = min(known, key=lambda one: one.cost)
     said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
     places = (*line.places, *cause.places)
     return [replace(line, sentence=said, kinds=cause.kinds, places=places)]
+
+
+def _same_slip(reading: Cause, edit: str) -> bool:
+    """Whether a reading of the whole may be what an edit of a line is; not by its numbers alone."""
+    kinds = ["missing term" if kind.endswith(" term") else kind for kind in reading.kinds]
+    return all(edit in _SLIPS.get(kind, (kind,)) for kind in kinds)
+
+
+_LEFT_OUT = ("missing term", "missing statement", "sum")
+_NUMBERS = ("number", "sign", "factor", "entries swapped", "rows swapped", "columns swapped")
+_SLIPS = {
+    "missing term": _LEFT_OUT,
+    "velocity left out": _LEFT_OUT,
+    "acceleration left out": _LEFT_OUT,
+    "gravity left out": (*_LEFT_OUT, "number"),
+    "Coriolis terms": (*_LEFT_OUT, "factor", "number", "missing factor"),
+    "centrifugal terms": _LEFT_OUT,
+    "sign": ("sign", "order"),
+    "factor": ("factor", "number", "missing factor", "extra factor", "parentheses"),
+    "transposed": ("transposed", "inverse"),
+    "inverse": ("inverse", "transposed", "function"),
+    "power": ("power", "number", "missing factor"),
+    "order": ("order", "sign"),
+    "exchanged": ("entries swapped", "order", "sin/cos", "name", "names exchanged"),
+    "sin/cos": ("sin/cos", "name"),
+    "index": ("index", "name", "loop", "argument"),
+    "another quantity": ("index", "name", "function", "argument"),
+    "Christoffel": ("index", "order", "name"),
+    "missing factor": ("missing factor", "missing matrix", "power", "function"),
+    "rotation left out": ("missing matrix", "missing factor"),
+    "extra factor": ("extra factor", "power", "factor"),
+    "rotated twice": ("extra factor",),
+    "tensor not rotated": ("missing matrix",),
+    "tensor transposed": ("transposed", "order"),
+    "sum": ("sum", "loop", "index", "condition"),
+    "own joint": ("loop", "condition"),
+    "slide as hinge": ("condition",),
+    "hinge as slide": ("condition",),
+    "convention": ("name", "index", "entries swapped", "missing factor", "extra factor"),
+    "degrees": ("degrees", "function", "factor", "number"),
+    "absolute angles": ("name", "argument", "function", "sum"),
+    "table entry": _NUMBERS,
+    "tool": _NUMBERS,
+    "mass": (*_NUMBERS, "index"),
+    "row shift": (*_NUMBERS, "index"),
+    "centre": (*_NUMBERS, "index", "name", "missing factor"),
+    "gravity axis": (*_NUMBERS, "index"),
+    "alpha sign": ("sign", "number"),
+    "a sign": ("sign", "number"),
+    "gravity sign": ("sign", "number"),
+}
+"""Of kinds of readings the kinds of edit that are the same slip; of others only their own."""
 
 
 def cause_of(repair: ProgramRepair, search: LineSearch) -> Cause:
@@ -232,8 +292,12 @@ def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial)
 
 
 def _line(edit: ProgramEdit, trial: Trial) -> str:
-    part = trial.program.parts[edit.part]
-    if edit.part:
+    part, first = trial.program.parts[edit.part], trial.program.parts[0]
+    file, own = (Path(one.function.__code__.co_filename).name for one in (part, first))
+    if file != own:
+        said = {"number": row_of(edit), "file": file, "function": part.name}
+        return _("line {number} of {file} (in {function})").format(**said)
+    if edit.part and not part.sets:
         return _("line {number} (in {function})").format(number=row_of(edit), function=part.name)
     return _("line {number}").format(number=row_of(edit))
 
@@ -248,7 +312,7 @@ def _of_data(edit: ProgramEdit) -> str:
     if edit.exchanged is not None:
         old_, new_ = edit.exchanged
         told = _("{name}, {what}: `{old}` should be `{new}`")
-        if edit.kind != "entries swapped":
+        if edit.kind in ("rows swapped", "columns swapped"):
             told = _("{name}, {what}: `{old}` and `{new}`")
         return told.format(**said, old=old_, new=new_)
     if edit.numbers is None:
@@ -342,12 +406,14 @@ def _fewer(repair: ProgramRepair, search: LineSearch) -> bool:
 
 
 def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
-    """Whether the number that should be another is the robot's own, of the same name."""
+    """Whether the number that should be another is the robot's own: of the same name, or at all."""
     table = table_of(search.case.robot)
-    if edit.part != DATA or edit.place or edit.numbers is None or table is None:
+    if edit.part != DATA or edit.numbers is None or table is None:
         return False
-    own = vocabulary(table).values.get(edit.node)
-    return own is not None and float(own) == edit.numbers[0]
+    own = None if edit.place else vocabulary(table).values.get(edit.node)
+    old, new = edit.numbers
+    named_so = own is not None and float(own) == old
+    return named_so or (search.is_own(old) and not search.is_own(new))
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:

@@ -49,7 +49,11 @@ def main() -> None:
             told = [asdict(cause) for cause in found.causes]
             for one in told:
                 del one["corrected"], one["typed"]
-            reply = {"causes": told, "written_out": found.written_out}
+            reply = {
+                "causes": told,
+                "written_out": found.written_out,
+                "numbers": found.numbers.tolist(),
+            }
             channel.write(json.dumps(reply) + "\n")
             channel.flush()
             if not sys.stdin.buffer.readline():

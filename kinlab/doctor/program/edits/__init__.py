@@ -4,6 +4,7 @@
 module            what it holds
 ================  =================================================================================
 ``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
+``as_the_arm``    The numbers of a program as the arm's table has them
 ``blocks``        Statements in other places: earlier or later, in a loop or behind it, one that is
                   missing
 ``data``          The numbers of a program: those in its text, and those in the data that it uses

@@ -17,6 +17,8 @@ from kinlab.doctor.program.trial import Trial
 ANGLES = ("sin", "cos", "tan")
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
+_ODD = 0.04
+"""What a factor costs more of what is only passed on, or has a number in front."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -26,6 +28,7 @@ class Scope:
 
     Attributes:
         observed: what its expressions were.
+        functions: the program's own, each with how many arguments it asks for.
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
         lists: names of lists, by the shapes of their entries.
@@ -42,6 +45,8 @@ class Scope:
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
         tree = trial.trees[part]
         self.observed = observed
+        parts = trial.program.parts
+        self.functions = {p.name: len(p.tree.args.args) for p in parts[1:] if p.owner is None}
         self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
@@ -166,7 +171,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node, parent = here.node, here.parent
     zero = isinstance(node, ast.Constant) and node.value == 0
     literal = isinstance(node, ast.List | ast.Tuple)
-    if shape and not literal and not isinstance(parent, ast.Attribute):
+    written = isinstance(parent, ast.Subscript) and isinstance(parent.ctx, ast.Store)
+    if shape and not literal and not written and not isinstance(parent, ast.Attribute):
         yield from _matrices(here, scope, shape)
     row = len(shape) == 1 and isinstance(node, ast.Name) and scope.has_numpy
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
@@ -194,9 +200,12 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
+        passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
+        counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5):
             times = ast.BinOp(number(value), ast.Mult(), node)
-            yield here.instead(times, "factor", 1.05 if not trig else 1.15)
+            cost = 1.15 if trig else 1.05 + _ODD * (passed or counted)
+            yield here.instead(times, "factor", cost)
     if trig:
         yield from _angle(here, scope)
         return
@@ -277,6 +286,10 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             yield here.instead(scalar, "name", 1.05 + dear)
         if term:
             yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
+            if isinstance(scalar, ast.Name | ast.Subscript):
+                square = ast.BinOp(scalar, ast.Pow(), number(2))
+                new = ast.BinOp(node, ast.Mult(), square)
+                yield here.instead(new, "missing factor", 1.12 + dear)
         elif named and operated and (text[0] == own[0] or not dear):
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)

@@ -26,7 +26,7 @@ _NAMES = 12
 
 def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     """Every number of the data with another sign, doubled, halved, or taken for degrees."""
-    for leaf in _leaves(trial):
+    for leaf in leaves(trial):
         if leaf.value:
             # a name for a negative number: lengths and masses are none
             negative = leaf.value < 0 and not leaf.place
@@ -213,7 +213,7 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
             )
             if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
                 yield NumberPlace(node.value, part, node, "value", node)
-    yield from _leaves(trial)
+    yield from leaves(trial)
 
 
 def _measured(holder: ast.AST) -> bool:
@@ -223,7 +223,8 @@ def _measured(holder: ast.AST) -> bool:
     )
 
 
-def _leaves(trial: Trial) -> Iterator[NumberPlace]:
+def leaves(trial: Trial) -> Iterator[NumberPlace]:
+    """The numbers of the data."""
     for name in trial.program.data:
         yield from _within(trial.space, name, trial.space[name], name, (), ())
     for held in trial.bound:

@@ -136,9 +136,9 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
                 swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
                 yield here.within(target, "elts", swapped, "order", 1.07)
         if isinstance(target, ast.Subscript):
-            yield from _target(here, target)
+            yield from _target(here, target, observed)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
-        yield from _target(here, node.target)
+        yield from _target(here, node.target, observed)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
         yield from exchanges.of_statement(here, scope, observed)
@@ -191,11 +191,16 @@ def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:
             yield here.within(test, "comparators", [plus(right, step)], "condition", 1.25)
 
 
-def _target(here: Here, target: ast.Subscript) -> Iterator[ProgramEdit]:
+def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[ProgramEdit]:
     """Where the value is put."""
     yield from of_keys(here, target, 1.12)
-    for holder, field, key in keys_of(target):
-        if not isinstance(key, ast.Slice):
+    sizes = observed.shape(target.value) or ()
+    for k, (holder, field, key) in enumerate(keys_of(target)):
+        if whole_constant(key):
+            for other in range(sizes[k] if k < len(sizes) else value_of(key) + 2):
+                if other != value_of(key):
+                    cost = 1.15 if abs(other - value_of(key)) == 1 else 1.17
+                    yield here.within(holder, field, number(other), "index", cost)
+        elif not isinstance(key, ast.Slice):
             for step in (1, -1):
-                other = number(value_of(key) + step) if whole_constant(key) else plus(key, step)
-                yield here.within(holder, field, other, "index", 1.15)
+                yield here.within(holder, field, plus(key, step), "index", 1.15)

@@ -12,7 +12,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
-_SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
+SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
 """Functions whose numbers are no quantities."""
 _SUMS = (ast.Add, ast.Sub)
 _PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
@@ -37,6 +37,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             return
         for new in _together(node):
             yield here.instead(new, "parentheses", 1.09)
+        for new in _multiplied(node):
+            yield here.instead(new, "operator", 1.12)
         for side, inner in (("left", left), ("right", right)):
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
@@ -62,9 +64,19 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
             yield from _turned(here)
         elif isinstance(op, ast.Mult):
+            if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
+                squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)
+                yield here.instead(squared, "parentheses", 1.12)
             yield here.within(node, "op", ast.Div(), "factor", 1.35)
             if all(shape for shape in matrices):
                 yield here.within(node, "op", ast.MatMult(), "product", 1.1)
+            square = matrices[1] is not None and len(matrices[1]) == 2
+            if square and isinstance(left, ast.Constant) and left.value == 2:
+                across = ast.Attribute(right, "T", ast.Load())
+                yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
+            if not (isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, _PRODUCTS)):
+                for new in _added(node):
+                    yield here.instead(new, "operator", 1.16)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Div):
                 below = ast.BinOp(left.right, ast.Mult(), right)
                 yield here.instead(ast.BinOp(left.left, ast.Div(), below), "parentheses", 1.2)
@@ -77,6 +89,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
         yield here.instead(left, "power", 1.1)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
+            last = ast.BinOp(left.right, op, right)
+            yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
@@ -104,6 +119,26 @@ def _together(node: ast.BinOp) -> Iterator[ast.expr]:
         if len(terms) > 1:
             inner = _times(ast.BinOp(terms[-2][1], op, before), after)
             yield _times(head, [*terms[:-2], (terms[-2][0], inner)])
+
+
+def _multiplied(node: ast.BinOp) -> Iterator[ast.expr]:
+    """Two terms of a sum as a product: ``a + b*c`` for ``a + b + c``."""
+    head, terms = _chain(node, _SUMS)
+    for k, (_op, term) in enumerate(terms):
+        before = terms[k - 1][1] if k else head
+        factor, rest = _chain(term, _PRODUCTS)
+        whole = _times(ast.BinOp(before, ast.Mult(), factor), rest)
+        joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
+        yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
+
+
+def _added(node: ast.BinOp) -> Iterator[ast.expr]:
+    """A product as a sum of two: ``a + b*c`` for ``a*b*c``."""
+    head, factors = _chain(node, _PRODUCTS)
+    for k, (op, factor) in enumerate(factors):
+        if isinstance(op, ast.Mult):
+            last = _times(factor, factors[k + 1 :])
+            yield ast.BinOp(_times(head, factors[:k]), ast.Add(), last)
 
 
 def _chain(node: ast.expr, ops: tuple[type[ast.operator], ...]) -> tuple[ast.expr, _Factors]:
@@ -154,6 +189,12 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
     if name == "range":
         yield from _range(here, scope)
     yield from _other_function(here, name)
+    if isinstance(node.func, ast.Name):
+        for other, count in scope.functions.items():
+            if other != name and count == len(node.args) and count == scope.functions.get(name):
+                yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
+    if name == "diag" and (observed.shape(node) or ())[1:] == ():
+        yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
     if len(plain) == len(node.args):
         for k in range(len(plain) - 1):
@@ -246,6 +287,8 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 if other != value_of(key) and not (other == -1 and size):
                     near = abs(other - value_of(key)) == 1
                     yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
+            for name in scope.counters:
+                yield here.within(holder, field, ast.Name(name, ast.Load()), "index", 1.13)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
@@ -309,8 +352,9 @@ def _letters(name: str) -> str:
 
 
 def _alike(one: str, other: str) -> bool:
-    """Names that are easily mistaken: of one first letter."""
-    return one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
+    """Names that are easily mistaken: of one first letter, or of one number."""
+    same = one[0].lower() == other[0].lower() or _letters(one)[-1:] == _letters(other)[-1:]
+    return same or one[len(_letters(one)) :] == other[len(_letters(other)) :] != ""
 
 
 def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
@@ -329,7 +373,7 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
     value = here.node.value
     if isinstance(value, bool) or not isinstance(value, int | float):
         return
-    if isinstance(here.parent, ast.Call) and called(here.parent) not in _SIZES and value:
+    if isinstance(here.parent, ast.Call) and called(here.parent) not in SIZES and value:
         yield here.within(here.node, "value", 0, "number", 1.12)
     if index:
         if isinstance(here.parent, ast.Slice):

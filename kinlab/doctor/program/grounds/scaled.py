@@ -9,6 +9,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
@@ -17,20 +19,26 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
+from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit, called
 from kinlab.doctor.program.trial import Trial
 from kinlab.errors import KinlabError, already_said
-from kinlab.model.dh import DHTable
+from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
-_LONGER, _HEAVIER = 1.25, 1.375
-"""How much; no product of few of them is 1."""
+_LONGER, _HEAVIER, _STEP = 1.25, 1.375, 0.0625
+"""How much; each link behind is heavier by a step more. No product of few of them is 1."""
 _TWISTED = 0.8
 """How much the axes are turned towards each other: no sine or cosine of that is 0 or 1."""
 _PARTS = 12
 """Denominator up to which a fraction, or one of pi, is nobody's length or mass."""
+_WAYS = 32
+"""Ways of understanding a program's numbers that are tried."""
+_NOBODYS = (0.0, 1.0, 2.0)
+"""Sizes of numbers with a name that need be nothing of an arm's."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,48 +46,119 @@ class OtherArm:
     """A larger arm, and the program's numbers changed alike.
 
     Attributes:
-        robot: the arm.
-        edits: what is put into the program.
+        table: the first arm's.
+        twisted: how many times as large the twists are.
+        ways: what is put into the program; several where a number may be several things.
         whole: whether nothing else of the program can be the first arm's own, so that a program
             that is right is right for this one, too.
     """
 
-    robot: Robot
-    edits: tuple[ProgramEdit, ...]
+    table: DHTable
+    twisted: float
+    ways: tuple[tuple[ProgramEdit, ...], ...]
     whole: bool
+
+    @cached_property
+    def robot(self) -> Robot | None:
+        """The arm; None where there is none with links like these."""
+        return _scaled(self.table, self.twisted)
+
+
+@dataclass(frozen=True, eq=False)
+class _Number:
+    """A number of a program: of ``pi/2`` the whole.
+
+    Attributes:
+        place: where it is.
+        value: what it is.
+        alone: whether it stands for itself, and may be the arm's.
+        given: whether it is given on as it is, and may be a plain number as well.
+        below: whether the place is what pi is divided by.
+    """
+
+    place: NumberPlace
+    value: float
+    alone: bool
+    given: bool = False
+    below: bool = False
+
+    def times(self, factor: float) -> tuple[NumberPlace, float]:
+        """What is put there so that it is so many times as large."""
+        return self.place, self.place.value / factor if self.below else factor * self.place.value
 
 
 def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None:
     """An arm with longer and heavier links, and other twists where the program's numbers hold them.
 
-    None where one of the program's numbers may be several things, and of a robot without a table.
+    None of a robot without a table, and where no number of the program is the arm's.
     """
     table = table_of(robot)
     if table is None:
         return None
-    places = [*numbers(trial, observed)]
-    plain = {id(node) for tree in trial.trees for node in _alone(tree)}
-    free = [place for place in places if place.part == DATA or id(place.node) in plain]
+    found = [*_numbers(trial, observed)]
     twists = [link.alpha for link in table.links if link.alpha]
-    held = np.array([float(place.value) for place in free])
+    held = np.array([one.value for one in found if one.alone])
     turned = bool(twists) and all(_among(x, held) for x in twists)
-    for twisted in (_TWISTED, 1.0) if turned else (1.0,):
-        kinds = _kinds(robot, table, twisted)
-        factors = _alike(places, [_factors(kinds, place.value) for place in places])
-        known = {id(place) for place in free}
-        if any(len(some) > 1 for some, p in zip(factors, places, strict=True) if id(p) in known):
-            continue
-        changed: list[tuple[NumberPlace, float]] = []
-        whole = True
-        for place, some in zip(places, factors, strict=True):
-            if id(place) in known and some:
-                changed += [(place, factor * place.value) for factor in some - {1.0}]
-            elif some != {1.0} and (some or _of_one_arm(float(place.value))):
-                whole = False
-        larger = _scaled(table, twisted) if changed else None
-        if larger is not None:
-            return OtherArm(larger, tuple(together(changed)), whole)
-    return None
+    twisted = _TWISTED if turned else 1.0
+    kinds = _kinds(robot, table, twisted)
+    meant = _alike(found, [_meant(kinds, one.value) for one in found])
+    names = vocabulary(table).values
+    carried = np.array([one.value for one in found if one.alone])
+    whole = True
+    choices: dict[Any, tuple[list[_Number], list[float]]] = {}
+    for one, some in zip(found, meant, strict=True):
+        own = _of_one_arm(one.value)
+        if (one.alone or own or one.given) and some:
+            plain = not own and not one.place.place and one.place.node not in names
+            factors = sorted({factor for _kind, factor in some}.union([1.0] * plain))
+            choices.setdefault((_key(one), *factors), ([], factors))[0].append(one)
+        elif own or (some and not one.alone):
+            whole = whole and not own and _among(one.value, carried)
+        elif one.alone and isinstance(one.place.value, float) and not one.place.place:
+            whole = whole and (abs(one.value) in _NOBODYS or _may_be_step(one.value))
+    ways: list[tuple[ProgramEdit, ...]] = []
+    for chosen in islice(product(*(factors for _some, factors in choices.values())), _WAYS + 1):
+        changed = [
+            one.times(factor)
+            for (some_, _factors), factor in zip(choices.values(), chosen, strict=True)
+            for one in some_
+            if factor != 1.0
+        ]
+        ways += [tuple(together(changed))] if changed else []
+    if not ways:
+        return None
+    return OtherArm(table, twisted, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
+
+
+def own_numbers(robot: Robot) -> Array:
+    """The arm's own numbers, with their signs."""
+    table = table_of(robot)
+    if table is None:
+        return np.empty(0)
+    every = np.concatenate([known for *_what, known in _kinds(robot, table, 1.0)])
+    return np.unique(every[every != 0.0])
+
+
+def _key(one: _Number) -> Any:
+    """Numbers of one list are of one kind, and equal ones that are given on; others each alone."""
+    if one.given:
+        return one.value
+    return one.place.node if one.place.part == DATA and one.place.place else id(one)
+
+
+def _numbers(trial: Trial, observed: Observed) -> Iterator[_Number]:
+    plain = {id(node): node for tree in trial.trees for node in _alone(tree)}
+    calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
+    given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
+    below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
+    for place in numbers(trial, observed):
+        whole = below.get(id(place.node))
+        if place.value and whole is not None:
+            yield _Number(place, np.pi / place.value, True, below=True)
+        else:
+            alone = place.part == DATA or id(place.node) in plain
+            value = float(place.value)
+            yield _Number(place, value, alone, id(place.node) in given and not _of_one_arm(value))
 
 
 def _scaled(table: DHTable, twisted: float) -> Robot | None:
@@ -90,11 +169,11 @@ def _scaled(table: DHTable, twisted: float) -> Robot | None:
             a=_LONGER * link.a,
             alpha=twisted * link.alpha,
             d=_LONGER * link.d,
-            mass=_HEAVIER * float(link.mass),
+            mass=_heavier(k) * float(link.mass),
             com=_LONGER * np.asarray(link.com),
-            inertia=_HEAVIER * _LONGER**2 * np.asarray(link.inertia),
+            inertia=_heavier(k) * _LONGER**2 * np.asarray(link.inertia),
         )
-        for link in table.links
+        for k, link in enumerate(table.links)
     ]
     tool, base = np.array(table.tool, dtype=float), np.array(table.base, dtype=float)
     tool[:3, 3] *= _LONGER
@@ -106,52 +185,100 @@ def _scaled(table: DHTable, twisted: float) -> Robot | None:
         return None
 
 
-Kinds = Sequence[tuple[float, Array]]
-"""What numbers of the first arm are multiplied by, and which."""
+Kinds = Sequence[tuple[str, int, float, Array]]
+"""Numbers of the first arm: what they are, of which link, what they are multiplied by, and they."""
+Meant = set[tuple[str, float]]
+"""What a number may be, with what it is multiplied by."""
+
+
+def _heavier(k: int) -> float:
+    return _HEAVIER + k * _STEP
 
 
 def _kinds(robot: Robot, table: DHTable, twisted: float) -> Kinds:
     links = table.links
     lengths = [x for k in links for x in (k.a, k.d, *np.ravel(k.com))]
+    lengths += [x for k in links for x in np.add((k.a, k.d, k.d), np.asarray(k.com)[[0, 1, 2]])]
+    lengths += [x for k in links for x in np.subtract((k.a, k.d, k.d), np.asarray(k.com))]
     lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
     kept = [x for k in links for x in (k.theta, k.armature)]
     kept += [*np.ravel(np.asarray(table.tool)[:3, :3]), *np.ravel(np.asarray(table.base)[:3, :3])]
-    kinds = (
-        (_LONGER, lengths),
-        (_HEAVIER, [k.mass for k in links]),
-        (_HEAVIER * _LONGER**2, [x for k in links for x in np.ravel(k.inertia)]),
-        (twisted, [k.alpha for k in links]),
-        (1.0, [*kept, np.linalg.norm(robot.model.gravity.linear)]),
-    )
-    return [(factor, np.array(known, dtype=float)) for factor, known in kinds]
-
-
-def _factors(kinds: Kinds, value: float) -> set[float]:
-    """What a number of the first arm is multiplied by: several where it may be several things."""
-    return {factor for factor, known in kinds if value and _among(value, known)}
-
-
-def _alike(places: Sequence[NumberPlace], factors: list[set[float]]) -> list[set[float]]:
-    """What is common to the numbers of one list, or of one column of it, where anything is."""
-    common: dict[Any, set[float]] = {}
-    for place, some in zip(places, factors, strict=True):
-        for key in _groups(place) if place.value else ():
-            common[key] = common.get(key, some) & some
-    return [
-        next((common[key] for key in _groups(place) if common.get(key)), some)
-        for place, some in zip(places, factors, strict=True)
+    kept = [x for x in kept if abs(x) not in _NOBODYS]
+    kinds: list[tuple[str, int, float, Any]] = [
+        ("length", -1, _LONGER, lengths),
+        ("twist", -1, twisted, [k.alpha for k in links]),
+        ("kept", -1, 1.0, [*kept, np.linalg.norm(robot.model.gravity.linear)]),
     ]
+    for k, link in enumerate(links):
+        kinds.append(("mass", k, _heavier(k), [link.mass]))
+        kinds.append(("moment", k, _heavier(k) * _LONGER**2, [*_moments(link)]))
+    return [(what, k, by, np.array(known, dtype=float)) for what, k, by, known in kinds]
+
+
+def _moments(link: DHLink) -> Iterator[float]:
+    """Of a link's inertia about its centre of mass, about its frame, and about its joint."""
+    centre = np.asarray(link.com, dtype=float)
+    for arm in (np.zeros(3), centre, centre + (link.a, 0.0, link.d)):
+        about = np.asarray(link.inertia) + link.mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        yield from np.ravel(about)
+
+
+def _meant(kinds: Kinds, value: float) -> set[tuple[str, int, float]]:
+    """What a number of the first arm may be: several where it has the value of several."""
+    return {(what, k, by) for what, k, by, known in kinds if value and _among(value, known)}
+
+
+def _alike(
+    found: Sequence[_Number], meant: Sequence[set[tuple[str, int, float]]]
+) -> list[set[tuple[str, float]]]:
+    """What numbers are, the same kind in all of a list, or of a column of it, where there is one.
+
+    Of several links the one at whose place a number stands.
+    """
+    common: dict[Any, set[str]] = {}
+    for one, some in zip(found, meant, strict=True):
+        for key in _groups(one.place) if one.value else ():
+            kinds = {what for what, _k, _by in some}
+            common[key] = common.get(key, kinds) & kinds
+    out: list[Meant] = []
+    for one, some in zip(found, meant, strict=True):
+        kind = next((common[key] for key in _groups(one.place) if common.get(key)), None)
+        left = {x for x in some if kind is None or x[0] in kind}
+        out.append({(what, by) for what, _k, by in _as_called(one.place, left)})
+    return out
+
+
+def _as_called(
+    place: NumberPlace, left: set[tuple[str, int, float]]
+) -> set[tuple[str, int, float]]:
+    """Of what a number may be what its name says, and of the link at whose place it stands."""
+    if place.part != DATA:
+        return left
+    kind = _LETTERS.get(place.node[:1].lower())
+    left = {x for x in left if x[0] == kind} or left
+    digits = place.node.lstrip("".join(set(place.node) - set("0123456789")))
+    at = place.place[0] if place.place else int(digits) - 1 if digits.isdigit() else None
+    return {x for x in left if at is not None and x[1] in (-1, at)} or left
+
+
+_LETTERS = {"m": "mass", "l": "length", "a": "length", "d": "length", "r": "length"}
+_LETTERS |= {"i": "moment", "j": "moment", "g": "kept"}
+"""What numbers are called, by the first letter of their names."""
 
 
 def _groups(place: NumberPlace) -> list[Any]:
     return [place.node, (place.node, *place.place[-1:])] if place.part == DATA else []
 
 
+def _may_be_step(value: float) -> bool:
+    return abs(value) <= TOLERANCES.may_be_step
+
+
 def _of_one_arm(value: float) -> bool:
     """Whether a number that stays in a program may be made of the first arm's numbers."""
     parts = _PARTS * value, _PARTS * value / np.pi
     plain = any(abs(x - round(x)) <= TOLERANCES.same_relation * abs(x) for x in parts)
-    return abs(value) > TOLERANCES.may_be_step and not plain
+    return not _may_be_step(value) and not plain
 
 
 def _among(value: float, known: Array) -> bool:
@@ -159,15 +286,25 @@ def _among(value: float, known: Array) -> bool:
     return bool(np.any(np.abs(np.abs(known) - abs(value)) <= close))
 
 
-def _alone(tree: ast.AST) -> Iterator[ast.AST]:
-    """The numbers that names are set to as they are, or that stand in lists."""
+def _alone(tree: ast.AST) -> Iterator[ast.expr]:
+    """The numbers, and parts of pi, that names are set to as they are, or that stand in lists."""
     for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
         while waiting:
             one = waiting.pop()
-            if isinstance(one, ast.Constant):
+            if isinstance(one, ast.Constant) or _of_pi(one):
                 yield one
             elif isinstance(one, ast.Tuple | ast.List):
                 waiting += one.elts
+            elif isinstance(one, ast.Dict):
+                waiting += one.values
             elif isinstance(one, ast.UnaryOp):
                 waiting.append(one.operand)
+
+
+def _of_pi(node: ast.AST) -> bool:
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Div):
+        return False
+    top = node.left.operand if isinstance(node.left, ast.UnaryOp) else node.left
+    pi = getattr(top, "attr", None) or getattr(top, "id", None)
+    return pi == "pi" and isinstance(node.right, ast.Constant)

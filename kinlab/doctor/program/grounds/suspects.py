@@ -64,7 +64,7 @@ class _Look:
     def wrong(self, value: ast.expr) -> bool:
         """Whether an expression is nothing known at some pass, and all that it is made of is."""
         seen = self.observed.of(value)
-        if seen is None or seen.shape is None or seen.whole:
+        if seen is None or seen.shape is None or seen.whole or not seen.values:
             return False
         pieces = [*_pieces(value)]
         passes = seen.values[:_PASSES]

@@ -1,0 +1,198 @@
+"""The numbers of a program as the arm's table has them, where all but a few of a column are so."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import product
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit, number
+from kinlab.doctor.program.trial import FieldChange, Trial
+from kinlab.model.dh import DHTable
+from kinlab.symbolic.vocabulary import vocabulary
+from kinlab.tolerances import TOLERANCES
+
+_COST = 0.96
+"""Less than anything else in the numbers of a program: the table says so."""
+_ROWS = 4
+"""Rows that several columns of the table may make of one."""
+_PARTS = 12
+"""Into how many parts of pi a number may fall."""
+
+
+def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
+    """Numbers with the arm's own names, and columns of which the others are the table's.
+
+    A row in which several columns are off is one edit: somebody copied another row.
+    """
+    table = table_of(robot)
+    if table is None:
+        return
+    known = vocabulary(table).values
+    for leaf in leaves(trial):
+        if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
+            yield leaf.edit(float(known[leaf.node]), "number", _COST)
+    off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
+    columns = _columns_of(trial, observed)
+    for name, found in columns.items():
+        if sorted(found) == [*range(table.n)]:
+            values = [found[i].value for i in range(table.n)]
+            for k, right in dict.fromkeys(_wrong(values, _columns(table))):
+                off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
+    for (name, k), cells in off.items():
+        whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]
+        several = [some for some in product(*cells.values()) if len(some) > 1][:_ROWS]
+        yield from (_row(k, some, whole) for some in several)
+        if not several:
+            yield from (cell.edit(right) for some in cells.values() for cell, right in some)
+
+
+def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
+    """Whether an edit of the data is of what the arm's table has as it is."""
+    table = table_of(robot)
+    if table is None:
+        return lambda _edit: False
+    known, same = vocabulary(table).values, set()
+    for leaf in leaves(trial):
+        if not leaf.place and leaf.node in known and _same(float(known[leaf.node]), leaf.value):
+            same.add((leaf.node,))
+    for name, found in _columns_of(trial, observed).items():
+        values = [found[i].value for i in sorted(found)]
+        told = len(values) == table.n and len({*map(abs, values)}) > 1
+        if told and any(all(map(_same, column, values)) for column in _columns(table)):
+            same.add(name)
+    return lambda edit: (edit.node, *edit.place[1:]) in same
+
+
+@dataclass(frozen=True, eq=False)
+class _Cell:
+    """A number of a table: in the data, or in the text of a program, where it hangs."""
+
+    value: float
+    place: NumberPlace | None = None
+    part: int = DATA
+    holder: Any = None
+    field: Any = None
+    node: Any = None
+
+    def edit(self, right: float) -> ProgramEdit:
+        """The table's number there."""
+        kind = "sign" if right == -self.value else "number"
+        if self.place is not None:
+            return self.place.edit(right, kind, _COST)
+        change = FieldChange(self.holder, self.field, _typed(right))
+        both = (self.value, right)
+        return ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
+
+
+def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) -> ProgramEdit:
+    """Several numbers of a row."""
+    first = some[0][0]
+    put = {id(cell): right for cell, right in some}
+    old = [cell.value for cell in whole]
+    new = [put.get(id(cell), cell.value) for cell in whole]
+    kind = "entries swapped" if sorted(old) == sorted(new) else "number"
+    if first.place is None:
+        changes = [change for cell, right in some for change in cell.edit(right).changes]
+        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
+    both = [(cell.place, right) for cell, right in some if cell.place is not None]
+    changes = [change for edit in together(both) for change in edit.changes]
+    told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
+    return ProgramEdit(DATA, tuple(changes), kind, _COST, first.place.node, (k,), exchanged=told)
+
+
+def _typed(value: float) -> ast.expr:
+    """A number as it is typed: parts of pi as such."""
+    part = Fraction(value / np.pi).limit_denominator(_PARTS)
+    if not value or abs(value - float(part) * np.pi) > TOLERANCES.same_number * abs(value):
+        return number(int(value) if value == int(value) else value)
+    pi: ast.expr = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
+    top = abs(part.numerator)
+    pi = ast.BinOp(number(top), ast.Mult(), pi) if top > 1 else pi
+    pi = ast.UnaryOp(ast.USub(), pi) if value < 0 else pi
+    return ast.BinOp(pi, ast.Div(), number(part.denominator)) if part.denominator > 1 else pi
+
+
+def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]:
+    """The columns of the tables of a program, each by the row."""
+    found: dict[Any, dict[int, _Cell]] = {}
+    for leaf in leaves(trial):
+        first = leaf.place[0] if leaf.place else None
+        if isinstance(first, int):
+            cell = _Cell(float(leaf.value), leaf)
+            found.setdefault((leaf.node, *leaf.place[1:]), {})[first] = cell
+    for part, tree in enumerate(trial.trees):
+        for table in nodes(tree):
+            if isinstance(table, ast.List | ast.Tuple) and isinstance(table.ctx, ast.Load):
+                for k, row in enumerate(table.elts):
+                    for key, holder, field in _cells(table.elts, k, row):
+                        node = FieldChange(holder, field, None).now
+                        seen = observed.of(node)
+                        names_ = {one.id for one in nodes(node) if isinstance(one, ast.Name)}
+                        typed = names_ <= {"np", "numpy", "math", "pi"}
+                        typed = typed and all(isinstance(one, _TYPED) for one in nodes(node))
+                        if typed and seen is not None and seen.shape == () and seen.values:
+                            value = float(seen.values[0])
+                            cell = _Cell(value, None, part, holder, field, node)
+                            found.setdefault((id(table), key), {})[k] = cell
+    return found
+
+
+_TYPED = (
+    ast.Constant,
+    ast.UnaryOp,
+    ast.BinOp,
+    ast.Attribute,
+    ast.Name,
+    ast.operator,
+    ast.unaryop,
+    ast.Load,
+)
+"""What a number is typed with: ``-np.pi/2``."""
+
+
+def _cells(rows: list[ast.expr], k: int, row: ast.expr) -> Iterator[tuple[Any, Any, Any]]:
+    """The numbers of a row: the key of each, and where it hangs."""
+    if isinstance(row, ast.List | ast.Tuple):
+        yield from ((j, row.elts, j) for j in range(len(row.elts)))
+    elif isinstance(row, ast.Dict):
+        keys = [getattr(key, "value", None) for key in row.keys]
+        yield from ((key, row.values, j) for j, key in enumerate(keys))
+    elif isinstance(row, ast.Call):
+        yield from ((j, row.args, j) for j in range(len(row.args)))
+        yield from ((word.arg, word, "value") for word in row.keywords)
+    else:
+        yield None, rows, k
+
+
+def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[int, float]]:
+    """The numbers that are not as in a column of which most others are, and are not all alike."""
+    for column in columns:
+        same = [_same(float(x), y) for x, y in zip(column, values, strict=True)]
+        apart = {float(x) for x, good in zip(column, same, strict=True) if good}
+        if not all(same) and 2 * sum(same) >= len(same):
+            for k in np.flatnonzero(np.logical_not(same)):
+                if column[k] or len(apart) > 1:
+                    yield int(k), float(column[k])
+
+
+def _columns(table: DHTable) -> list[Array]:
+    """The columns of a table: its lengths, angles, masses, centres of mass."""
+    links = table.links
+    plain = [[getattr(k, name) for k in links] for name in ("a", "alpha", "d", "theta", "mass")]
+    centres = np.array([k.com for k in links], dtype=float).T
+    return [np.array(column, dtype=float) for column in (*plain, *centres)]
+
+
+def _same(one: float, other: float) -> bool:
+    return abs(one - other) <= TOLERANCES.same_number * max(abs(one), abs(other))

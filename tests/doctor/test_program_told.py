@@ -1,0 +1,215 @@
+"""What is told of a program is of that program: its ways, its numbers, its lines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+from kinlab.doctor.changes import Case
+from kinlab.doctor.examine import prepare
+from kinlab.doctor.program.read import read
+from kinlab.doctor.program.repair import LineSearch
+from kinlab.doctor.program.trial import FailedError, Trial
+
+ENERGY = """
+import numpy as np
+m, L, g = [3.0, 2.0, 1.0], [0.5, 0.4, 0.25], 9.81
+
+def V(q):
+    y, th, total = 0.0, 0.0, 0.0
+    for i in range(3):
+        th += q[i]
+        total += m[i]*g*(y + L[i]/2*np.sin(th))
+        y += L[i]*np.sin(th)
+    return total
+
+def f(q):
+    eps, out = 1e-6, []
+    for k in range(3):
+        dq = np.zeros(3)
+        dq[k] = eps
+        out.append((V(q + dq) - V(q - dq))/(2*eps))
+    return np.array(out)
+"""
+COMPLEX = """
+import numpy as np
+l1, l2 = 0.5, 0.4
+
+def f(q):
+    e1, e12 = np.exp(1j*q[0]), np.exp(1j*(q[0] + q[1]))
+    p = l1*e1 + l2*e12
+    T = np.eye(4)
+    T[0, 0], T[0, 1] = e12.real, -e12.imag
+    T[1, 0], T[1, 1] = e12.imag, e12.real
+    T[0, 3], T[1, 3] = p.real, p.imag
+    return T
+"""
+CLOSED = """
+import numpy as np
+m1, m2, l1, l2, g = 2.0, 1.5, 0.5, 0.4, 9.81
+
+def f(q):
+    g2 = m2*g*l2*np.cos(q[0] + q[1])
+    g1 = (m1*l1 + m2*l1)*g*np.cos(q[0]) + g2
+    return np.array([g1, g2])
+"""
+LINKS = """
+import numpy as np
+ROWS = [(0.0, 0.0), (0.45, 0.0), (0.35, np.pi/2)]
+
+def link(th, a, alpha):
+    c, s, ca, sa = np.cos(th), np.sin(th), np.cos(alpha), np.sin(alpha)
+    return np.array([[c, -s, 0, a], [s*ca, c*ca, -sa, 0], [s*sa, c*sa, ca, 0], [0, 0, 0, 1]])
+
+def f(q):
+    T = np.eye(4)
+    for th, (a, alpha) in zip(q, ROWS):
+        T = T @ link(th, a=a, alpha=alpha)
+    T[:3, 3] += 0.3*T[:3, 0]
+    return T
+"""
+UPPER = """
+import numpy as np
+m, L = [3.0, 2.0, 1.0], [0.5, 0.4, 0.25]
+
+def column(q, k, i):
+    th, out = np.cumsum(q), np.zeros(2)
+    for j in range(i, k + 1):
+        part = L[j]/2 if j == k else L[j]
+        out += part*np.array([-np.sin(th[j]), np.cos(th[j])])
+    return out
+
+def f(q):
+    A = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(i, 3):
+            for k in range(j, 3):
+                A[i, j] += m[k]*column(q, k, i) @ column(q, k, j) + m[k]*L[k]**2/12
+    return A + A.T - np.diag(np.diag(A))
+"""
+
+
+@pytest.fixture
+def said(tmp_path):
+    """What is told of a text with a slip in it."""
+
+    def tell(text, old, new, robot="planar3r", quantity="gravity_torques"):
+        assert text.count(old) == 1
+        path = tmp_path / "hand.py"
+        path.write_text(text.replace(old, new))
+        space = {"__name__": "hand"}
+        exec(compile(path.read_text(), str(path), "exec"), space)  # noqa: S102  texts of this file
+        found = kl.diagnose(robot, quantity, space["f"])
+        assert not found.agrees
+        return str(found)
+
+    return tell
+
+
+def test_what_a_program_does_not_go_through_is_not_told_of_it(said) -> None:
+    """Torques by differences have no force of a link, though leaving one out fits the numbers."""
+    told = said(ENERGY, "y += L[i]", "y = L[i]")
+    assert "line 10 (in V), the sum forgets" in told
+    assert "force" not in told
+
+
+def test_a_closed_formula_is_told_its_term(said) -> None:
+    told = said(CLOSED, " + m2*l1)*g", ")*g", "planar2r")
+    assert "m2" in told
+    assert "moment n" not in told
+
+
+def test_answers_that_are_next_to_nothing_fit_no_reading(said) -> None:
+    assert "leaves" not in said(ENERGY, "/(2*eps)", "/2")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("V(q - dq)", "V(q)", "`V(q + dq) - V(q)` should be `V(q + dq) - V(q - dq)`"),
+        ("V(q + dq) -", "V(q) -", "(V(q + dq) - V(q - dq))"),
+        ("m[i]*g", "m[0]*g", "m[i]*g*(y + L[i]/2*np.sin(th))`"),
+    ],
+)
+def test_a_rough_repair_gives_way_to_an_exact_one(old, new, told, said) -> None:
+    found = said(ENERGY, old, new)
+    assert "2*dq" not in found
+    assert told.split("` should be `")[-1].rstrip("`") in found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("l2*e12", "l2*e1", "`p = l1*e1 + l2*e12`"),
+        ("p.real, p.imag", "p.imag, p.real", "line 11, the order is exchanged"),
+        ("-e12.imag", "e12.imag", "-e12.imag"),
+    ],
+)
+def test_complex_numbers_are_looked_through(old, new, told, said) -> None:
+    assert told in said(COMPLEX, old, new, "planar2r", "fk")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("(0.35, np.pi/2)", "(0.45, 0.0)", "0.45, 0` should be `0.35, 1.5708"),
+        ("(0.35, np.pi/2)", "(0.35, -np.pi/2)", "line 3, the sign is wrong"),
+        ("-s, 0, a]", "-s, 0, a + c]", "a + c"),
+    ],
+)
+def test_the_rows_of_a_table_are_held_against_the_arms(old, new, told, said) -> None:
+    """Also of functions that are called with their arguments by name."""
+    assert told in said(LINKS, old, new, "spatial3r", "fk")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("A + A.T -", "2*A -", "`return A + A.T - np.diag(np.diag(A))`"),
+        ("np.diag(np.diag(A))", "np.diag(A)", "`return A + A.T - np.diag(np.diag(A))`"),
+        ("m[k]*L[k]**2/12", "(m[k]*L[k])**2/12", "m[k]*L[k]**2/12"),
+        ("part*np.array", "part + np.array", "`out += part*np.array"),
+    ],
+)
+def test_slips_that_were_unknown(old, new, told, said) -> None:
+    assert told in said(UPPER, old, new, quantity="mass_matrix")
+
+
+def searched(text: str, robot: str, quantity: str) -> LineSearch:
+    space = {"__name__": "hand"}
+    exec(text, space)  # noqa: S102  texts of this file
+    case, engine = prepare(robot, quantity, (), 10, 3)
+    own: Case = replace(case, hand=engine)
+    return LineSearch(read(space["f"]), own, engine, 1e-6)
+
+
+@pytest.mark.parametrize(
+    ("text", "robot", "quantity"),
+    [
+        (ENERGY, "planar3r", "gravity_torques"),
+        (COMPLEX, "planar2r", "fk"),
+        (CLOSED, "planar2r", "gravity_torques"),
+        (LINKS, "spatial3r", "fk"),
+        (UPPER, "planar3r", "mass_matrix"),
+    ],
+)
+def test_what_is_right_is_right_for_another_arm(text, robot, quantity) -> None:
+    search = searched(text, robot, quantity)
+    assert search._other.whole
+    assert search._holds()
+
+
+def test_the_arms_own_number_is_not_the_slip() -> None:
+    search = searched(CLOSED, "planar2r", "gravity_torques")
+    assert search.is_own(1.5)
+    assert not search.is_own(-1.5)
+
+
+def test_a_programs_own_error_is_told_from_ours() -> None:
+    space = {"__name__": "hand"}
+    exec("import numpy as np\ndef f(q):\n    return q[7]", space)  # noqa: S102
+    with pytest.raises(FailedError, match="IndexError"):
+        Trial(read(space["f"])).function(np.zeros(2))
