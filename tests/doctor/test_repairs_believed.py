@@ -46,7 +46,7 @@ def rounded(q):
         (with_a_branch, "`if abs(q[1]) < 0.5` should be `if False`", "abs(M2)"),
         (with_a_rare_branch, "`if q[0] > 3.1` should be `if False`", "6.2"),
         (in_millimetres, "differs", "9.81 should be"),
-        (rounded, "nearly agrees", "should be"),
+        (rounded, "its answers are rounded to 2 decimals", "should be"),
     ],
 )
 def test_a_repair_that_hides_the_slip_is_not_told(function, told, false):
