@@ -205,7 +205,7 @@ def _explained(
     # one number of the robot that is another may look like a slip in every term it stands in
     listed = all({*c.kinds} == {"coefficient"} or len(c.kinds) > _SLIPS for c in causes)
     if listed and same and not written and not signs:
-        changed = list(other_numbers(case))
+        changed = list(other_numbers(case, None if program is None else program.numbers))
         causes = [*singly(case, changed)] or rough or causes
         near = None if causes else verdicts.to_digits(case, engine)
         if near is not None:

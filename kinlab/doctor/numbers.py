@@ -107,8 +107,13 @@ def _in_body(robot: Robot, i: int, what: str, at: tuple[int, int]) -> Callable[[
     return put
 
 
-def other_numbers(case: Case) -> Iterator[Confusion]:
-    """Readings with one of the robot's numbers another, each solved for from the values."""
+def other_numbers(case: Case, held: Array | None = None) -> Iterator[Confusion]:
+    """Readings with one of the robot's numbers another, each solved for from the values.
+
+    Args:
+        case: the states, and the hand formula's answers.
+        held: the numbers that a program comes to, of which the other one is one.
+    """
     if case.quantity.domain is not SERIAL or not np.isfinite(case.hand).all():
         return
     still = case.quantity.name in _STILL or case.quantity.name.startswith(("jacobian", "statics"))
@@ -122,7 +127,7 @@ def other_numbers(case: Case) -> Iterator[Confusion]:
         if solved is None:
             continue
         value = _written(solved, number, [x.value for x in every])
-        if value is None:
+        if value is None or not _held(value, held):
             continue
         does = _("takes {new} for {what}, which is {old}").format(
             new=_shown(value), what=number.what, old=_shown(number.value)
@@ -132,6 +137,13 @@ def other_numbers(case: Case) -> Iterator[Confusion]:
             return number.put(value)
 
         yield Confusion("number", does, "robot", apply, 1.15, number.place)
+
+
+def _held(value: float, numbers: Array | None) -> bool:
+    """Whether a program comes to a number, or to its opposite; of none nothing is known."""
+    if numbers is None:
+        return True
+    return bool(np.isclose(np.abs(numbers), abs(value), rtol=TOLERANCES.same_number, atol=0).any())
 
 
 def _solved(few: Case, engine: Array, number: Number) -> float | None:

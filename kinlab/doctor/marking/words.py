@@ -100,6 +100,7 @@ KINDS: dict[str, str] = {
     N_("missing statement"): N_("a line is missing"),
     N_("too deep"): N_("a line stands in a block and belongs behind it"),
     N_("not deep enough"): N_("a line stands behind a loop or condition and belongs in it"),
+    N_("operator"): N_("a sum stands for a product, or a product for a sum"),
     N_("in the loop"): N_("a line stands in a loop and belongs before it"),
     N_("before the loop"): N_("a line stands before a loop and belongs in it"),
     N_("rows"): N_("other rows or columns are taken"),
