@@ -575,8 +575,8 @@ def _listed(text: str, place: str) -> list[list[str]]:
     return [_parts(row, ",") for row in rows if row]
 
 
-_PLAIN_ENTRY = re.compile(r"-?(?:[A-Z]\d\d|\d+(?:\.\d+)?)")
-"""M11, 0: what is no factor of a product without a sign."""
+_PLAIN_ENTRY = re.compile(r"-?(?:[A-Za-z]+_?\d\d|\d+(?:\.\d+)?)")
+"""M11, d12, 0: where all are such they are no factors without a sign."""
 
 
 def _beside(row: str) -> list[str]:

@@ -59,8 +59,11 @@ def to_the_digits(search: LineSearch) -> tuple[str, ...]:
 
 def _typed(place: NumberPlace) -> bool:
     """Whether a number may be another one rounded."""
-    digits = literal(f"{abs(place.value):.15g}").digits
-    return isinstance(place.value, float) and _FEWEST <= digits < _MOST
+    if not isinstance(place.value, float):
+        return False
+    one = literal(f"{abs(place.value):.15g}")
+    endless = any(0 < abs(one.value - x) <= 1.0001 * one.half for x in _ENDLESS)
+    return _FEWEST <= one.digits < _MOST or (endless and one.digits >= _FEWEST)
 
 
 def _stands(value: float, meant: float) -> bool:

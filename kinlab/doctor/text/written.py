@@ -26,6 +26,8 @@ from kinlab.formulas.tree import Node
 _DECIMAL = re.compile(r"(\d*)\.?(\d*)(?:[eE]([+-]?\d+))?")
 _WEIGHTS, _STANDARD, _PLACES = (9.77, 9.84), 9.80665, 0.012
 """Values of g to three digits, the standard one, and how far the textbooks' are apart."""
+_SEEN = 3
+"""Digits in front of the zeros of a whole number from which on these may be nothing but places."""
 _LEAST_WHOLE = 10
 """Whole numbers below this are exact: 2 is two, but 10 may be a rounded 9.81."""
 
@@ -73,7 +75,9 @@ def literal(text: str) -> Literal:
     if found is None:
         return Literal(text, value, 0.0)
     if "." not in text and found.group(3) is None:
-        return Literal(text, value, 0.5 if value >= _LEAST_WHOLE else 0.0)
+        zeros = len(text) - len(text.rstrip("0"))
+        unit = 10.0**zeros if len(text) - zeros >= _SEEN else 1.0  # 43600 has three digits
+        return Literal(text, value, 0.5 * unit if value >= _LEAST_WHOLE else 0.0)
     return Literal(text, value, 0.5 * 10.0 ** (int(found.group(3) or 0) - len(found.group(2))))
 
 

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import product
+from itertools import islice, product
 from typing import Any
 
 import numpy as np
@@ -51,7 +51,7 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
     for (name, k), cells in off.items():
         whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]
-        several = [some for some in product(*cells.values()) if len(some) > 1][:_ROWS]
+        several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
         if not several:
             yield from (cell.edit(right) for some in cells.values() for cell, right in some)
