@@ -213,3 +213,8 @@ def test_a_programs_own_error_is_told_from_ours() -> None:
     exec("import numpy as np\ndef f(q):\n    return q[7]", space)  # noqa: S102
     with pytest.raises(FailedError, match="IndexError"):
         Trial(read(space["f"])).function(np.zeros(2))
+
+
+def test_a_name_that_a_slip_has_left_unused_is_moved_with_the_other_arm(said) -> None:
+    """l2 is used once; without it nothing else of the program says that it is the arm's."""
+    assert "`g2 = m2*g*l2*np.cos(q[0] + q[1])`" in said(CLOSED, "g*l2", "g*l1", "planar2r")

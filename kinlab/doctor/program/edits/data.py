@@ -226,9 +226,14 @@ def _measured(holder: ast.AST) -> bool:
 def leaves(trial: Trial) -> Iterator[NumberPlace]:
     """The numbers of the data."""
     for name in trial.program.data:
-        yield from _within(trial.space, name, trial.space[name], name, (), ())
+        yield from leaves_of(trial, name)
     for held in trial.bound:
         yield from _below(held, "self", ())
+
+
+def leaves_of(trial: Trial, name: str) -> Iterator[NumberPlace]:
+    """The numbers of one name of the module."""
+    yield from _within(trial.space, name, trial.space[name], name, (), ())
 
 
 def _within(

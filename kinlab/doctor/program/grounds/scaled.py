@@ -18,7 +18,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
+from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, called
@@ -151,7 +151,8 @@ def _numbers(trial: Trial, observed: Observed) -> Iterator[_Number]:
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
-    for place in numbers(trial, observed):
+    unused = (leaf for name in _unused(trial) for leaf in leaves_of(trial, name))
+    for place in (*numbers(trial, observed), *unused):
         whole = below.get(id(place.node))
         if place.value and whole is not None:
             yield _Number(place, np.pi / place.value, True, below=True)
@@ -159,6 +160,13 @@ def _numbers(trial: Trial, observed: Observed) -> Iterator[_Number]:
             alone = place.part == DATA or id(place.node) in plain
             value = float(place.value)
             yield _Number(place, value, alone, id(place.node) in given and not _of_one_arm(value))
+
+
+def _unused(trial: Trial) -> list[str]:
+    """Names of numbers of the module that a slip has left unused: a repair may use them again."""
+    used = {*trial.program.data, *trial.sets}
+    known = trial.program.space.items()
+    return [name for name, x in known if name not in used and type(x) in (int, float, list, tuple)]
 
 
 def _scaled(table: DHTable, twisted: float) -> Robot | None:
