@@ -255,6 +255,8 @@ def by_differences(case: Case, engine: Array) -> Excuse | None:
 def answers_rounded(case: Case, engine: Array) -> Excuse | None:
     """A function whose answers are the engine's, rounded to so many decimals."""
     size = float(np.max(np.abs(engine)))
+    if case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
+        return None
     for places in range(2, 10):
         unit = 10.0**-places
         if size < _DIGITS_LEFT * unit:

@@ -408,7 +408,10 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     counts = [line.count("=") for line in lines]
     if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
         return {}, text
+    left = lines[-1].partition("=")[0] if counts[-1] else ""
     if not all(_OWN_NAME.fullmatch(name) for name, *_rest in own):
+        return {}, text
+    if entry and left and not _of_one_name(entry_name(left), entry_name(entry)):
         return {}, text
     dollars = "$" if is_latex(text) else ""
     formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}

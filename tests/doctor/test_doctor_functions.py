@@ -197,11 +197,11 @@ def _by_numbers(constant: float):
     return mass
 
 
-def test_three_digits_of_a_function_are_neither_right_nor_wrong() -> None:
-    """1.12 is 1.115 rounded, and it is what a mass of 2.02 kg instead of 2 gives."""
-    assert kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.115)).grade == "right"
+def test_a_function_whose_coefficients_are_right_to_two_decimals() -> None:
+    """1.12 is 1.115 rounded, as a text is; 1.13 is not."""
+    assert kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.115)).form == ""
     rounded = kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.12))
-    assert (rounded.agrees, rounded.grade, rounded.causes) == (False, "not sure", ())
+    assert rounded.agrees and rounded.form == "rounded"
     assert kl.diagnose("planar2r", "mass_matrix", _by_numbers(1.13)).grade == "wrong"
 
 

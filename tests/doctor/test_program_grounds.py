@@ -155,3 +155,16 @@ def f(q):
         Trial(read(made(grown))).function(np.zeros(2))
     found = kl.diagnose(arm, "fk", made(text))
     assert "line 7 (in A)" in found.causes[0].sentence
+
+
+@pytest.mark.parametrize(
+    "grown",
+    [
+        "np.array([sum(q[0] for _ in range(200**2))])",
+        "np.array([np.array([[1.0] * 400] * 400)[0, 0]])",
+    ],
+)
+def test_no_loop_and_no_array_grows_with_an_edit(grown):
+    text = f"import numpy as np\ndef f(q):\n    return {grown}"
+    with pytest.raises(FailedError, match="so many"):
+        Trial(read(made(text))).function(np.zeros(2))

@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from functools import cached_property
 from types import FunctionType
 from typing import Any
 
@@ -74,8 +73,6 @@ _WATCHED = 2
 """States at which a program is watched."""
 _DEAR = 0.06
 """What an edit waits longer for ten times the work."""
-_GOES_ON = 8
-"""Times that an iteration that converges no more is longer."""
 _SUSPECTED = 2
 """Of so much work one part goes first to statements that are wrong though their parts are right."""
 _NUMBER = 1.15
@@ -369,18 +366,8 @@ class LineSearch:
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What running and compiling the program amounts to, to try an edit."""
-        run = self.amounts[edit.part] * len(self.first) // len(self.watched) * self.longer
+        run = self.amounts[edit.part] * len(self.first) // len(self.watched)
         return run + (_NODE * self.nodes[edit.part] if edit.part >= 0 else 0)
-
-    @cached_property
-    def longer(self) -> int:
-        """How many times longer the program runs with most edits in it.
-
-        An iteration that ends where it has converged goes on to its last turn.
-        """
-        loops = (n for tree in self.trial.trees for n in nodes(tree) if isinstance(n, ast.For))
-        ends = any(isinstance(inner, ast.Break) for loop in loops for inner in nodes(loop))
-        return _GOES_ON if ends else 1
 
     def _dear(self, edit: ProgramEdit) -> float:
         """Its cost, a little more where much has to be run anew."""

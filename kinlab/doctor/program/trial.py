@@ -43,6 +43,10 @@ _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _LARGEST = 100_000
 """Numbers that an outer product may have."""
+_ARRAY = 100_000
+"""Numbers that an array may have."""
+_LONGEST = 5_000
+"""Turns that a loop over numbers may have."""
 _TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
 _LINES = 20_000
@@ -122,7 +126,7 @@ class Trial:
         self.trees = [
             bounded(part.tree, None if part.sets else part.function) for part in program.parts
         ]
-        self.space |= {"_turn": self._turn, "_edit": 0}
+        self.space |= {"_turn": self._turn, "_edit": 0, "range": _range}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
@@ -389,6 +393,14 @@ def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
     return np.cross(one, other, *rest, **options)
 
 
+def _range(*bounds: int) -> range:
+    """A range, but none that an edit made of so many turns: of 200 its square."""
+    found = range(*bounds)
+    if len(found) > _LONGEST:
+        raise ValueError("a range of so many numbers")
+    return found
+
+
 def _outer(one: Any, other: Any, *rest: Any) -> Any:
     """numpy's outer product, but none that grows without end where an edit made it of a dot."""
     if np.size(one) * np.size(other) > _LARGEST:
@@ -397,7 +409,17 @@ def _outer(one: Any, other: Any, *rest: Any) -> Any:
 
 
 _QUICK = ModuleType("numpy")
-_QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer)
+
+
+def _array(*given: Any, **named: Any) -> Any:
+    """numpy's array, but none that grows without end where an edit puts rows for numbers."""
+    found = np.array(*given, **named)
+    if found.size > _ARRAY:
+        raise ValueError("an array of so many numbers")
+    return found
+
+
+_QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
 
 
 def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:

@@ -56,12 +56,14 @@ def stand_ins(
     every = [k for k, one in enumerate(literals) if not one.exponent]
     if found is not None or not told_apart(text, at, numbers, every):
         return found  # a number beside another in its term is what it says
-    if len(rest) < len(inexact):
-        found = search.among(inexact)
+    alike = [k for k in inexact if k in rest or literals[k].digits > 1]
+    if len(rest) < len(alike):
+        found = search.among(alike)
     if found is None and max(literals[k].digits for k in inexact) <= _ROUGHLY:
         rough = tuple(map(_roughly, literals))  # 2 beside 35 and 13 may be 1.962
         search = _Search(text, rough, at, target, scale, search.meanings)
-        found = search.among([k for k, one in enumerate(rough) if one.half > 0])
+        more = [k for k, one in enumerate(rough) if one.half > 0 and not literals[k].half]
+        found = search.among(sorted((*alike, *more)))
         shown = {f"{one.text}.0": one for one in literals}
         return found and [(shown.get(one.text, one), x) for one, x in found]
     return found

@@ -284,6 +284,8 @@ def _may_be_step(value: float) -> bool:
 
 def _of_one_arm(value: float) -> bool:
     """Whether a number that stays in a program may be made of the first arm's numbers."""
+    if not np.isfinite(value):
+        return False
     parts = _PARTS * value, _PARTS * value / np.pi
     plain = any(abs(x - round(x)) <= TOLERANCES.same_relation * abs(x) for x in parts)
     return not _may_be_step(value) and not plain
