@@ -11,6 +11,7 @@ import numpy as np
 import sympy
 
 from kinlab.arrays import Array
+from kinlab.doctor.changes import Case, table_of
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
@@ -217,6 +218,11 @@ class Derivation:
         """The names of the wrench's parts, where there is one."""
         return tuple(name for name in WRENCH if name in self.arm.trig.parameters)
 
+    def entry(self, index: tuple[Any, ...]) -> Poly:
+        """The polynomial of one entry; of a number the whole."""
+        found: Poly = self.polys[index] if index else np.asarray(self.polys).item()
+        return found
+
     def held(self, poly: Poly, named: Collection[str]) -> Poly:
         """An entry where only some parts of the wrench are not zero."""
         gone = [self.arm.trig.index[name] for name in self.loads if name not in named]
@@ -271,6 +277,12 @@ def derivation(table: DHTable, quantity: str) -> Derivation | None:
     if table.n > 3 and quantity not in _KINEMATIC and max(map(len, polys.ravel())) > _OF_MORE:
         return None
     return Derivation(named, polys)
+
+
+def derivation_of(case: Case) -> Derivation | None:
+    """What a case asks for, derived; None of an arm without a table, or where none is offered."""
+    table = table_of(case.robot)
+    return derivation(table, case.quantity.name) if table is not None else None
 
 
 def _with_wrench(a: SymbolicArm) -> SymbolicArm:

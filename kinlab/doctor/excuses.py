@@ -12,9 +12,9 @@ from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
-from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
+from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries
 from kinlab.doctor.derivations.words import together
-from kinlab.doctor.derived import derivation
+from kinlab.doctor.derived import derivation_of
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
@@ -111,8 +111,7 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     changed = stand_ins(text, at, entry.engine, entry.scale)
     if changed is not None:
         return [*text.rounded, *rounding_remarks(changed, at)]
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
+    derived = derivation_of(case)
     if derived is None:
         return None
     said = verdicts.of_data(text, entry, derived, case)
@@ -123,13 +122,12 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
 
 def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, Written]) -> Excuse:
     """An excuse with what the texts have numbers for and no name, but for those told: g = 9.81."""
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None and written else None
+    derived = derivation_of(case) if written else None
     if derived is None:
         return found
     right: set[str] = set()
     for entry in entries(replace(case, hand=engine), engine):
-        poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+        poly = derived.entry(entry.index)
         right |= verdicts.unnamed(written.get(entry.label), derived, poly)
     own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
     only = [one for one in own if not any(one in remark for remark in found.remarks)]
@@ -148,8 +146,7 @@ def covered_up(
 
     Numbers that stand for the robot's, as in (m1 + m2)*0.25, are none, but a remark.
     """
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if written and table is not None else None
+    derived = derivation_of(case) if written else None
     if derived is None:
         return [], 0.0, []
     slips: list[Slip] = []
@@ -157,7 +154,7 @@ def covered_up(
     nothing: list[str] = []
     largest = 0.0
     for entry in entries(case, engine):
-        poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+        poly = derived.entry(entry.index)
         text = written.get(entry.label)
         if text is None:
             continue

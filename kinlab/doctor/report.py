@@ -266,7 +266,7 @@ def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
     places = [tuple(index)] if index or not shape else list(np.ndindex(shape))
     right = {}
     for place in places:
-        poly = derived.polys[place] if place else np.asarray(derived.polys).item()
+        poly = derived.entry(place)
         if len(poly) <= _SHORT:
             right[label_of(plain, place)] = str(derived.collected(poly))
     return right

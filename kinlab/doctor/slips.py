@@ -12,8 +12,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
-from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries, table_of
-from kinlab.doctor.derived import derivation
+from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
+from kinlab.doctor.derived import derivation_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.host.language import _
@@ -82,13 +82,12 @@ def slip_cause(slips: tuple[Slip, ...]) -> Cause:
 
 
 def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]:
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
+    derived = derivation_of(case)
     if derived is None:
         slip = terms.turned(text) if text is not None else None
         error = entry.error(-entry.hand, entry.engine)
         return [slip.with_error(error)] if slip and error <= TOLERANCES.formula_agrees else []
-    poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+    poly = derived.entry(entry.index)
     arguments = case.quantity.arguments
     if text is not None:
         found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)

@@ -11,8 +11,8 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
-from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation, searchable
+from kinlab.doctor.changes import AnswerEntry, Case, entries
+from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
@@ -361,8 +361,7 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
 
     Where the digits of each cannot be told, it is right to four digits or more, or ``"near"``.
     """
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
+    derived = derivation_of(case)
     if derived is None:
         return None
     remarks: list[str] = []
@@ -422,8 +421,7 @@ def unusual_and_rounded(case: Case, engine: Array) -> Excuse | None:
 
 def _of_potential(case: Case, engine: Array) -> Excuse | None:
     """Coefficients that are the derived ones, rounded, beside a constant that is any."""
-    table = table_of(case.robot)
-    derived = derivation(table, case.quantity.name) if table is not None else None
+    derived = derivation_of(case)
     if derived is None or not searchable(derived.polys.item()):
         return None
     right = derived.tree(derived.polys.item())
@@ -439,7 +437,7 @@ def _of_function(
     entry: AnswerEntry, derived: Derivation, case: Case, shown: Iterable[Literal] = ()
 ) -> tuple[list[str], float] | None:
     """Rounded coefficients of a function's entry, in words; else how far they are off, relative."""
-    poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+    poly = derived.entry(entry.index)
     if not searchable(poly) or not len(poly):
         return None
     right = derived.tree(poly)
@@ -467,7 +465,7 @@ def _of_function(
 
 def of_data(text: Written, entry: AnswerEntry, derived: Derivation, case: Case) -> str | None:
     """The number of the robot's data that is rounded where the text is not, or None."""
-    poly = derived.polys[entry.index] if entry.index else derived.polys.item()
+    poly = derived.entry(entry.index)
     if not searchable(poly):
         return None
     at = numbers_at(case)

@@ -42,9 +42,7 @@ class FailedError(Exception):
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _LARGEST = 100_000
-"""Numbers that an outer product may have."""
-_ARRAY = 100_000
-"""Numbers that an array may have."""
+"""Numbers that an array, or an outer product, may have."""
 _LONGEST = 5_000
 """Turns that a loop over numbers may have."""
 _TURNS = 2_000
@@ -408,17 +406,15 @@ def _outer(one: Any, other: Any, *rest: Any) -> Any:
     return np.outer(one, other, *rest)
 
 
-_QUICK = ModuleType("numpy")
-
-
 def _array(*given: Any, **named: Any) -> Any:
     """numpy's array, but none that grows without end where an edit puts rows for numbers."""
     found = np.array(*given, **named)
-    if found.size > _ARRAY:
+    if found.size > _LARGEST:
         raise ValueError("an array of so many numbers")
     return found
 
 
+_QUICK = ModuleType("numpy")
 _QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
 
 

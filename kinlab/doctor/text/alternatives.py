@@ -32,6 +32,7 @@ from kinlab.host.language import N_
 _FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
 _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
+_OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 
 
@@ -110,8 +111,8 @@ def _beside_a_length(line: Line, place: Place) -> bool:
     name = line.segment(place)
     while place.above is not None and is_product(place.above.node):
         place = place.above
-    known, product = set().union(*_LENGTHS), line.segment(place)
-    others = (w for w in words_in(product) if _letters(w) in known and w[-1] != name[-1])
+    product = line.segment(place)
+    others = (w for w in words_in(product) if _letters(w) in _OF_LINKS and w[-1] != name[-1])
     return any(others) and not re.search(r"(?<![\w.*^])\d", product)
 
 
