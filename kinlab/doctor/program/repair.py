@@ -61,7 +61,7 @@ _SAME = 0.011
 """Costs that are one."""
 _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
-_ANY_ZERO = ("potential_energy", "lagrangian")
+ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
@@ -199,7 +199,7 @@ class LineSearch:
             own, hand = self.values(self.watched), self.case.hand[self.watched]
         if own is None or own.shape != hand.shape:
             return False
-        if self.case.quantity.name in _ANY_ZERO:
+        if self.case.quantity.name in ANY_ZERO:
             hand = hand + (self.wanted[:1] - hand[:1])
         size = max(float(np.max(np.abs(hand))), float(np.max(self.sizes)))
         return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size))
@@ -530,7 +530,7 @@ class LineSearch:
             return None
         if values.shape != wanted.shape:
             return None
-        return values + (wanted[:1] - values[:1]) if quantity.name in _ANY_ZERO else values
+        return values + (wanted[:1] - values[:1]) if quantity.name in ANY_ZERO else values
 
 
 def _is_free(value: float) -> bool:

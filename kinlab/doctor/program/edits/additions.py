@@ -336,7 +336,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
-        if entry and not isinstance(piece, ast.BinOp) and scope.dear(piece):
+        used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
+        if entry and used and not _of_a_kind(piece, node):
             continue
         dear = scope.dear(piece)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
@@ -347,6 +348,12 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
+
+
+def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:
+    """Whether a name has another number than those of an expression: ``a3`` and ``-a2``."""
+    letters = {name.rstrip("0123456789") for name in names(node)}
+    return isinstance(piece, ast.Name) and piece.id.rstrip("0123456789") in letters
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:

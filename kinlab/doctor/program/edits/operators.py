@@ -193,6 +193,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         for other, count in scope.functions.items():
             if other != name and count == len(node.args) and count == scope.functions.get(name):
                 yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
+        if scope.functions.get(name, 0) == len(node.args) + 1 and not node.keywords:
+            for given in scope.shapes:  # the last one has a default
+                if given not in scope.counters:
+                    args = [*node.args, ast.Name(given, ast.Load())]
+                    yield here.within(node, "args", args, "missing argument", 1.15)
     if name == "diag" and (observed.shape(node) or ())[1:] == ():
         yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
@@ -367,6 +372,10 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if other != node.attr and known == shape:
             cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
             yield here.within(node, "attr", other, "name", cost)
+    for other, known in scope.shapes.items():
+        if known == shape and other not in scope.counters and shape == ():
+            cost = 1.2 if other[:1].lower() == node.attr[:1].lower() else 1.25
+            yield here.instead(ast.Name(other, ast.Load()), "name", cost)
 
 
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
