@@ -13,7 +13,7 @@ from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case, label_of
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
+from kinlab.doctor.text.claims import alone, named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
@@ -195,7 +195,8 @@ def _claims(
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
         try:
-            name = with_wrench(file, quantity_of(entry, robot.table))
+            name = quantity_of(entry, robot.table)
+            name = with_wrench(file, alone(name) if robot.n == 1 else name)
             plain, index = split_name(name)
         except KinlabError as problem:
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None

@@ -22,7 +22,7 @@ import ast
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
 
@@ -412,7 +412,9 @@ def _opened(
 ) -> tuple[dict[str, str], typed.Hand]:
     """Formulas as typed, a matrix as its entries; and what they say about the writing."""
     meant = [value for value in symbols.values() if isinstance(value, str)]
-    writing = writing or typed.hand([*entries.values(), *meant], symbols)
+    if writing is None:
+        writing = typed.hand([*entries.values(), *meant], symbols)
+    writing = replace(writing, known=writing.known | {*symbols})
     return typed.opened(entries, place, writing), writing
 
 

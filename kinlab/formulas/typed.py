@@ -386,6 +386,7 @@ _WHERE = re.compile(
 """What stands between a formula and what is explained behind it."""
 _GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
+_NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
 
 
 def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
@@ -416,6 +417,38 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
     dollars = "$" if is_latex(text) else ""
     formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def _turned(left: str, right: str, entry: str) -> bool:
+    """Whether the entry's own name stands behind the sign of equality, and no name before it."""
+    if not left or not _begins_with(f"{right.strip('$ ')} =", entry):
+        return False
+    with suppress(ExpressionError):
+        return not _NAME.fullmatch(entry_name(left))
+    return True
+
+
+def claims(text: str, entry: str = "", writing: Hand | None = None) -> str:
+    """The plain name that a formula gives itself, or ``""``: tau2 of ``h = ...; tau2 = ...``.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+        writing: as for :func:`entry_name`.
+
+    Raises:
+        ExpressionError: what cannot be read, as in :func:`sides` and :func:`entry_name`.
+    """
+    left, right = sides(explained(text, entry)[1])
+    return entry_name(left, writing=writing) if left and not _turned(left, right, entry) else ""
+
+
+def named_in(text: str) -> list[str]:
+    """What stands on the left of each equation of a text, and then what stands on the right."""
+    equations = [line.split("=") for line in _lines(bare(text)) if "=" in line]
+    ends = [(parts[0], parts[-1]) for parts in equations]
+    found = [end.strip("$&: ") for column in zip(*ends, strict=True) for end in column]
+    return [name for name in found if name and _OWN_NAME.fullmatch(re.sub(r"[()\[\],]", "", name))]
 
 
 def _begins_with(line: str, entry: str) -> bool:
@@ -637,8 +670,8 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
         at = f"{place}: {key}"
         left, right = sides(value, at)
         name = entry_name(key, at, writing)
-        if left and _begins_with(f"{right.strip('$ ')} =", name) and not _OWN_NAME.fullmatch(left):
-            left, right = "", f"${left}$" if right[:1] == "$" else left  # ... = tau2
+        if _turned(left, right, name):  # ... = tau2
+            left, right = "", f"${left}$" if right[:1] == "$" else left
         if left and not _of_one_name(entry_name(left, at, writing), name):
             raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
         grid = cells(right, at)
