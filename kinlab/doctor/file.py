@@ -13,7 +13,7 @@ from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case, label_of
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.text.claims import named_alone, quantity_of, with_forces, with_wrench
+from kinlab.doctor.text.claims import alone, named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
@@ -87,6 +87,24 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
+    parts = [_examined(part, robot, samples, seed) for part in (file, *file.others)]
+    alike = [part for part in parts if len(part) == len(parts[0])]
+    return [_of_chain(list(same)) for same in zip(*alike, strict=True)]
+
+
+def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
+    """What is told of ``a = b = c``: the part that is wrong, or the one that holds most widely."""
+    wrong = [one for one in parts if not one.agrees]
+    if not wrong:
+        return min(parts, key=lambda one: (bool(one.form), len(one.remarks)))
+    if len(wrong) == len(parts):
+        return wrong[0]
+    told = _("another part of the chain of equalities is right")
+    found = replace(wrong[0], proved=(*wrong[0].proved, told))
+    return _also_said(found, (told,)) if found.causes else found
+
+
+def _examined(file: FormulaFile, robot: Robot, samples: int, seed: int) -> list[Diagnosis]:
     file = with_habits(with_forces(file, robot), robot)
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
@@ -180,10 +198,11 @@ def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
     """
-    file = with_habits(with_forces(file, robot), robot)
-    wanted, titles = _claims(file, robot)
-    for plain, formulas in wanted.items():
-        _answers(plain, formulas, titles, robot, file, _FEWEST, 0)
+    for part in (*file.others, file):
+        part = with_habits(with_forces(part, robot), robot)
+        wanted, titles = _claims(part, robot)
+        for plain, formulas in wanted.items():
+            _answers(plain, formulas, titles, robot, part, _FEWEST, 0)
     return titles
 
 
@@ -195,7 +214,8 @@ def _claims(
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
         try:
-            name = with_wrench(file, quantity_of(entry, robot.table))
+            name = quantity_of(entry, robot.table)
+            name = with_wrench(file, alone(name) if robot.n == 1 else name)
             plain, index = split_name(name)
         except KinlabError as problem:
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None

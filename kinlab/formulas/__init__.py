@@ -5,11 +5,10 @@ module          what it holds
 ==============  ==================================================================================
 ``arithmetic``  The one walk over Python's syntax tree of arithmetic: a whitelist, whatever the
                 signs mean
-``beside``      Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
 ``evaluate``    Plain evaluation of a formula's text as it is written: nothing opened, gathered or
                 cancelled
-``latex``       LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
-                reads
+``grids``       Matrices and vectors as people type them: LaTeX, MATLAB, Python; their sums and
+                products
 ``lines``       A file of formulas, line by line: one line that is no TOML costs that line and
                 not the file
 ``marks``       Where a formula and its corrected form differ, for the eye
@@ -25,5 +24,7 @@ module          what it holds
                 Unicode, matrices
 ``typeset``     Formulas as LaTeX and MathML: the records' own LaTeX, and trees in the order of
                 the writer
+``signs/``      The signs that formulas are typed with, made plain: LaTeX, products without a
+                sign, remarks
 ==============  ==================================================================================
 """

@@ -20,7 +20,7 @@ from kinlab.arrays import Array
 from kinlab.errors import KinlabError
 from kinlab.formulas import typeset
 from kinlab.formulas.evaluate import plain_values
-from kinlab.formulas.latex import Leaf
+from kinlab.formulas.signs.latex import Leaf
 from kinlab.formulas.text import parse, tidied
 from kinlab.formulas.typed import is_latex
 from kinlab.tolerances import TOLERANCES

@@ -22,12 +22,13 @@ import ast
 import math
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from functools import partial
 from typing import Any
 
 from kinlab.errors import ExpressionError, FileError, near
-from kinlab.formulas import tree, typed
+from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
 from kinlab.formulas.tree import Node
 
@@ -36,7 +37,7 @@ MOST_NODES = 5_000
 _DEPTH = 60
 _NESTING = 50
 _CHAIN = 400
-_DIGITS = 25
+_DIGITS = 40
 _EXPONENT = 6
 _FORMULAS = 200
 
@@ -71,6 +72,7 @@ class FormulaFile:
         writing: what all of them say about the writing.
         numbers: names in the texts that stand for a number that was written.
         symbol_texts: the same for symbols; a number as its digits.
+        others: the file with another part of a chain of equalities for an entry's formula.
     """
 
     path: str
@@ -82,6 +84,7 @@ class FormulaFile:
     as_typed: dict[str, str]
     writing: typed.Hand
     numbers: Mapping[str, str] = field(default_factory=dict)
+    others: tuple[FormulaFile, ...] = ()
 
 
 def formula_file(
@@ -124,14 +127,47 @@ def formula_file(
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
+    for key, value in list(entries.items()):
+        parts = typed.several(_text(value, f"{place}: {key}"), key)
+        if parts and not parts.keys() & entries.keys():
+            del entries[key]
+            entries |= parts
     for key, value in entries.items():
         own, entries[key] = typed.explained(_text(value, f"{place}: {key}"), key)
+        used = _SIGNS.sub("", " ".join([*own.values(), entries[key]]))
         for name, formula in own.items():
+            if name not in used and not _readable(formula):
+                continue  # beside the formula, and not used in it
             if symbols.setdefault(name, formula) != formula:
                 said = (
                     f"{name} is explained twice; keep one, in front of the formula or in [symbols]"
                 )
                 raise ExpressionError(f"{place}: {key}: {said}")
+    chains = {key: typed.readings(value, key) for key, value in entries.items()}
+    entries = {key: parts[0] for key, parts in chains.items()}
+    read = partial(_read, place, robot, symbols, writing)
+    others = (read({**entries, key: part}) for key, parts in chains.items() for part in parts[1:])
+    return replace(read(entries), others=tuple(others))
+
+
+_SIGNS = re.compile(r"[_{}\\\s]")
+
+
+def _readable(text: str) -> bool:
+    try:
+        parse(typed.plain_formula(text))
+    except ExpressionError:
+        return False
+    return True
+
+
+def _read(
+    place: str,
+    robot: str,
+    symbols: dict[str, Any],
+    writing: typed.Hand | None,
+    entries: dict[str, str],
+) -> FormulaFile:
     as_typed, writing = _opened(entries, symbols, place, writing)
     entries, symbols = _plain(as_typed, symbols, place, writing)
     return FormulaFile(
@@ -412,8 +448,10 @@ def _opened(
 ) -> tuple[dict[str, str], typed.Hand]:
     """Formulas as typed, a matrix as its entries; and what they say about the writing."""
     meant = [value for value in symbols.values() if isinstance(value, str)]
-    writing = writing or typed.hand([*entries.values(), *meant], symbols)
-    return typed.opened(entries, place, writing), writing
+    if writing is None:
+        writing = typed.hand([*entries.values(), *meant], symbols)
+    writing = replace(writing, known=writing.known | {*symbols})
+    return grids.opened(entries, place, writing), writing
 
 
 def _plain(

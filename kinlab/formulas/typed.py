@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
-from kinlab.formulas import latex
-from kinlab.formulas.beside import with_products
+from kinlab.formulas.signs import latex
+from kinlab.formulas.signs.beside import with_products
+from kinlab.formulas.signs.remarks import without_remarks
 
 # -------- Which writing it is
 
@@ -144,7 +145,7 @@ def plain_formula(text: str, place: str = "expression", writing: Hand | None = N
     """
     writing = hand([text]) if writing is None else writing
     typeset = is_latex(text)
-    text = _PRIMED.sub(_rate, bare(text.translate(WIDE)))
+    text = _PRIMED.sub(_rate, bare(text))
     if not typeset and _side_by_side(text):
         text = _CENTRE.sub(lambda m: f"l_{{c{m[1].translate(_BELOW)}}}", text)
         typeset, text = True, text.replace("**", "^")
@@ -198,7 +199,10 @@ def is_latex(text: str) -> bool:
     return bool(_LATEX.search(text))
 
 
-_DISPLAYS = "equation equation* align align* aligned gather gather* displaymath math"
+_DISPLAYS = (
+    "equation equation* align align* aligned gather gather* gathered multline multline* split "
+    "cases dcases displaymath math"
+)
 _OUTSIDE = (
     *(("$$", "$$"), ("$", "$"), (r"\[", r"\]"), (r"\(", r"\)")),
     *((rf"\begin{{{name}}}", rf"\end{{{name}}}") for name in _DISPLAYS.split()),
@@ -210,8 +214,8 @@ _COMMENT = re.compile(r"(?<!\\)%.*")
 
 
 def bare(text: str) -> str:
-    """A formula without the dollars and environments around it, and the mark behind it."""
-    text = _COMMENT.sub("", text).strip()
+    """A formula without the dollars and environments around it, and what says nothing behind it."""
+    text = _COMMENT.sub("", text.translate(WIDE)).strip()
     changed = True
     while changed:
         changed = False
@@ -219,13 +223,13 @@ def bare(text: str) -> str:
             long_enough = len(text) >= len(opening) + len(closing)
             if long_enough and text.startswith(opening) and text.endswith(closing):
                 text, changed = text[len(opening) : -len(closing)].strip(), True
-        for mark in (r"\\", ";", ",", r"\,"):
+        for mark in (r"\\", ";", ",", r"\,", "\\"):
             if text.endswith(mark):
                 text, changed = text.removesuffix(mark).strip(), True
         if re.search(r"[\w)}]\s*\.$", text):
             text, changed = text[:-1].strip(), True
-        cut = re.sub(r"^\s*\\label\{[^{}]*\}|\\label\{[^{}]*\}\s*$|\\nonumber\s*$", "", text)
-        text, changed = (cut.strip(), True) if cut != text else (text, changed)
+        cut = without_remarks(text).strip()
+        text, changed = (cut, True) if cut != text else (text, changed)
     return text
 
 
@@ -252,8 +256,8 @@ def _plain_signs(text: str, place: str) -> str:
 def _with_powers(text: str) -> str:
     """``power(a, 2)`` and ``pow(a, 2)`` as ``(a)**(2)``."""
     while found := _POWER.search(text):
-        end = found.end() + _closes(text[found.end() :])
-        parts = _parts(text[found.end() + 1 : end], ",")
+        end = found.end() + closes(text[found.end() :])
+        parts = parts_at(text[found.end() + 1 : end], ",")
         if end < found.end() or len(parts) != 2:
             break
         base, power = (part if part.isalnum() else f"({part})" for part in parts)
@@ -343,7 +347,7 @@ def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
             )
 
 
-# -------- Left sides and matrices
+# -------- Left sides, and several equations
 
 _ENTRY = re.compile(r"([A-Za-z]+)_?((?:\d_?\d?_?\d?)?)", re.ASCII)
 _PRINTED = {"fk": "T", "L": "lagrangian"}
@@ -378,14 +382,19 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_NEXT = re.compile(r"(\n|;|\\\\(?:\[[^\]]*\])?)")
-_WHERE = re.compile(
-    r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*"
-    r"|,?\s*\\q?quad(?=\s*[\\\w{}]+\s*=)\s*"
+_NAMED_NEXT = r"(?=[\\\w{}]+(?:\(q\))?\s*&?\s*:?=)"
+_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z]))*"
+_NEXT = re.compile(
+    rf"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])|\\text\s*\{{\s*(?:and|和|且))"
+    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES})*{_NAMED_NEXT})"
 )
+"""What ends an equation: the end of a line, a semicolon, a comma before the next name."""
+_WHERE = re.compile(r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*")
 """What stands between a formula and what is explained behind it."""
-_GOES_ON = re.compile(r"(?:(?<=[-+*/^=(,])|\.\.\.)\s*\n|\n(?=\s*[-+*/^=),])")
+_GOES_ON = re.compile(r"(?<=[-+*/^=(,])\s*\n|\n(?=\s*[-+*/^=),])")
+_SIGNED = re.compile(r"[&\s]*[-+*/]")
 _OWN_NAME = re.compile(r"[\\\w{} ]+")
+_NAME = re.compile(r"[A-Za-z]\w*(?:\[[\d,]+\])?")
 
 
 def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
@@ -397,25 +406,134 @@ def explained(text: str, entry: str = "") -> tuple[dict[str, str], str]:
 
     Returns:
         The writer's names with their formulas, as typed; and the formula itself: the one with the
-        entry's name, the one in front of ``where``, or the last one.
+        entry's name, the one without a name, the one in front of ``where``, or the last one.
     """
-    lines = [line.strip("& ") for line in _lines(bare(text)) if line.strip("& ")]
-    if len(lines) == 1:
-        first, *behind = _WHERE.split(lines[0])
-        lines = [*behind, first]
-    lines.sort(key=lambda line: _begins_with(line, entry))
+    lines = _equations(text)
+    lines.sort(key=lambda line: (_begins_with(line, entry), "=" not in line))
     own = [line.partition("=") for line in lines[:-1]]
-    counts = [line.count("=") for line in lines]
-    if not own or set(counts[:-1]) != {1} or counts[-1] > 1:
+    if not own or any(line.count("=") != 1 for line in lines[:-1]):
         return {}, text
-    left = lines[-1].partition("=")[0] if counts[-1] else ""
-    if not all(_OWN_NAME.fullmatch(name) for name, *_rest in own):
+    left = lines[-1].partition("=")[0] if "=" in lines[-1] else ""
+    if not all(_OWN_NAME.fullmatch(name.strip("& ")) for name, *_rest in own):
         return {}, text
-    if entry and left and not _of_one_name(entry_name(left), entry_name(entry)):
+    if entry and left and not of_one_name(entry_name(left), entry_name(entry)):
         return {}, text
     dollars = "$" if is_latex(text) else ""
     formulas = {entry_name(name): f"{dollars}{bare(right)}{dollars}" for name, _sign, right in own}
     return formulas, f"{dollars}{lines[-1]}{dollars}"
+
+
+def several(text: str, entry: str) -> dict[str, str]:
+    """The equations of a whole vector or matrix by their names: ``g1 = ..., g2 = ...`` of g.
+
+    Args:
+        text: as typed.
+        entry: the whole: ``g``, ``gravity_torques``.
+
+    Returns:
+        Each with the equations that explain the writer's own names; empty where none, or only
+        one, is an entry of the whole.
+    """
+    lines = [line for line in _equations(text) if "=" in line]
+    named: dict[str, str] = {}
+    own: list[str] = []
+    with suppress(ExpressionError):
+        head, places = _head_and_places(entry_name(entry))
+        for line in lines if not places else []:
+            name = entry_name(line.partition("=")[0])
+            mine, here = _head_and_places(name)
+            if not here and any({head, mine} <= group for group in _MEANT):
+                return {}  # the whole itself
+            if here and any({head, mine} <= group for group in _MEANT):
+                named[name] = line
+            else:
+                own.append(line)
+    if len(named) < 2:
+        return {}
+    dollars = "$" if is_latex(text) else ""
+    return {name: f"{dollars}{'; '.join([*own, line])}{dollars}" for name, line in named.items()}
+
+
+_STARTS_FORMULA = re.compile(r"^[-(\d.]")
+_BY_DEFINITION = re.compile(
+    r"\\partial|∂|\\nabla|\\(?:sum|int)(?![A-Za-z])|\\d?t?frac\s*\{\s*(?:\\mathrm\s*\{)?d|\bd\w*\s*/\s*d\w"
+    r"|\^\s*\{?(?:T\b|\\top|\\mathrm\s*\{?T)|^-?\s*[xyzVUPTKL](?:_\{?\w+\}?)?$"
+)
+"""A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f."""
+
+
+def readings(text: str, entry: str) -> list[str]:
+    r"""The equations in a chain of equalities, each with one formula, the last one first.
+
+    ``M_{12} = M_{21} = ...`` is one, ``g2 = m2*g*l2*c12 = 5.886*c12`` is two; of ``J_{11} =
+    \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out.
+    """
+    parts = [part.strip() for part in bare(text).split("=")]
+    if len(parts) < 2 or not all(parts) or any(part[-1] in "<>!" for part in parts):
+        return [text]
+    names = [part for part in parts if _is_name(part)]
+    formulas = [part for part in parts if part not in names] or parts[-1:]
+    left = next((name for name in names if _begins_with(f"{name} =", entry)), "")
+    strange = any(name != left and not _also(name, entry) for name in names)
+    several = any(len(parts_at(formula, ",")) > 1 for formula in formulas)
+    alone = len(parts) == 2 and (names or not _is_formula(parts[0]))
+    if alone or strange or several:
+        return [text]
+    formulas = [one for one in formulas if not _BY_DEFINITION.search(one)] or formulas[-1:]
+    left = f"{left or names[0]} = " if names else ""
+    dollars = "$" if is_latex(text) else ""
+    return [f"{dollars}{left}{formula}{dollars}" for formula in reversed(formulas)]
+
+
+def _is_formula(text: str) -> bool:
+    """Whether a left side without a name is a formula: a sum, a number first, three factors."""
+    words = re.findall(r"[A-Za-z]+", re.sub(r"_\{?\w+\}?", " ", text))
+    return bool(_STARTS_FORMULA.match(text) or "+" in text or "*" in text or len(words) > 2)
+
+
+def _is_name(text: str) -> bool:
+    """Whether a side of an equation is a name alone: ``M_{21}``, ``\\tau_2``, not ``-y``."""
+    with suppress(ExpressionError):
+        return bool(_NAME.fullmatch(entry_name(text.strip("& "))))
+    return False
+
+
+def _also(name: str, entry: str) -> bool:
+    """Whether a name may stand in a chain of an entry: M21 beside M12, a name of one's own."""
+    with suppress(ExpressionError):
+        head, places = _head_and_places(entry_name(name))
+        mine, wanted = _head_and_places(entry_name(entry))
+        known = [group for group in _MEANT if head in group]
+        return not known or (places != wanted and head == mine) or any(mine in g for g in known)
+    return False
+
+
+def turned(left: str, right: str, entry: str) -> bool:
+    """Whether the entry's own name stands behind the sign of equality, and no name before it."""
+    return bool(left) and _begins_with(f"{right.strip('$ ')} =", entry) and not _is_name(left)
+
+
+def claims(text: str, entry: str = "", writing: Hand | None = None) -> str:
+    """The plain name that a formula gives itself, or ``""``: tau2 of ``h = ...; tau2 = ...``.
+
+    Args:
+        text: as typed.
+        entry: what the formula is asked for.
+        writing: as for :func:`entry_name`.
+
+    Raises:
+        ExpressionError: what cannot be read, as in :func:`sides` and :func:`entry_name`.
+    """
+    left, right = sides(readings(explained(text, entry)[1], entry)[0])
+    return entry_name(left, writing=writing) if left and not turned(left, right, entry) else ""
+
+
+def named_in(text: str) -> list[str]:
+    """What stands on the left of each equation of a text, and then what stands on the right."""
+    equations = [line.split("=") for line in _equations(text) if "=" in line]
+    ends = [(parts[0], parts[-1]) for parts in equations]
+    found = [end.strip("$&: ") for column in zip(*ends, strict=True) for end in column]
+    return [name for name in found if name and _OWN_NAME.fullmatch(re.sub(r"[()\[\],]", "", name))]
 
 
 def _begins_with(line: str, entry: str) -> bool:
@@ -429,17 +547,29 @@ def _begins_with(line: str, entry: str) -> bool:
         return False
 
 
-def _lines(text: str) -> list[str]:
-    """The text, cut where a line or a statement ends outside of brackets and matrices."""
-    lines = [""]
-    for piece in _NEXT.split(_GOES_ON.sub(" ", text)):
-        last = lines[-1]
+def _equations(text: str) -> list[str]:
+    """The text, cut where an equation ends outside of brackets and matrices.
+
+    What is explained behind a comma, or behind ``where``, comes before what it stands behind.
+    """
+    lines = [[""]]
+    pieces = _NEXT.split(_GOES_ON.sub(" ", bare(text)))
+    for k, piece in enumerate(pieces):
+        last = lines[-1][-1]
         depth = sum(last.count(c) for c in "([{") - sum(last.count(c) for c in ")]}")
-        if _NEXT.fullmatch(piece) and depth == 0 and last.count("\\begin") == last.count("\\end"):
-            lines.append("")
+        if k % 2 == 0 or depth or last.count("\\begin") != last.count("\\end"):
+            lines[-1][-1] += piece
+        elif piece[:2] == "\\\\" and _SIGNED.match(pieces[k + 1]):  # a sum goes on
+            lines[-1][-1] += " "
+        elif piece[0] in "\n;" or piece[:2] == "\\\\":
+            lines.append([""])
         else:
-            lines[-1] += piece
-    return lines
+            lines[-1].append("")
+    found = []
+    for line in lines:
+        first, *behind = [part.strip("& ") for piece in line for part in _WHERE.split(piece)]
+        found += [*behind, first]
+    return [line for line in found if line]
 
 
 def entry_name(text: str, place: str = "expression", writing: Hand | None = None) -> str:
@@ -457,7 +587,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         raise ExpressionError(f"{place}: {text[:30]}... is no name of an entry")
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     named = _NAMED.fullmatch(typed)
-    if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in _LONG):
+    if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):
         return typed  # a quantity by its own name
     if is_latex(typed) or not typed.isascii():
         typed = re.sub(r"(?<=\d)\s*,\s*(?=\d\s*[,}])", "", typed)
@@ -486,10 +616,15 @@ _IN_BOOKS = (
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
+_VECTORS = "gravity_torques inverse_dynamics coriolis_torques momentum statics statics_tool"
+_MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
+LONG = {*_MATRICES.split(), *_VECTORS.split()}
+TWO = {*"MHBJTRC", "coriolis_coefficients", *_MATRICES.split()}
+"""Quantities of two indices, whose one column is no vector."""
 _PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
 
 
-def _of_one_name(left: str, name: str) -> bool:
+def of_one_name(left: str, name: str) -> bool:
     """Whether a left side may stand before an entry: G2 and phi_2 before g2, tau before tau1.
 
     A name that no book has for anything else may be the writer's own.
@@ -514,90 +649,7 @@ def _head_and_places(name: str) -> tuple[str, str]:
     return head.lower(), places.replace(",", "")
 
 
-_MATRIX = re.compile(
-    r"(?:\\left\s*[(\[.]\s*|[(\[]\s*)?"
-    r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(\{[lcr| ]*\})?"
-    r"(.*)\\end\{\1\}(?:\s*\\right\s*[)\].]|\s*[)\]])?"
-    r"(\s*\^\{?(?:\\top|T|\\mathrm\{?\s*T\}?)\}?)?",
-    re.DOTALL,
-)
-_ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
-_MOST = 36
-
-
-def cells(text: str, place: str = "expression") -> list[list[str]] | None:
-    r"""The entries of a matrix, row by row; None of what is no matrix.
-
-    Args:
-        text: ``bmatrix``, ``pmatrix``, ``matrix`` or ``array``; ``[a, b; c, d]``;
-            ``[[a, b], [c, d]]``, with ``np.array(...)`` around it or not.
-        place: what to put in front of a message.
-
-    Raises:
-        ExpressionError: rows of different lengths, or too many entries.
-    """
-    text = bare(text)
-    found = _MATRIX.fullmatch(text)
-    if found and found[1] == "vmatrix":
-        raise ExpressionError(f"{place}: vmatrix is a determinant; write bmatrix for a matrix")
-    if found:
-        lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[3]) if row.strip()]
-        rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
-        if found[4] and len({len(row) for row in rows}) == 1:
-            rows = [list(column) for column in zip(*rows, strict=True)]
-    else:
-        inside = _ARRAY.fullmatch(text)
-        rows = _listed((inside[1] if inside else text).strip(), place)
-    if not rows:
-        return None
-    if len({len(row) for row in rows}) > 1 or not all(
-        cell.strip("$") for row in rows for cell in row
-    ):
-        raise ExpressionError(f"{place}: the rows of the matrix have different lengths, or gaps")
-    if len(rows) * len(rows[0]) > _MOST:
-        raise ExpressionError(f"{place}: a matrix of more than {_MOST} entries")
-    return rows
-
-
-def _listed(text: str, place: str) -> list[list[str]]:
-    if not (text.startswith("[") and text.endswith("]")) or _closes(text) != len(text) - 1:
-        return []
-    inside = text[1:-1]
-    rows = _parts(inside, ";")
-    if len(rows) > 1 and "," not in inside:
-        apart = [_beside(row) for row in rows if row]
-        if "*" in text or all(_PLAIN_ENTRY.fullmatch(cell) for row in apart for cell in row):
-            return apart
-    if len(rows) == 1:
-        members = [member for member in _parts(inside, ",") if member]
-        if members and all(m.startswith("[") and _closes(m) == len(m) - 1 for m in members):
-            return [_parts(m[1:-1], ",") for m in members]
-        if len(members) < 2:
-            return []
-        return [[member] for member in members]
-    return [_parts(row, ",") for row in rows if row]
-
-
-_PLAIN_ENTRY = re.compile(r"-?(?:[A-Za-z]+_?\d\d|\d+(?:\.\d+)?)")
-"""M11, d12, 0: where all are such they are no factors without a sign."""
-
-
-def _beside(row: str) -> list[str]:
-    """A row of MATLAB's, whose entries are set apart by blanks: ``a + b -c`` are two."""
-    entries, depth = [""], 0
-    for k, character in enumerate(row):
-        depth += (character in "([{") - (character in ")]}")
-        before, behind = entries[-1].rstrip()[-1:], row[k:].lstrip()[:2]
-        signed = behind[:1] in "+-" and not behind[1:].isspace()
-        apart = before not in "+-*/^.(" and (behind[:1] not in "+-*/^.)" or signed)
-        if character.isspace() and depth == 0 and before and behind and apart:
-            entries.append("")
-        else:
-            entries[-1] += character
-    return [entry.strip() for entry in entries if entry.strip()]
-
-
-def _closes(text: str) -> int:
+def closes(text: str) -> int:
     """Where the bracket that the text begins with is closed."""
     depth = 0
     for k, character in enumerate(text):
@@ -607,71 +659,13 @@ def _closes(text: str) -> int:
     return -1
 
 
-def _parts(text: str, sign: str) -> list[str]:
+def parts_at(text: str, sign: str) -> list[str]:
     """The text, cut at a sign outside of all parentheses."""
     parts, depth = [""], 0
     for character in text:
         depth += (character in "([{") - (character in ")]}")
-        if character == sign and depth == 0:
+        if character == sign and depth == 0 and parts[-1][-1:] != "\\":
             parts.append("")
         else:
             parts[-1] += character
     return [part.strip() for part in parts]
-
-
-def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) -> dict[str, str]:
-    """Each entry by a plain name, a matrix as its entries, without left sides.
-
-    Args:
-        entries: name to formula, both as typed.
-        place: the file, for messages.
-        writing: what all the writer's formulas say; None looks at these.
-
-    Raises:
-        ExpressionError: a name or matrix that cannot be read, a left side that is not the
-            entry's name, or an entry that is given twice.
-    """
-    writing = writing or hand(entries.values())
-    plain: dict[str, str] = {}
-    for key, value in entries.items():
-        at = f"{place}: {key}"
-        left, right = sides(value, at)
-        name = entry_name(key, at, writing)
-        if left and _begins_with(f"{right.strip('$ ')} =", name) and not _OWN_NAME.fullmatch(left):
-            left, right = "", f"${left}$" if right[:1] == "$" else left  # ... = tau2
-        if left and not _of_one_name(entry_name(left, at, writing), name):
-            raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
-        grid = cells(right, at)
-        if grid and name in _TWO and len(grid[0]) == 1 and right[0] == "[" and ";" not in right:
-            raise ExpressionError(
-                f"{at}: a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"
-            )
-        if grid is None:
-            _put(plain, name, right, at)
-            continue
-        if name[-1:].isdigit() or name.endswith("]"):
-            raise ExpressionError(f"{at}: {name} is one entry, and a matrix is given")
-        for i, row in enumerate(grid, 1):
-            for j, cell in enumerate(row, 1):
-                long = name in _LONG or "_" in name
-                below = f"[{i - 1}" if long else f"{i}"
-                column = len(row) > 1 or name in _TWO
-                if long:
-                    below += f",{j - 1}]" if column else "]"
-                elif column:
-                    below += f"{j}"
-                _put(plain, name + below, cell, at)
-    return plain
-
-
-_VECTORS = {"gravity_torques", "inverse_dynamics", "coriolis_torques"}
-_MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
-_LONG = {*_MATRICES.split(), *_VECTORS}
-_TWO = {*"MHBJTRC", *_MATRICES.split()}
-"""Quantities of two indices, whose one column is no vector."""
-
-
-def _put(entries: dict[str, str], name: str, formula: str, place: str) -> None:
-    if name in entries:
-        raise ExpressionError(f"{place}: {name} is given twice; keep one")
-    entries[name] = formula

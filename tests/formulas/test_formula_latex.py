@@ -10,7 +10,7 @@ import pytest
 from kinlab.doctor.file import examine_file
 from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import tree
-from kinlab.formulas.latex import expression
+from kinlab.formulas.signs.latex import expression
 from kinlab.formulas.text import canonical, parse
 
 

@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 import sympy
 
+import kinlab as kl
 from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
+from kinlab.formulas.grids import cells, opened
 from kinlab.formulas.text import canonical, formula_file, parse
-from kinlab.formulas.typed import cells, entry_name, explained, opened, plain_formula, sides
+from kinlab.formulas.typed import entry_name, explained, plain_formula, sides
 
 PLAIN = ("q1", "q2", "qd1", "qd2", "qdd1", "qdd2", "l1", "l2", "lc1", "m1", "m2", "I2", "g")
 AT = dict(zip(PLAIN, np.random.default_rng(8).uniform(0.4, 1.9, (len(PLAIN), 7)), strict=True))
@@ -346,3 +348,113 @@ def test_a_row_with_a_mark_is_a_column():
 def test_a_formula_over_several_lines():
     text = r"\begin{aligned}\tau_1 &= m_1 l_1 \\&\quad + m_2 l_2\end{aligned}"
     assert plain_formula(sides(text)[1]) == "m1*l1 + m2*l2"
+
+
+G1, G2 = "(m1+m2)*g*l1*c1 + m2*g*l2*c12", "m2*g*l2*c12"
+LINE = r"m_2 g l_2 \cos(\theta_1+\theta_2)"
+
+
+def diagnosed(entry, text):
+    return kl.diagnose("planar2r", entry, text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        rf"{LINE} \tag{{3.7}}", rf"{LINE}\,\mathrm{{N\,m}}", rf"{LINE}\;[\mathrm{{N\,m}}]",
+        rf"{LINE}\ \text{{N m}}", f"{G2} [Nm]", f"{G2} # gravity", f"return {G2}",
+        r"m_2\,g\,l_2\,{\rm c}_{12}", r"m_2 g l_2 \cos(\vartheta_1+\vartheta_2)",
+        r"m_2 g l_2 \cos(\varphi_1+\varphi_2)", "m2*g*l2*cos(q1(t)+q2(t))", "m2*g*l2*Cos[q1+q2]",
+        f"{G2}，重力项", f"{G2}（重力矩）", f"{G2}，其中 g = 9.81", rf"{LINE} \quad \text{{（重力项）}}",
+        rf"{LINE} \text{{，其中 }} g = 9.81", rf"{LINE} \quad\text{{(gravity)}}", f"重力矩 = {G2}",
+        r"c_{12} l_2\,m_2\,\mathrm{g}", r"c_{12} l_2 g\quad m_2",
+        r"\begin{split}g_2 ={}& m_2 g l_2 c_1 c_2 \\ & - m_2 g l_2 s_1 s_2\end{split}",
+    ],
+)  # fmt: skip
+def test_what_stands_beside_a_formula_is_left_out(text):
+    found = diagnosed("g2", text)
+    assert found.agrees and not found.form, str(found)
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g2", f"g2 = {G2} = 5.886*cos(q1+q2)"), ("g2", rf"{LINE} \approx 5.89\,c_{{12}}"),
+        ("g2", rf"g_2 = \frac{{\partial V}}{{\partial q_2}} = {LINE}"), ("g2", f"{G2} = g2"),
+        ("g2", rf"g_2 = {LINE} = \frac{{\partial V}}{{\partial q_2}}"),
+        ("M12", r"M_{12} = M_{21} = m_2 l_2^2 + m_2 l_1 l_2 c_2"), ("J31", "J_{31} = J_{32} = 1"),
+        ("J11", r"J_{11} = \frac{\partial x}{\partial\theta_1} = -y = -l_1 s_1 - l_2 s_{12}"),
+        ("g", f"g1 = {G1}, g2 = {G2}"), ("g", f"{G1}, {G2}"), ("g2", f"g1 = {G1}; g2 = {G2}"),
+        ("J11", r"J_{11} = -r \quad (r = l_1 s_1 + l_2 s_{12})"),
+        ("g", r"\begin{cases} g_1 = k + (m_1+m_2) g l_1 c_1 \\ g_2 = k \\ k = m_2 g l_2 c_{12}"
+         r"\end{cases}"),
+    ],
+)  # fmt: skip
+def test_chains_and_several_equations_are_read(entry, text):
+    found = diagnosed(entry, text)
+    assert (found.agrees, found.form, found.remarks) == (True, "", ()), str(found)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("g2 = m1*g*l2*c12 = 5.886*cos(q1+q2)", "m1 should be m2"),
+        (f"g2 = {G2} = 5.5*cos(q1+q2)", "5.5 should be 5.886"),
+    ],
+)
+def test_parts_of_a_chain_that_differ_are_told(text, said):
+    found = diagnosed("g2", text)
+    assert not found.agrees and said in str(found)
+    assert "another part of the chain of equalities is right" in str(found)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"g2 = {G2} = 5.886*c12 = 2.9 at q = 60", f"tau2 = g2 = {G2}", f"{G2} = h, k = 3 = 4",
+        rf"g_2 = {LINE} \,\mathrm{{m}}", f"{G2}，q1为角",
+    ],
+)  # fmt: skip
+def test_what_stands_beside_a_formula_and_may_mean_something_is_refused(text):
+    with pytest.raises(ExpressionError):
+        diagnosed("g2", text)
+
+
+PARTS = r"\begin{bmatrix} (m_1+m_2) l_1 & m_2 l_2\\ 0 & m_2 l_2\end{bmatrix}"
+
+
+@pytest.mark.parametrize(
+    ("entry", "text"),
+    [
+        ("g", rf"g {PARTS} \begin{{bmatrix}} c_1 \\ c_{{12}}\end{{bmatrix}}"),
+        ("g", rf"\begin{{bmatrix}} c_1 & c_{{12}}\end{{bmatrix}} {PARTS}^T \cdot g"),
+        ("g", f"[{G1}, {G2}]^T"), ("g", rf"\left[ (m_1+m_2) g l_1 c_1 + {LINE},\; {LINE} \right]^\top"),
+        ("g", f"[{G1} {G2}]'"), ("g", f"G = [ {G1}\n  {G2} ];"), ("g", f"[{G1}, {G2}].'"),
+        ("g", f"{G2}*[1; 1] + (m1+m2)*g*l1*c1*[1; 0]"), ("g", f"[1, 0; 1, 1]'*[{G1} - {G2}; {G2}]"),
+        ("C", "m2*l1*l2*sin(q2)*[-qd2, -qd1-qd2; qd1, 0]"), ("g", f"{{{{{G1}}}, {{{G2}}}}}"),
+        ("C", "h = m2*l1*l2*s2\nC = [-h*qd2 -h*(qd1+qd2)\n h*qd1 0]"),
+        ("M", "a = m2*l2^2; b = m2*l1*l2*c2; M = [a+2*b, a+b; a+b, a] + diag([(m1+m2)*l1^2, 0])"),
+        ("T", r"T = \frac12 \begin{bmatrix}\dot q_1 & \dot q_2\end{bmatrix} \begin{bmatrix} "
+         r"(m_1+m_2) l_1^2 + m_2 l_2^2 + 2 m_2 l_1 l_2 c_2 & m_2 l_2^2 + m_2 l_1 l_2 c_2 \\ "
+         r"m_2 l_2^2 + m_2 l_1 l_2 c_2 & m_2 l_2^2 \end{bmatrix} "
+         r"\begin{bmatrix}\dot q_1\\ \dot q_2\end{bmatrix}"),
+        ("statics", "[fx*(-l1*s1-l2*s12) + fy*(l1*c1+l2*c12) + nz, -fx*l2*s12 + fy*l2*c12 + nz]"),
+    ],
+)  # fmt: skip
+def test_sums_and_products_of_matrices(entry, text):
+    found = diagnosed(entry, text)
+    assert found.agrees, str(found)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "have no product"),
+        (r"m_2(\begin{bmatrix}1\\0\end{bmatrix}+\begin{bmatrix}1\\1\end{bmatrix})", "in brackets"),
+        (r"\begin{bmatrix}1\\0\end{bmatrix} \times \begin{bmatrix}1\\0\end{bmatrix}", "beside"),
+        (r"\begin{bmatrix}1\\0\end{bmatrix} + \begin{bmatrix}1\\0\\1\end{bmatrix}", "no sum"),
+    ],
+)
+def test_products_that_are_none_are_refused(text, said):
+    with pytest.raises(ExpressionError, match=said):
+        cells(text)

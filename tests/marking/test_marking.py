@@ -535,3 +535,83 @@ def test_what_is_nearly_right_is_left_to_the_teacher(first, told):
     outcomes, _ = judge_program(sheet_of(SHEET, "s"), program, "cause")
     assert outcomes[2].right == (first in ("1.115", "1.12"))
     assert told in outcomes[2].remark and bool(told) == bool(outcomes[2].remark)
+
+
+TAU2 = "m2*l2^2*(qdd1+qdd2) + h*c2*qdd1 + h*s2*qd1^2 + m2*g*l2*c12"
+G = "[(m1+m2)*g*l1*c1 + m2*g*l2*c12; m2*g*l2*c12]"
+
+
+def asked_alone(entry, answer, robot="planar2r", level="answer"):
+    """The outcome of a sheet with one question."""
+    question = entry if isinstance(entry, dict) else {"entry": entry}
+    sheet = {"robot": robot, "feedback": level, "questions": [{"id": "a", "points": 1, **question}]}
+    given = answer if isinstance(answer, dict) else {"a": answer}
+    (found,) = kl.mark(sheet, {"ada": given})["ada"].outcomes
+    return found
+
+
+@pytest.mark.parametrize(
+    ("entry", "answer", "robot"),
+    [
+        ("tau2", f"h = m2*l1*l2; tau2 = {TAU2}", "planar2r"),
+        ("tau2", {"h": "m2*l1*l2", "tau2": TAU2}, "planar2r"),
+        ("tau2", f"{TAU2} where h = m2*l1*l2", "planar2r"),
+        ("g2", "g1 = (m1+m2)*g*l1*c1 + m2*g*l2*c12; g2 = m2*g*l2*c12", "planar2r"),
+        ("g2", r"$m_2 l_2 g c_{12} = g_2$", "planar2r"),
+        ("g2", "m2*g*l2*c12 = g2", "planar2r"),
+        ("M", M, "planar2r"),
+        ("M", f"D = {M}", "planar2r"),
+        ("D", f"M = {M}", "planar2r"),
+        ({"quantity": "mass_matrix"}, f"D = {M}", "planar2r"),
+        ("g", f"G = {G}", "planar2r"),
+        ("J", "[-l1*s1-l2*s12, -l2*s12; l1*c1+l2*c12, l2*c12; 1, 1]", "planar2r"),
+        ("V", "V = m1*g*l1*s1 + m2*g*(l1*s1+l2*s12)", "planar2r"),
+        (
+            "tau1",
+            r"$\tau = (\frac14 m l^2 + I) \ddot\theta + \frac12 m g l \cos\theta$",
+            "single_link",
+        ),
+        ("tau", "tau = m1*l1^2*qdd1/4 + I1*qdd1 + m1*g*l1*c1/2", "single_link"),
+        ({"quantity": "gravity_torques"}, "m1*g*l1*c1/2", "single_link"),
+    ],
+)
+def test_a_class_is_read_as_one_formula_is(entry, answer, robot):
+    found = asked_alone(entry, answer, robot)
+    assert (found.verdict, found.points) == ("right", 1.0), found.remark
+
+
+@pytest.mark.parametrize(
+    ("entry", "answer", "place", "cause"),
+    [
+        ("M", M.replace("2*m2", "m2"), "M11: look at m2*l1*l2*c2", "a numerical factor is off"),
+        ("g", G.replace(" + m2*g*l2*c12", ""), "g1", "a term is missing"),
+        ("tau2", "h = m2*l1*l2; tau2 = " + TAU2.replace("+ h*s2", "- h*s2"),
+         "tau2: look at -h*s2*qd1^2", "a sign is the other way"),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_keeps_its_place_and_cause(entry, answer, place, cause):
+    found = asked_alone(entry, answer)
+    assert (found.verdict, found.place, found.cause) == ("wrong", place, cause)
+    assert asked_alone(entry, answer, level="verdict").place == ""
+
+
+def test_a_line_for_a_joint_or_for_a_number_of_the_arm_explains_nothing():
+    given = {"q1": "0", "m2": "7", "x": "9", "g2": "m2*g*l2*cos(q1+q2)"}
+    found = asked_alone("g2", given)
+    assert (found.verdict, found.remark) == ("right", "")
+
+
+def test_another_entrys_line_is_refused():
+    found = asked_alone("g2", "tau2 = m2*g*l2*c12")
+    assert found.remark == "the line begins with tau2 =, and the question asks for g2"
+
+
+def test_names_of_a_students_own_stand_on_lines_of_their_own(tmp_path):
+    path = tmp_path / "ada.tex"
+    path.write_text(
+        "% student: ada\n\\begin{align} h &= m_2 l_1 l_2 s_2 \\\\ \n"
+        "k &= 2 h \\\\ C_{12} &= -h \\dot\\theta_1 - \\frac{k}{2} \\dot\\theta_2 \\end{align}"
+    )
+    sheet = {"robot": "planar2r", "questions": [{"id": "a", "entry": "C12"}]}
+    (found,) = kl.mark(sheet, tmp_path)["ada"].outcomes
+    assert found.verdict == "right", found.remark

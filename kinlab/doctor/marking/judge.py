@@ -154,7 +154,8 @@ class _Key:
 
     def __init__(self, robot: Robot, file: FormulaFile) -> None:
         self.robot, self.file = robot, file
-        self.texts = (id(robot), *file.as_typed.items(), *file.symbol_texts.items())
+        typed = (item for part in (file, *file.others) for item in part.as_typed.items())
+        self.texts = (id(robot), *typed, *file.symbol_texts.items())
 
     def __hash__(self) -> int:
         return hash(self.texts)

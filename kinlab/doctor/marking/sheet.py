@@ -35,7 +35,7 @@ from kinlab.check.quantities.registry import split_name
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.claims import quantity_of, whole_of
 from kinlab.errors import FileError, KinlabError, near
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
@@ -227,7 +227,7 @@ def _question(
 def _asked(row: Mapping[str, Any], entry: str, robot: Robot, place: str) -> str:
     quantity = _text(row, "quantity", place)
     if not quantity:
-        quantity = quantity_of(entry, robot.table)
+        quantity = whole_of(entry, robot.table) or quantity_of(entry, robot.table)
     plain, index = split_name(quantity)
     if any(isinstance(k, slice) for k in index):
         raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")

@@ -13,6 +13,7 @@ from __future__ import annotations
 import re
 import stat
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,17 +21,29 @@ from typing import Any
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.marking.sheet import Question, Sheet
-from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.claims import quantity_of, whole_of
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.lines import read_lines
-from kinlab.formulas.typed import Hand, bare, entry_name, hand, sides
+from kinlab.formulas.typed import (
+    Hand,
+    bare,
+    claims,
+    entry_name,
+    explained,
+    hand,
+    named_in,
+    plain_formula,
+    sides,
+)
 from kinlab.host.files import read_text
 from kinlab.host.language import _
+from kinlab.symbolic.vocabulary import vocabulary
 
 LARGEST = 256 * 1024
 """Bytes of a submission above which it is not read."""
 
 KINDS = (".toml", ".tex", ".txt", ".md", ".py")
+_WORD = re.compile(r"[A-Za-z]\w*")
 _ID = 64
 _LINES = 2000
 _MOST = 400
@@ -124,9 +137,9 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     lines = list(_lines(text, "%" if suffix == ".tex" else ""))
     student, name = _people(lines)
     pieces = _of_latex(text) if suffix == ".tex" else _of_text(lines, sheet)
-    answers, problems, unasked = _sorted(pieces, sheet)
+    answers, problems, unasked, own = _sorted(pieces, sheet)
     who = student or _safe(stem)
-    return Submission(shown, who, name, answers, {}, problems, _note(student, unasked))
+    return Submission(shown, who, name, answers, own, problems, _note(student, unasked))
 
 
 def of_document(
@@ -165,7 +178,7 @@ def of_document(
             ]
         else:
             given.append((key, value))
-    answers, problems, unasked = _sorted(given, sheet)
+    answers, problems, unasked, own = _sorted(given, sheet)
     lost: list[str] = []
     for key, problem in broken:
         told = str(problem).removeprefix(f"{shown}: ")
@@ -182,7 +195,7 @@ def of_document(
     who = known or _safe(stem)
     called = _safe(name) if isinstance(name, str) else ""
     note = _("; ").join(filter(None, (_note(known, unasked), *lost)))
-    return Submission(shown, who, called, answers, symbols, problems, note)
+    return Submission(shown, who, called, answers, own | symbols, problems, note)
 
 
 def _note(student: str, unasked: Sequence[str] = ()) -> str:
@@ -295,20 +308,25 @@ def _rows(formula: str) -> list[str]:
 
 def _sorted(
     pieces: Sequence[tuple[str, Any]], sheet: Sheet
-) -> tuple[dict[str, dict[str, str]], dict[str, str], list[str]]:
+) -> tuple[dict[str, dict[str, str]], dict[str, str], list[str], dict[str, str]]:
     """Formulas by question (by its id, or by the name on the left side), and what is wrong.
 
-    The last are left sides of no question; they are told where a question has no answer.
+    The third are left sides of no question; they are told where a question has no answer. The last
+    are the writer's own names.
     """
     unasked: list[str] = []
+    others: list[tuple[str, str]] = []
     answers: dict[str, dict[str, str]] = {}
     problems: dict[str, str] = {}
     writing = hand(str(value) for _, value in pieces)
     for key, value in pieces:
-        left = key or _left(value)
-        question, name = _question(left, sheet, writing)
+        lefts = [key] if key or not isinstance(value, str) else named_in(value) or [""]
+        asked = (_question(left, sheet, writing) for left in lefts)
+        question, name = next((one for one in asked if one[0] is not None), (None, ""))
         if question is None:
-            unasked.append(_safe(left or str(value))[:20])
+            unasked.append(_safe(lefts[0] or str(value))[:20])
+            if isinstance(value, str):
+                others.append((lefts[0], value))
             continue
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             value = repr(value)
@@ -323,7 +341,41 @@ def _sorted(
         else:
             answers.setdefault(question.id, {})[name] = value
     whole = len({*answers, *problems}) == len(sheet.questions)
-    return answers, problems, [] if whole else unasked
+    return answers, problems, [] if whole else unasked, _own_names(others, answers, sheet)
+
+
+def _own_names(
+    others: Sequence[tuple[str, str]], answers: Mapping[str, Mapping[str, str]], sheet: Sheet
+) -> dict[str, str]:
+    """Lines of no question that explain a name in the answers: ``h = m2*l1*l2*s2``.
+
+    A line for one of the robot's numbers, or for a joint, is a remark.
+    """
+    table = sheet.robot.table
+    known = {*vocabulary(table).values} if table is not None else set()
+    found: dict[str, str] = {}
+    texts = [text for given in answers.values() for text in given.values()]
+    while texts:
+        used = {word for text in texts for word in _words(text)}
+        texts = []
+        for left, value in others:
+            with suppress(ExpressionError):
+                name, right = entry_name(left), sides(value)[1]
+                if name in used - known - {*found} and _OWN.fullmatch(name) and _words(right):
+                    found[name] = right
+                    texts.append(right)
+    return found
+
+
+_OWN = re.compile(r"(?!(?:q|qd|qdd|th|theta|[cs])\d)[A-Za-z]\w*")
+
+
+def _words(text: str) -> list[str]:
+    """The names in a formula; none of what cannot be read."""
+    try:
+        return _WORD.findall(plain_formula(sides(explained(text)[1])[1]))
+    except ExpressionError:
+        return []
 
 
 def _question(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str]:
@@ -331,13 +383,6 @@ def _question(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, 
     ids = {question.id.lower(): question for question in sheet.questions}
     found = ids.get(left.strip().lower())
     return (found, "") if found is not None else _asked(left, sheet, writing)
-
-
-def _left(value: Any) -> str:
-    if not isinstance(value, str) or "=" not in value:
-        return ""
-    left = value.strip().partition("=")[0].strip().strip("$&").strip()
-    return left.rstrip(":").strip()
 
 
 def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str]:
@@ -373,26 +418,34 @@ def _head(question: Question) -> str:
 
 
 def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> dict[str, str]:
-    """The formulas of an answer under names that say what they claim to be.
+    """The formulas of an answer as they were typed, under names that say what they claim to be.
 
     Raises:
         ExpressionError: a left side that is another entry's name.
     """
     whole = question.plain and "[" not in question.quantity
-    default = question.plain if whole else question.entry
+    strange = whole and not _names(question, question.entry, sheet)
+    default = question.plain if strange else question.entry
+    shown = shown_entry(question.entry)
     named: dict[str, str] = {}
     for name, text in given.items():
-        left, right = sides(text, question.id)
-        said = entry_name(left, question.id) if left else name
-        shown = shown_entry(question.entry)
+        said = claims(text, name or default) or name
         if said in ("", question.id, question.entry, default, shown, _head(question)):
-            named[default] = right
+            named[default] = text
             continue
         found, _name = _asked(said, sheet, hand([]))
         if said not in question.answer and (found is None or found.id != question.id):
-            if question.quantity != quantity_of(said, sheet.robot.table):
+            if not _names(question, said, sheet):
                 other = _("the line begins with {name} =, and the question asks for {entry}")
                 raise ExpressionError(other.format(name=said, entry=shown))
             said = default
-        named[said] = right
+        named[said] = text
     return named
+
+
+def _names(question: Question, said: str, sheet: Sheet) -> bool:
+    """Whether a name is the question's, as books have it or by its only joint: tau of tau1."""
+    table = sheet.robot.table
+    with suppress(ExpressionError):
+        return question.quantity in (whole_of(said, table) or quantity_of(said, table), said)
+    return False

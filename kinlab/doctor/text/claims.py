@@ -49,6 +49,8 @@ def _by_letter(table: dict[str, str]) -> dict[str, str]:
 
 
 _VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
+_PARTS = ("R", "r")
+"""Letters of a part of a matrix."""
 _VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
 _MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
 _CUBE = re.compile(r"D_?(\d)_?(\d)_?(\d)")
@@ -84,8 +86,27 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     joint = joint_claimed(entry, table)
     if joint:
         return joint
+    if table is not None and len(table.links) == 1 and whole_of(entry, table):
+        return alone(whole_of(entry, table))
     choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
     raise ExpressionError(f"{entry!r} names no quantity; {choices}")
+
+
+def whole_of(entry: str, table: DHTable | None) -> str:
+    """The whole vector or matrix that a letter alone is, or ``""``: M, g, tau, J."""
+    if entry in _NUMBER_OF or entry in _PARTS:
+        return ""
+    name = _MATRIX_OF.get(entry) or _VECTOR_OF.get(entry, "")
+    if name == "jacobian" and table is not None and is_planar(table):
+        return "planar_jacobian"
+    return name
+
+
+def alone(quantity: str) -> str:
+    """The only entry of a vector or a square matrix, of an arm of one joint."""
+    if quantity in _VECTORS:
+        return f"{quantity}[0]"
+    return f"{quantity}[0,0]" if quantity in ("mass_matrix", "coriolis_matrix") else quantity
 
 
 # -------- A force or a moment of the tool in a torque

@@ -20,6 +20,7 @@ _INDEXED = re.compile(r"([A-Za-z]+)(\d*)")
 _MOTION = re.compile(r"q(d{0,2})\d+")
 _SEVERAL = re.compile(r"(q|qd|qdd|dq|ddq)([1-9]{2,})")
 _SLIDES = (("d{k}",), ("dd{k}", "d{k}dot", "ddot{k}"), ("ddd{k}", "d{k}ddot", "dddot{k}"))
+_SUMMED = re.compile(r"phi_?(\d) *\+ *phi_?\d")
 _FIRST = {"w1": "qd1", "alpha1": "qdd1"}
 """Of the first link, which turns as its joint does; of others it may be the link or the joint."""
 NOTHING = "0"
@@ -45,13 +46,16 @@ def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
     known = {name for name in used if tree.names(canonical(name)) <= motion}
     angles = {name for name in known if _positions(canonical(name))}
     slides = _of_slides(robot.table)
+    arrays = _of_arrays(file, known)
+    summed = any(_SUMMED.search(text) for text in file.texts.values())
     new: dict[str, str] = {}
     for name in sorted(used - words - known - {*file.symbols}):
         plain = name.replace("_", "")
-        found = slides.get(plain) or _by_letter(plain, words, used, motion if not angles else set())
+        free = motion if not angles else set()
+        found = slides.get(plain) or _by_letter(plain, words, used, free, summed)
         if not found and plain in _FIRST and name not in turning:
             found = _FIRST[plain]
-        found = found or _of_several(plain, robot.n)
+        found = found or _of_several(plain, robot.n) or arrays.get(plain, "")
         if not found and robot.n == 1:  # m and l of the only link
             alone = f"{plain}1"
             if tree.names(canonical(alone)) <= motion | words:
@@ -87,6 +91,18 @@ def _of_several(plain: str, joints: int) -> str:
     return " + ".join(f"{head}{k}" for k in found[2])
 
 
+def _of_arrays(file: FormulaFile, known: set[str]) -> dict[str, str]:
+    """v[0] and a[0] beside q[0], the arguments of a function of the state, for its rates."""
+    typed = " ".join(file.as_typed.values())
+    rates = {str(node.value)[:-1] for node in map(canonical, known) if node.op == "sym"}
+    return {
+        f"{letter}{k}": f"{rate}{k}"
+        for letter, rate in (("v", "qd"), ("a", "qdd"))
+        if rate not in rates and all(re.search(rf"(?<!\w){x}\[", typed) for x in ("q", letter))
+        for k in range(1, 10)
+    }
+
+
 def _of_slides(table: DHTable) -> dict[str, str]:
     """d3 and its rates for q3 where joint 3 slides."""
     joints = [k for k, link in enumerate(table.links, 1) if link.joint == "prismatic"]
@@ -95,7 +111,7 @@ def _of_slides(table: DHTable) -> dict[str, str]:
     }
 
 
-def _by_letter(plain: str, words: set[str], used: set[str], angles: set[str]) -> str:
+def _by_letter(plain: str, words: set[str], used: set[str], angles: set[str], summed: bool) -> str:
     """The robot's name, or the angle, that a letter with an index is."""
     alike = [word for word in words if word.lower() == plain.lower()]
     if alike:
@@ -106,7 +122,8 @@ def _by_letter(plain: str, words: set[str], used: set[str], angles: set[str]) ->
     length, angle = f"l{found[2]}", f"q{found[2]}"
     if found[1] == "a" and length in words - used:
         return length
-    return angle if found[1] == "t" and angle in angles else ""
+    joint = found[1] == "t" or (found[1] == "phi" and summed)  # phi2 alone may be q1 + q2
+    return angle if joint and angle in angles else ""
 
 
 def _positions(node: Node) -> bool:

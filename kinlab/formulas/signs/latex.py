@@ -39,6 +39,7 @@ _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
+_GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _BRACES = {r"\{": "(", r"\}": ")"}
 _PAIRS = {"(": ")", "[": "]", "{": "}"}

@@ -1,0 +1,363 @@
+r"""Matrices and vectors as people type them: LaTeX, MATLAB, Python; their sums and products.
+
+``M = [a, b; c, d]`` becomes M11, M12, ... as typed; of ``\frac12 [..] [..] + [..]`` the entries are
+written out in plain text.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from itertools import product
+
+from kinlab.errors import ExpressionError
+from kinlab.formulas.typed import (
+    LONG,
+    TWO,
+    Hand,
+    bare,
+    closes,
+    entry_name,
+    hand,
+    is_latex,
+    of_one_name,
+    parts_at,
+    plain_formula,
+    sides,
+    turned,
+)
+
+Grid = list[list[str]]
+
+_TURNED = r"(?:\s*(?:\^\s*\{?\s*(?:\\top|T|\\mathrm\s*\{?\s*T\}?|\\intercal)\s*\}?|\.?'|\.T(?!\w)))"
+_INSIDE = (
+    r"\\begin\{(bmatrix|pmatrix|matrix|smallmatrix|vmatrix|array)\}(?:\{[lcr| ]*\})?"
+    r"((?:(?!\\begin|\\end).)*)\\end\{\1\}"
+)
+_MATRIX = re.compile(rf"{_INSIDE}({_TURNED})?", re.DOTALL)
+_WRAPPED = re.compile(
+    rf"(?:\\left\s*[(\[.]|[(\[])\s*{_INSIDE}\s*(?:\\right\s*[)\].]|[)\]])({_TURNED})?", re.DOTALL
+)
+_ARRAY = re.compile(r"(?:(?:np|numpy|sp|sympy)\.)?(?:array|Matrix|asarray)\s*\((.*)\)", re.DOTALL)
+_DIAGONAL = re.compile(
+    r"(?:\\(?:mathrm|operatorname|text)\s*\{\s*diag\s*\}|(?<![A-Za-z])\\?diag)(?=\s*[(\[{\\])"
+)
+_SIZES = re.compile(r"\\(?:left|right|bigl|bigr|Bigl|Bigr|big|Big)(?![A-Za-z])\s?")
+_BRACKETS = {"[": "]", "(": ")", "{": "}"}
+_MOST = 36
+LONGEST = 20_000
+
+
+def cells(text: str, place: str = "expression", writing: Hand | None = None) -> Grid | None:
+    r"""The entries of a matrix, row by row; None of what is no matrix.
+
+    Args:
+        text: ``bmatrix``, ``pmatrix``, ``matrix`` or ``array``; ``[a, b; c, d]``;
+            ``[[a, b], [c, d]]``, with ``np.array(...)`` around it or not; ``diag([a, b])``; sums
+            and products of these, with factors.
+        place: what to put in front of a message.
+        writing: what the writer's formulas together say.
+
+    Raises:
+        ExpressionError: rows of different lengths, too many entries, or a product of matrices
+            that do not fit.
+    """
+    text = bare(text)
+    rows = _one(text, place, writing or hand([text]))
+    return _total(text, place, writing or hand([text])) if rows is None else rows
+
+
+def _one(text: str, place: str, writing: Hand) -> Grid | None:
+    """The entries of a matrix that stands alone."""
+    found = _MATRIX.fullmatch(text) or _WRAPPED.fullmatch(text)
+    if found and found[1] == "vmatrix":
+        raise ExpressionError(f"{place}: vmatrix is a determinant; write bmatrix for a matrix")
+    if found:
+        lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[2]) if row.strip()]
+        rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
+        over = bool(found[3])
+    else:
+        inside = _ARRAY.fullmatch(text)
+        dollars = "$" if is_latex(text) else ""
+        plain = _SIZES.sub("", inside[1] if inside else text).strip()
+        core = re.sub(_TURNED + "$", "", plain)
+        over = core != plain
+        spaced = "*" in core and not dollars
+        listed = _diagonal(core, spaced, writing) or _listed(core.strip(), over, spaced, writing)
+        rows = [[f"{dollars}{cell}{dollars}" for cell in row] for row in listed]
+        over = over and ";" in core
+    if not rows:
+        return None
+    if len({len(row) for row in rows}) > 1 or not all(
+        cell.strip("$") for row in rows for cell in row
+    ):
+        raise ExpressionError(f"{place}: the rows of the matrix have different lengths, or gaps")
+    if len(rows) * len(rows[0]) > _MOST:
+        raise ExpressionError(f"{place}: a matrix of more than {_MOST} entries")
+    return [list(column) for column in zip(*rows, strict=True)] if over else rows
+
+
+def _diagonal(text: str, spaced: bool, writing: Hand) -> Grid:
+    found = _DIAGONAL.match(text)
+    inside = text[found.end() :].replace("\\{", "{").replace("\\}", "}").strip() if found else ""
+    while inside[:1] in _BRACKETS and closes(inside) == len(inside) - 1:
+        inside = inside[1:-1].strip()
+    members = [m for cell in parts_at(inside, ";") for m in _row(cell, spaced, writing)]
+    if not inside or len(members) < 2:
+        return []
+    return [[m if i == k else "0" for i in range(len(members))] for k, m in enumerate(members)]
+
+
+def _listed(text: str, over: bool, spaced: bool, writing: Hand) -> Grid:
+    """The rows of a list in brackets; a list of one row is a column."""
+    if text[:2] == "{{":  # Mathematica's
+        text = text.replace("{", "[").replace("}", "]")
+    if text[:1] not in ("[", "(") or closes(text) != len(text) - 1:
+        return []
+    inside = _on_one_line(text[1:-1])
+    if text[0] == "(" and not (over or len(parts_at(inside, ",")) > 1):
+        return []
+    lines = [row for row in parts_at(inside, ";") if row]
+    if len(lines) > 1:
+        return [_row(row, spaced, writing) for row in lines]
+    members = [member for member in _row(inside, spaced, writing) if member]
+    if members and all(m.startswith("[") and closes(m) == len(m) - 1 for m in members):
+        return [parts_at(m[1:-1], ",") for m in members]
+    return [[member] for member in members] if len(members) > 1 else []
+
+
+def _on_one_line(text: str) -> str:
+    """The text with a semicolon where a line ends a row, as in MATLAB."""
+    goes_on = re.compile(r"(?<=[-+*/^(,;\[])\s*\n\s*|\s*\n\s*(?=[-+*/^),;\]])")
+    return re.sub(r"\s*\n\s*", ";", goes_on.sub(" ", text.strip()))
+
+
+def _row(row: str, spaced: bool, writing: Hand) -> list[str]:
+    """The entries of a row, set apart by commas, or by blanks where these are no products."""
+    entries = parts_at(row, ",")
+    if len(entries) > 1:
+        return entries
+    apart = _beside(row)
+    plain = all(_PLAIN_ENTRY.fullmatch(cell) or cell in writing.known for cell in apart)
+    return apart if plain or spaced else entries
+
+
+# -------- Sums and products
+
+
+def _total(text: str, place: str, writing: Hand) -> Grid | None:
+    """A sum of products of matrices and factors, its entries in plain text."""
+    held, grids = _held(text, place, writing)
+    if not grids:
+        return None
+    dollars = "$" if is_latex(text) else ""
+    total: Grid | None = None
+    for sign, term in _terms(held, place):
+        made: Grid = [["1"]]
+        before, *others = re.split("\x01(\\d+)\x01", term)
+        for piece, k in zip([before, *others[1::2]], [*others[::2], ""], strict=True):
+            scalar = _factor(piece, place, dollars)
+            if scalar:
+                made = _product(made, [[plain_formula(scalar, place, writing)]], place)
+            made = _product(made, grids[int(k)], place) if k else made
+        if sign == "-":
+            made = _product([["-1"]], made, place)
+        total = made if total is None else _sum(total, made, place)
+    return total
+
+
+def _held(text: str, place: str, writing: Hand) -> tuple[str, list[Grid]]:
+    """The text with a mark for each matrix, and the matrices in plain text."""
+    grids: list[Grid] = []
+    out, at = "", 0
+    while at < len(text):
+        end = _end_of_matrix(text, at)
+        rows = _one(text[at:end], place, writing) if end else None
+        if rows is None:
+            out, at = out + text[at], at + 1
+            continue
+        if _is_row(text[at:end]):
+            rows = [[row[0] for row in rows]]
+        grids.append([[plain_formula(cell, place, writing) for cell in row] for row in rows])
+        out, at = f"{out}\x01{len(grids) - 1}\x01", end
+    return out, grids
+
+
+def _is_row(text: str) -> bool:
+    """Whether a list is a row beside a matrix: ``[a, b]``, not ``[a; b]`` or ``[[a], [b]]``."""
+    over = re.search(_TURNED + "$", text)
+    return text[0] == "[" and "[" not in text[1:] and ";" not in text and not over
+
+
+def _end_of_matrix(text: str, at: int) -> int:
+    """Where a matrix that begins at a place ends; 0 where none does."""
+    found = _MATRIX.match(text, at) or _WRAPPED.match(text, at)
+    if found is not None:
+        return found.end()
+    diagonal = _DIAGONAL.match(text, at)
+    if diagonal is not None:
+        return diagonal.end() + closes(text[diagonal.end() :]) + 1
+    before = text[:at].rstrip()[-1:]
+    if text[at] != "[" or before.isalnum() or before in (")", "]", "_") or is_latex(text):
+        return 0
+    end = at + closes(text[at:]) + 1
+    over = re.compile(_TURNED).match(text, end)
+    return over.end() if over else end
+
+
+def _terms(held: str, place: str) -> Iterator[tuple[str, str]]:
+    """The terms of a sum with their signs.
+
+    Raises:
+        ExpressionError: a matrix in brackets.
+    """
+    sign, term, depth = "+", "", 0
+    for character in held:
+        depth += (character in "([{") - (character in ")]}")
+        if character == "\x01" and depth:
+            raise ExpressionError(f"{place}: a sum of matrices in brackets; write it without them")
+        if character in "+-" and depth == 0 and term.rstrip()[-1:] not in ("*", "/", "^", "@"):
+            if term.strip():
+                yield sign, term
+                sign, term = "+", ""
+            sign = "-" if (character == "-") != (sign == "-") else "+"
+        else:
+            term += character
+    yield sign, term
+
+
+_TIMES = r"(?:\s|\*|@|\\cdot(?![A-Za-z])|\\[,;:!]|~|&)*"
+
+
+def _factor(piece: str, place: str, dollars: str) -> str:
+    """What stands between two matrices, without the signs of multiplication."""
+    if r"\times" in piece or ".*" in piece or piece.lstrip()[:1] == "^":
+        raise ExpressionError(
+            f"{place}: {piece.strip()[:20]} beside a matrix; write the entries out"
+        )
+    piece = re.sub(f"^{_TIMES}|{_TIMES}$", "", piece)
+    piece = f"1{piece}" if piece[:1] == "/" else piece
+    return f"{dollars}{piece}{dollars}" if piece else ""
+
+
+def _product(left: Grid, right: Grid, place: str) -> Grid:
+    for one, other in ((left, right), (right, left)):
+        if len(one) == len(one[0]) == 1:
+            return [[_times(one[0][0], cell, place) for cell in row] for row in other]
+    if len(left[0]) != len(right):
+        sizes = f"{len(left)} x {len(left[0])} and {len(right)} x {len(right[0])}"
+        raise ExpressionError(f"{place}: matrices of {sizes} have no product")
+    columns = list(zip(*right, strict=True))
+    made: Grid = [[] for _row in left]
+    for (i, row), column in product(enumerate(left), columns):
+        terms = [_times(a, b, place) for a, b in zip(row, column, strict=True)]
+        made[i].append(" + ".join(term for term in terms if term != "0") or "0")
+    return made
+
+
+def _sum(left: Grid, right: Grid, place: str) -> Grid:
+    if (len(left), len(left[0])) != (len(right), len(right[0])):
+        raise ExpressionError(f"{place}: matrices of different sizes have no sum")
+    return [
+        [" + ".join(c for c in (a, b) if c != "0") or "0" for a, b in zip(x, y, strict=True)]
+        for x, y in zip(left, right, strict=True)
+    ]
+
+
+_SINGLE = re.compile(r"[\w.]+(?:\*\*\d+)?(?:\([^()]*\))?")
+
+
+def _times(left: str, right: str, place: str) -> str:
+    if "0" in (left, right):
+        return "0"
+    if "1" in (left, right):
+        return right if left == "1" else left
+    if len(left) + len(right) > LONGEST:
+        raise ExpressionError(f"{place}: a product of matrices too long to be written out")
+    left, right = (one if _SINGLE.fullmatch(one) else f"({one})" for one in (left, right))
+    return f"{left}*{right}"
+
+
+# -------- Rows of MATLAB
+
+_PLAIN_ENTRY = re.compile(r"-?(?:[A-Za-z]+_?\d\d|\d+(?:\.\d+)?)")
+"""M11, d12, 0: where all are such they are no factors without a sign."""
+
+
+def _beside(row: str) -> list[str]:
+    """A row of MATLAB's, whose entries are set apart by blanks: ``a + b -c`` are two."""
+    entries, depth = [""], 0
+    for k, character in enumerate(row):
+        depth += (character in "([{") - (character in ")]}")
+        before, behind = entries[-1].rstrip()[-1:], row[k:].lstrip()[:2]
+        signed = behind[:1] in "+-" and not behind[1:].isspace()
+        apart = before not in "+-*/^.(" and (behind[:1] not in "+-*/^.)" or signed)
+        if character.isspace() and depth == 0 and before and behind and apart:
+            entries.append("")
+        else:
+            entries[-1] += character
+    return [entry.strip() for entry in entries if entry.strip()]
+
+
+def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) -> dict[str, str]:
+    """Each entry by a plain name, a matrix as its entries, without left sides.
+
+    Args:
+        entries: name to formula, both as typed.
+        place: the file, for messages.
+        writing: what all the writer's formulas say; None looks at these.
+
+    Raises:
+        ExpressionError: a name or matrix that cannot be read, a left side that is not the
+            entry's name, or an entry that is given twice.
+    """
+    writing = writing or hand(entries.values())
+    plain: dict[str, str] = {}
+    for key, value in entries.items():
+        at = f"{place}: {key}"
+        left, right = sides(value, at)
+        name = entry_name(key, at, writing)
+        if turned(left, right, name):  # ... = tau2
+            left, right = "", f"${left}$" if right[:1] == "$" else left
+        if left and not of_one_name(entry_name(left, at, writing), name):
+            raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
+        whole = not (name[-1:].isdigit() or name.endswith("]"))
+        grid = cells(right, at, writing) or (_in_a_row(right) if whole else None)
+        if grid and len(grid) == len(grid[0]) == 1:
+            right, grid = grid[0][0], None
+        if grid and len(grid) == 1 and name not in TWO:
+            grid = [[cell] for cell in grid[0]]
+        in_a_list = right[:1] == "[" and right[:2] != "[[" and ";" not in right
+        if grid and name in TWO and len(grid[0]) == 1 and in_a_list:
+            raise ExpressionError(
+                f"{at}: a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"
+            )
+        if grid is None:
+            _put(plain, name, right, at)
+            continue
+        if not whole:
+            raise ExpressionError(f"{at}: {name} is one entry, and a matrix is given")
+        for i, row in enumerate(grid, 1):
+            for j, cell in enumerate(row, 1):
+                long = name in LONG or "_" in name
+                below = f"[{i - 1}" if long else f"{i}"
+                column = len(row) > 1 or name in TWO
+                if long:
+                    below += f",{j - 1}]" if column else "]"
+                elif column:
+                    below += f"{j}"
+                _put(plain, name + below, cell, at)
+    return plain
+
+
+def _in_a_row(text: str) -> Grid | None:
+    """The entries of ``a, b`` without brackets."""
+    dollars = "$" if is_latex(text) else ""
+    entries = parts_at(bare(text), ",")
+    return [[f"{dollars}{one}{dollars}"] for one in entries] if len(entries) > 1 else None
+
+
+def _put(entries: dict[str, str], name: str, formula: str, place: str) -> None:
+    if name in entries:
+        raise ExpressionError(f"{place}: {name} is given twice; keep one")
+    entries[name] = formula

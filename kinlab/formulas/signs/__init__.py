@@ -1,0 +1,11 @@
+"""The signs that formulas are typed with, made plain: LaTeX, products without a sign, remarks.
+
+===========  =====================================================================================
+module       what it holds
+===========  =====================================================================================
+``beside``   Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
+``latex``    LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then reads
+``remarks``  What stands beside a formula and says nothing of its value: tags, units, words, old
+             fonts
+===========  =====================================================================================
+"""

@@ -1,0 +1,60 @@
+r"""What stands beside a formula and says nothing of its value: tags, units, words, old fonts.
+
+``\tag{3.7}``, ``\,\mathrm{N\,m}``, ``[Nm]``, ``\quad\text{(gravity)}``, ``，重力项`` are left out;
+``\approx`` is a sign of equality, ``其中`` is ``where``, ``{\rm c}`` is ``\mathrm{c}``. A unit
+that may be a name (``\mathrm{m}``) stays.
+"""
+
+from __future__ import annotations
+
+import re
+
+_CHINESE = "\u4e00-\u9fff\u3001"
+_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z]))*"
+_BEHIND = rf"(?:(?<!\\)[,;]|\\q?quad(?![A-Za-z])){_SPACES}"
+_WORDS = r"\\(?:text|textrm|textit|textbf|mbox)"
+_FONT = r"\\(?:mathrm|mathsf|text|textrm|textit|textbf|operatorname|mbox|unit|si)"
+_UNIT = r"(?:N|kg|rad|deg|mm|cm|m|s|J|W)"
+_BETWEEN = r"(?:\s|~|\\[,;:! ]|\\cdot|[.*·⋅/]|\^\{?-?\d\}?|[²³])*"
+_UNITS = rf"{_UNIT}{_BETWEEN}(?:{_UNIT}{_BETWEEN})*"
+_MORE = rf"(?:N|kg|{_UNIT}(?:{_BETWEEN}{_UNIT})+){_BETWEEN}"
+"""Units that are no name of a length, a mass or an inertia: N, Nm, not m or J."""
+
+_EVERYWHERE = (
+    (re.compile(r"\\(?:tag\*?|label)\s*\{[^{}]*\}|\\(?:nonumber|notag)(?![A-Za-z])"), " "),
+    (re.compile(r"\{\s*\\(?:rm|bf|it|sf)\s+(\w+)\s*\}"), r"\\mathrm{\1}"),
+    (re.compile(r"\\(?:overset|stackrel)\s*\{[^{}]*\}\s*\{\s*=\s*\}"), "="),
+    (re.compile(r"\\(?:approx|simeq|cong|equiv|triangleq)(?![A-Za-z])|[≈≃≅≡]"), "="),
+    (re.compile(rf"\\text\s*\{{[\s,]*(?:其中|式中|这里)[\s:]*\}}{_SPACES}"), r" \\text{where} "),
+    (re.compile(r"(?:其中|式中|这里)\s*:?"), " where "),
+    (re.compile(r"((?:theta|th|q|θ)(?:_?\{?\d+\}?|[₀-₉]+)\}?)\(\s*t\s*\)"), r"\1"),
+    (re.compile(r"\.\.\.[^\n]*\n"), " "),
+    (re.compile(r"(?<![\w.])(Sin|Cos|Tan|Sqrt)\[([^\[\]]*)\]"), r"\1(\2)"),
+    (re.compile(r"(?<!\\)#.*"), ""),
+)
+_AROUND = (
+    re.compile(rf"^return\s+(?=\S)|^[{_CHINESE}\s]+[:=]\s*"),
+    re.compile(rf"(?<![-+*/^=(,\s]){_SPACES}\[\s*(?:{_FONT}\s*)?\{{?\s*{_UNITS}\s*\}}?\s*\]\s*$"),
+    re.compile(rf"{_SPACES}\(?\s*{_FONT}\s*\{{\s*{_MORE}\s*\}}\s*\)?\s*$"),
+    re.compile(r"(?<=[\w)])\s+(?:Nm|N m|N\*m|N·m)\s*$"),
+    re.compile(rf"{_BEHIND}\(?\s*{_WORDS}\s*\{{(?!\s*(?:where|with)\b)[^{{}}=\\]*\}}\s*\)?\s*$"),
+    re.compile(rf"{_SPACES}{_WORDS}\s*\{{[^{{}}=\\]*[{_CHINESE}][^{{}}=\\]*\}}\s*$"),
+    re.compile(rf"(?:\s*[,;]\s*|\s+)[{_CHINESE}\s]*[{_CHINESE}][.\s]*$"),
+    re.compile(rf"\s*\([{_CHINESE}\s]*[{_CHINESE}]\s*\)\s*$"),
+)
+_EXPLAINED = re.compile(
+    rf"(?:(?<!\\),|\\q?quad(?![A-Za-z])){_SPACES}\(([\\\w{{}}]+\s*=[^=]*)\)\s*$"
+)
+r"""``\quad (r = a_2 c_2)``, a name in parentheses."""
+
+
+def without_remarks(text: str) -> str:
+    """The text without what says nothing of the formula's value."""
+    for pattern, instead in _EVERYWHERE:
+        text = pattern.sub(instead, text)
+    for pattern in _AROUND:
+        text = pattern.sub("", text, count=1)
+    found = _EXPLAINED.search(text)
+    if found and found[1].count("(") == found[1].count(")"):
+        text = rf"{text[: found.start()]} \text{{where}} {found[1]}"
+    return text
