@@ -242,6 +242,8 @@ class LineSearch:
             every += of_table(self.trial, self.observed, self.case.robot)
             sure = as_it_is(self.trial, self.observed, self.case.robot)
             every = [edit for edit in every if edit.part != DATA or not sure(edit)]
+            named = _named_numbers(self.trial)
+            every = [edit for edit in every if not self._mirrors(edit, named)]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
@@ -421,6 +423,18 @@ class LineSearch:
             return False
         return new == -old or _is_free(new)
 
+    def _mirrors(self, edit: ProgramEdit, named: set[int]) -> bool:
+        """Whether a number that has a name, and is the robot's, would have the other sign."""
+        if edit.kind != "sign":
+            return False
+        if edit.part == DATA and edit.numbers and not edit.place:
+            old: Any = edit.numbers[0]
+        elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
+            old = edit.node.value
+        else:
+            return False
+        return isinstance(old, int | float) and self.is_own(old) and not self.is_own(-old)
+
     def _is_strange(self, place: NumberPlace) -> bool:
         """Whether a number of the data is none of the robot's, and none that anything may have."""
         value = abs(float(place.value))
@@ -523,7 +537,11 @@ class LineSearch:
         quantity, robot = self.case.quantity, self.case.robot
         stacks, wanted = self._few if which is self.first else self._at(which)
         try:
-            values = np.asarray(self._asked(None, *stacks), dtype=float)
+            answers = np.asarray(self._asked(None, *stacks))
+            if np.iscomplexobj(answers) and np.any(answers.imag):
+                return None
+            real = answers.real if np.iscomplexobj(answers) else answers
+            values = np.asarray(real, dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):
@@ -531,6 +549,18 @@ class LineSearch:
         if values.shape != wanted.shape:
             return None
         return values + (wanted[:1] - values[:1]) if quantity.name in ANY_ZERO else values
+
+
+def _named_numbers(trial: Trial) -> set[int]:
+    """Where numbers hang that statements give names to."""
+    found: set[int] = set()
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Assign):
+                found.add(id(node))
+                if isinstance(node.value, ast.Tuple) and isinstance(node.targets[0], ast.Tuple):
+                    found.add(id(node.value.elts))
+    return found
 
 
 def _is_free(value: float) -> bool:

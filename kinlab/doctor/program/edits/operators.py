@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
-from kinlab.doctor.program.edits.additions import ANGLES, Scope
+from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
+from kinlab.doctor.program.edits.data import measured
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
@@ -345,6 +346,8 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id:
                 yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
         return
+    if node.id in scope.arcs and scope.has_numpy:
+        yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
@@ -366,7 +369,12 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     """Another attribute of the same object: ``arm.r`` for ``arm.l``."""
     node = here.node
     shape = observed.shape(node)
-    if shape is None or not isinstance(node.value, ast.Name):
+    if shape is None:
+        return
+    for one, other in (("real", "imag"), ("imag", "real")):
+        if node.attr == one:
+            yield here.within(node, "attr", other, "function", 1.05)
+    if not isinstance(node.value, ast.Name):
         return
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
@@ -389,6 +397,10 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             for step in (1, -1):
                 yield here.within(here.node, "value", value + step, "index", 1.15)
         return
+    if value == 0 and scope.has_numpy and measured(here.parent):
+        half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
+        for turned in (half, ast.UnaryOp(ast.USub(), half)):
+            yield here.instead(turned, "number", 1.13)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new

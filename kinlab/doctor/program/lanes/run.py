@@ -145,8 +145,9 @@ def _narrow(value: Any) -> bool:
 
 
 def _full(entry: Any, lanes: Lanes) -> Array:
-    values = entry.within(lanes.all) if isinstance(entry, Laned) else float(entry)
-    if np.iscomplexobj(values):
-        raise TypeError("an answer that is not real")
-    full: Array = np.full(lanes.all.size, values, dtype=float)
+    values = (
+        entry.within(lanes.all) if isinstance(entry, Laned) else np.asarray(entry).astype(complex)
+    )
+    full: Array = np.full(lanes.all.size, np.real(values), dtype=float)
+    lanes.lost |= np.imag(values) != 0.0
     return full

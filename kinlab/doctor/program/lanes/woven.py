@@ -217,8 +217,10 @@ class Woven:
         if isinstance(node, ast.GeneratorExp | ast.Slice | ast.Lambda):
             return False
         seen = self.observed.of(node)
-        if seen is not None and seen.whole and seen.shape == ():
-            return isinstance(parent, ast.List)  # what counts is a whole number
+        if seen is not None and seen.whole and seen.shape is not None:
+            # what counts is a whole number, or one of several that are run over
+            runs = isinstance(parent, ast.For)
+            return not runs if seen.shape else isinstance(parent, ast.List)
         numeric = seen is not None and seen.shape is not None
         return numeric or isinstance(node, _LISTS) or isinstance(parent, ast.stmt)
 

@@ -121,6 +121,8 @@ class Together:
                 break
             rank = total
             chosen = self._apart(one, other)
+            if not len(chosen):
+                continue
             rows = self._rows(chosen, self.count)
             if rows is None:
                 return []
