@@ -86,8 +86,8 @@ def examine(
     near = excuse is not None and excuse.form == "near"
     if near and not written:
         first = next(case.looked_through(engine, TOLERANCES.formula_agrees), None)
-        if first is not None and first.digits:
-            excuse, near = Excuse("rounded", first.digits), False
+        if first is not None and first.excuse is not None:
+            excuse, near = first.excuse, False
     if same and excuse is None:
         values, errors = case.hand, relative_errors(case.hand, engine)
         worst = float(np.max(errors))
@@ -152,10 +152,8 @@ def _explained(
     read = same and not written and (silent is not None or not bare)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
-    if program is not None and program.digits is not None:
-        if program.digits:
-            return [], (), Excuse("rounded", program.digits), None
-        program = next(looking, None)
+    if program is not None and program.excuse is not None:
+        return [], (), program.excuse, None
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []

@@ -13,13 +13,14 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.program.digits import nearly, to_the_digits
+from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
+from kinlab.doctor.verdicts import Excuse
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -94,14 +95,13 @@ class WrongLines:
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
         numbers: those that the program comes to at the first state, sorted.
-        digits: of a program that is nearly right, what its rounded numbers stand for, if they are
-            all of it; nothing else is said then.
+        excuse: of a program that is right all the same, why; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
     numbers: Array
-    digits: tuple[str, ...] | None = None
+    excuse: Excuse | None = None
 
 
 def lines(
@@ -109,7 +109,7 @@ def lines(
 ) -> Iterator[WrongLines]:
     """What single lines of a function should be, and then, if asked on, what several should.
 
-    Of a function that is nearly right, before them, what its rounded numbers stand for.
+    Of a function that is right with rounded numbers nothing but that.
 
     Args:
         function: the hand formula; nothing comes of one that cannot be read.
@@ -127,8 +127,10 @@ def lines(
     if not search.faithful:
         return
     numbers = search.observed.numbers(len(search.states))
-    if nearly(case.hand, wanted):
-        yield WrongLines([], search.written_out, numbers, to_the_digits(search))
+    excuse = of_rounded_numbers(search)
+    if excuse is not None:
+        yield WrongLines([], search.written_out, numbers, excuse)
+        return
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
