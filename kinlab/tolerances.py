@@ -159,6 +159,10 @@ class Tolerances:
     """Relative error up to which a function may be right with rounded constants inside; nobody
     can tell."""
 
+    nearly_throughout: float = 0.02
+    """The same of every entry by its own largest value, at every state: no slip but an exact one is
+    looked for in what is nearer than rounded numbers, coarse steps and tables may be."""
+
     may_be_rounded: float = 0.06
     """Relative error of a program up to which it is asked whether its numbers are rounded: half a
     unit of a number with two digits is up to 5 %."""

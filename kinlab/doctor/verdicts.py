@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -300,6 +300,26 @@ def _own_error(case: Case, engine: Array) -> tuple[float, float]:
     most = float(np.max(own))
     error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
     return error, most
+
+
+def largest_share(case: Case, engine: Array) -> float:
+    """The largest error of what is essential, by the largest value of its own entry."""
+    if case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
+        return math.inf
+    own = replace(case, hand=essential(case, case.hand))
+    return _own_error(own, essential(case, engine))[0]
+
+
+def by_how_much(case: Case, engine: Array, share: float) -> tuple[str, ...]:
+    """Of a function that is nearly right, how nearly, and what that may be."""
+    if not share <= TOLERANCES.nearly_throughout:
+        return ()
+    other = max(relative_errors(case.hand, engine)) > TOLERANCES.may_be_rounded
+    said = _(
+        "no entry is off by more than {share:.2g} % of its largest value: the step of a "
+        "difference, single precision, a series or a table, numbers of few digits, or a small slip"
+    ).format(share=100 * share)
+    return (*([other_form(case, engine)] if other else ()), said)
 
 
 def to_digits(case: Case, engine: Array) -> Excuse | None:

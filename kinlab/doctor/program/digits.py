@@ -94,19 +94,23 @@ class _Numbers:
 
     def right(self, numbers: Array) -> bool:
         """Whether the program is right with other numbers, at every state."""
-        search, every = self.search, range(len(self.search.wanted))
-        with changed(search.trial, self.edits(numbers)):
-            found = search.values(every)
-        if found is None:
-            return False
-        one, other = (essential(search.case, x) for x in (found, search.wanted))
-        return bool(np.max(relative_errors(one, other)) <= TOLERANCES.formula_agrees)
+        with changed(self.search.trial, self.edits(numbers)):
+            return error_now(self.search) <= TOLERANCES.formula_agrees
 
     def _answers(self, numbers: Array | None) -> Array:
         with changed(self.search.trial, () if numbers is None else self.edits(numbers)):
             found = self.search.values(self.which)
         wanted = self.search.wanted[list(self.which)]
         return np.full_like(wanted, np.nan) if found is None else found
+
+
+def error_now(search: LineSearch) -> float:
+    """The largest relative error of a program as it stands now, in what is essential."""
+    found = search.values(range(len(search.wanted)))
+    if found is None:
+        return math.inf
+    one, other = (essential(search.case, x) for x in (found, search.wanted))
+    return float(np.max(relative_errors(one, other)))
 
 
 def of_rounded_numbers(search: LineSearch) -> Excuse | None:

@@ -9,18 +9,22 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from kinlab.arrays import Array
+from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.program.digits import of_rounded_numbers
+from kinlab.doctor.program.cuts import cuts
+from kinlab.doctor.program.digits import error_now, of_rounded_numbers
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
-from kinlab.doctor.verdicts import Excuse
+from kinlab.doctor.verdicts import Excuse, excuse_of
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -31,7 +35,8 @@ _NAMED = 2
 """Pieces of which it is said what they are."""
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
-"""Share of a number below which another one is rather the step of a difference."""
+"""Share of a number below which another one is rather the step of a difference, and of an error
+that may be left of one that was rounding."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -127,7 +132,7 @@ def lines(
     if not search.faithful:
         return
     numbers = search.observed.numbers(len(search.states))
-    excuse = of_rounded_numbers(search)
+    excuse = _of_cuts(search) or of_rounded_numbers(search)
     if excuse is not None:
         yield WrongLines([], search.written_out, numbers, excuse)
         return
@@ -137,6 +142,27 @@ def lines(
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
         yield WrongLines([cause_of(one, search) for one in told], search.written_out, numbers)
+
+
+def _of_cuts(search: LineSearch) -> Excuse | None:
+    """Why a program is right that rounds by itself, if nothing else is off but rounded numbers."""
+    edits = cuts(search)
+    if not edits:
+        return None
+    before = float(np.max(relative_errors(search.case.hand, search.wanted)))
+    steps = min(TOLERANCES.finite_differences, _STEP * before) if search.differences else 0.0
+    allowed = max(TOLERANCES.formula_agrees, steps)
+    told = _("{place} rounds: `{piece}`")
+    said = [told.format(place=_line(edit, search.trial), piece=_text(edit.node)) for edit in edits]
+    try:
+        with quietly(), changed(search.trial, edits):
+            exact = error_now(search) <= allowed
+            more = None if exact else of_rounded_numbers(search)
+    except NoProgramError:
+        return None
+    if more is not None:
+        return replace(more, remarks=(*said, *more.remarks))
+    return excuse_of(search.case, search.wanted, said) if exact else None
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
