@@ -75,9 +75,8 @@ def _unusual_and_rounded(case: Case, engine: Array, written: dict[str, Written])
     shape = engine.shape[1:]
     if not verdicts.any_other(case) or len(texts) != math.prod(shape):
         return None
-    whole = Together(texts, lambda x: verdicts.essential(case, x.reshape(len(x), *shape)))
-    found = verdicts.by_digits(whole, case, engine)
-    return found and found[0]
+    whole = Together(texts, shape, lambda x: verdicts.essential(case, x))
+    return verdicts.by_digits(whole, case, engine)
 
 
 def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] | None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -38,8 +38,6 @@ _FEW = 8
 """States at which the noise of a function is measured."""
 _COORDINATES = 6
 """Of a twist."""
-_MOVED = 2.0
-"""Times the changes of a difference by which a potential is another that has another zero."""
 _DIGITS_LEFT = 100.0
 """Units of the last decimal that rounded answers reach at least."""
 ENERGIES = ("potential_energy", "lagrangian", "link_potential_energies")
@@ -161,16 +159,14 @@ def essential(case: Case, answers: Array, which: Any = slice(None)) -> Array:
     return rates
 
 
-def other_form(case: Case, engine: Array, slack: float | None = None) -> str:
-    """In what answers are others that are as valid, in words; "" where none are.
+def other_form(case: Case, engine: Array, slack: float) -> str:
+    """In what answers are others that are as valid, in words.
 
     Args:
         case: with the answers.
         engine: the engine's.
-        slack: relative error of what is essential in them; None where numbers are rounded.
+        slack: relative error of what is essential in them.
     """
-    if not any_other(case):
-        return ""
     if case.quantity.name in ENERGIES:
         middle = np.ravel(np.median(case.hand - engine, axis=0))
         size = float(middle[np.argmax(np.abs(middle))])
@@ -178,9 +174,9 @@ def other_form(case: Case, engine: Array, slack: float | None = None) -> str:
             "the potential has another zero (the difference is {size:.6g} J everywhere), "
             "which changes no torque"
         )
-        return said.format(size=size if slack is not None else float(f"{size:.3g}"))
+        return said.format(size=size)
     said = _("C*qd is right, but C is not Christoffel's")
-    if case.index or slack is None:
+    if case.index or slack > TOLERANCES.finite_differences:
         return said
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
@@ -319,7 +315,7 @@ def by_how_much(case: Case, engine: Array, share: float) -> tuple[str, ...]:
         "no entry is off by more than {share:.2g} % of its largest value: the step of a "
         "difference, single precision, a series or a table, numbers of few digits, or a small slip"
     ).format(share=100 * share)
-    return (*([other_form(case, engine)] if other else ()), said)
+    return (*([other_form(case, engine, share)] if other and any_other(case) else ()), said)
 
 
 def to_digits(case: Case, engine: Array) -> Excuse | None:
@@ -427,16 +423,23 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
     )
 
 
+class Answering(Numbered, Protocol):
+    """What has answers whose values are what is :func:`essential` of them, one after the other."""
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """Its answers at all states where the numbers are others; NaN where it has none."""
+
+
 def by_digits(
-    formula: Numbered, case: Case, engine: Array, which: Any = slice(None), fits: int = FITS
-) -> tuple[Excuse, Array] | None:
-    """Why answers are right, and what their numbers stand for, if those are all that is off.
+    formula: Answering, case: Case, engine: Array, which: Any = slice(None), fits: int = FITS
+) -> Excuse | None:
+    """Why a formula is right, and what its numbers stand for, if those are all that is off.
 
     Args:
-        formula: whose values are what is :func:`essential` of its answers, one after the other.
-        case: the states, and the formula's answers.
+        formula: texts, or a program.
+        case: the states, and its answers.
         engine: the engine's answers.
-        which: the states at which the formula is asked.
+        which: the states at which its values are.
         fits: sets of numbers that may be tried.
     """
     wanted = essential(case, engine[which], which)
@@ -445,18 +448,22 @@ def by_digits(
     found = stand_ins(formula, at, wanted.ravel(), scale, fits)
     if found is None:
         return None
-    return excuse_of(case, engine, rounding_remarks(found.changed, at)), found.numbers
+    meant = replace(case, hand=formula.answers(at, found.numbers))
+    return rounded_otherwise(meant, engine, rounding_remarks(found.changed, at))
 
 
-def excuse_of(case: Case, engine: Array, rounded: Iterable[str]) -> Excuse:
-    """Of rounded numbers, and of another valid form if the answers differ by more than these."""
-    gap = case.hand - engine
-    if case.quantity.name in ENERGIES:  # a constant that rounded numbers do not make
-        same = np.max(np.abs(np.median(gap, axis=0))) <= _MOVED * np.ptp(gap)
-    else:
-        same = np.max(relative_errors(case.hand, engine)) <= TOLERANCES.may_be_rounded
-    said = "" if same else other_form(case, engine)
-    return Excuse("unusual", (said, *rounded)) if said else Excuse("rounded", tuple(rounded))
+def rounded_otherwise(meant: Case, engine: Array, rounded: Iterable[str]) -> Excuse | None:
+    """The excuse of rounded numbers, if what they stand for is right, or another valid form.
+
+    Args:
+        meant: the answers with the numbers that are meant.
+        engine: the engine's answers.
+        rounded: what the numbers stand for, in words.
+    """
+    if np.max(relative_errors(meant.hand, engine)) <= TOLERANCES.formula_agrees:
+        return Excuse("rounded", tuple(rounded))
+    odd = unusual(meant, engine)
+    return odd and replace(odd, remarks=(*odd.remarks, *rounded))
 
 
 def of_bare_numbers(

@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.check.compare import error_sizes
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
 from kinlab.doctor.program.places import ProgramEdit, places
@@ -19,7 +19,7 @@ from kinlab.doctor.program.trial import quietly
 from kinlab.doctor.text.meanings import stands_for
 from kinlab.doctor.text.stand_ins import roughly
 from kinlab.doctor.text.written import Literal, beneath, inside, literal, operands
-from kinlab.doctor.verdicts import Excuse, by_digits, essential, excuse_of
+from kinlab.doctor.verdicts import Excuse, by_digits, essential, rounded_otherwise
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -75,7 +75,18 @@ class _Numbers:
 
     def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
         """What is essential of its answers; NaN where it has none."""
-        return essential(self.search.case, self._answers(numbers), self.which).ravel()
+        found = self._asked(self.which, numbers)
+        return essential(self.search.case, found, self.which).ravel()
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """Its answers at all states; NaN where it has none."""
+        return self._asked(range(len(self.search.wanted)), numbers)
+
+    def _asked(self, which: range, numbers: Array | None) -> Array:
+        with changed(self.search.trial, () if numbers is None else self.edits(numbers)):
+            found = self.search.answers(which)
+        wanted = self.search.wanted[list(which)]
+        return np.full_like(wanted, np.nan) if found is None else found
 
     @property
     def near(self) -> bool:
@@ -91,26 +102,6 @@ class _Numbers:
         gap = np.abs(now - target.ravel())
         size = TOLERANCES.formula_agrees * np.max(np.abs(target))
         return bool((gap <= _BEYOND * reach + size).all())
-
-    def right(self, numbers: Array) -> bool:
-        """Whether the program is right with other numbers, at every state."""
-        with changed(self.search.trial, self.edits(numbers)):
-            return error_now(self.search) <= TOLERANCES.formula_agrees
-
-    def _answers(self, numbers: Array | None) -> Array:
-        with changed(self.search.trial, () if numbers is None else self.edits(numbers)):
-            found = self.search.values(self.which)
-        wanted = self.search.wanted[list(self.which)]
-        return np.full_like(wanted, np.nan) if found is None else found
-
-
-def error_now(search: LineSearch) -> float:
-    """The largest relative error of a program as it stands now, in what is essential."""
-    found = search.values(range(len(search.wanted)))
-    if found is None:
-        return math.inf
-    one, other = (essential(search.case, x) for x in (found, search.wanted))
-    return float(np.max(relative_errors(one, other)))
 
 
 def of_rounded_numbers(search: LineSearch) -> Excuse | None:
@@ -135,14 +126,13 @@ def of_rounded_numbers(search: LineSearch) -> Excuse | None:
         if not own.near:
             return None
         found = by_digits(own, case, wanted, which, _WORK // turn)
-        if found is not None and own.right(found[1]):
-            return found[0]
+        if found is not None:
+            return found
         typed = [pair for pair in every if _typed(pair[1])]
         if not typed:
             return None
         places, literals = zip(*typed, strict=True)
-        told = _laid(_Numbers(search, list(places), literals, which))
-    return excuse_of(case, wanted, told) if told else None
+        return _laid(_Numbers(search, list(places), literals, which))
 
 
 def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
@@ -155,6 +145,8 @@ def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
                 above[id(part)] = inside(node, k, above.get(id(node), ""))
     for place in (*numbers(trial, search.observed), *_whole_numbers(search)):
         value = abs(place.value)
+        if not math.isfinite(value):
+            continue
         one = literal(repr(float(value)) if isinstance(place.value, float) else str(int(value)))
         if 0 < one.digits < _MOST:
             yield place, beneath(one, above.get(id(place.node), ""))
@@ -187,8 +179,8 @@ def _stands(one: Literal, meant: float) -> bool:
     return any(abs(ratio - x) <= TOLERANCES.same_relation * abs(x - 1) for x in ratios)
 
 
-def _laid(own: _Numbers) -> tuple[str, ...]:
-    """What numbers of three digits or more stand for, whichever of them make up for another."""
+def _laid(own: _Numbers) -> Excuse | None:
+    """The same of numbers of three digits or more, of which one may make up for another."""
     case, wanted = own.search.case, own.search.wanted
     target = essential(case, wanted[list(own.which)], own.which)
     scale = np.repeat(error_sizes(target), target[0].size)
@@ -200,14 +192,16 @@ def _laid(own: _Numbers) -> tuple[str, ...]:
     matrix = np.array(columns).T
     for _turn in range(_TURNS):
         if not (np.isfinite(matrix).all() and np.isfinite(now).all()):
-            return ()
+            return None
         # what cannot be told apart is laid into the roughest number
         step, *_rest = np.linalg.lstsq(matrix * reach, target.ravel() - now, rcond=1e-9)
         numbers_ = numbers_ + reach * step
         now = own.values({}, numbers_)
         if np.max(np.abs(now - target.ravel()) / scale) <= TOLERANCES.formula_agrees:
-            return _told(own.literals, numbers_.tolist(), matrix) if own.right(numbers_) else ()
-    return ()
+            told = _told(own.literals, numbers_.tolist(), matrix)
+            meant = replace(case, hand=own.answers({}, numbers_))
+            return rounded_otherwise(meant, wanted, told) if told else None
+    return None
 
 
 def _told(written: tuple[Literal, ...], meant: list[float], matrix: Array) -> tuple[str, ...]:

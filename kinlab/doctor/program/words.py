@@ -9,22 +9,19 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from kinlab.arrays import Array
-from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
-from kinlab.doctor.program.digits import error_now, of_rounded_numbers
+from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
-from kinlab.doctor.verdicts import Excuse, excuse_of
+from kinlab.doctor.verdicts import Excuse, rounded_otherwise
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -35,8 +32,7 @@ _NAMED = 2
 """Pieces of which it is said what they are."""
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
-"""Share of a number below which another one is rather the step of a difference, and of an error
-that may be left of one that was rounding."""
+"""Share of a number below which another one is rather the step of a difference."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -149,20 +145,18 @@ def _of_cuts(search: LineSearch) -> Excuse | None:
     edits = cuts(search)
     if not edits:
         return None
-    before = float(np.max(relative_errors(search.case.hand, search.wanted)))
-    steps = min(TOLERANCES.finite_differences, _STEP * before) if search.differences else 0.0
-    allowed = max(TOLERANCES.formula_agrees, steps)
     told = _("{place} rounds: `{piece}`")
     said = [told.format(place=_line(edit, search.trial), piece=_text(edit.node)) for edit in edits]
     try:
         with quietly(), changed(search.trial, edits):
-            exact = error_now(search) <= allowed
-            more = None if exact else of_rounded_numbers(search)
+            answers = search.answers(range(len(search.wanted)))
+            meant = None if answers is None else replace(search.case, hand=answers)
+            more = rounded_otherwise(meant, search.wanted, said) if meant is not None else None
+            if more is None and (more := of_rounded_numbers(search)) is not None:
+                more = replace(more, remarks=(*said, *more.remarks))
     except NoProgramError:
         return None
-    if more is not None:
-        return replace(more, remarks=(*said, *more.remarks))
-    return excuse_of(search.case, search.wanted, said) if exact else None
+    return more
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:

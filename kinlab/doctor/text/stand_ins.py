@@ -29,6 +29,8 @@ _WHOLE = 3
 """Digits of a whole number that may be a rounding, if not a near one, where no other number is."""
 FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
+_DEGREES = ("90", "180", "270", "360")
+"""Whole numbers that are none but themselves: near pi in an angle there is always another."""
 _SETTLED = 1e-9
 """Part of its digits by which a number moves no more."""
 
@@ -99,7 +101,7 @@ def stand_ins(
 
 def roughly(one: Literal) -> Literal:
     """A whole number as one of two digits: 2 as 2.0, and nothing but places behind 25 in 250."""
-    if one.exponent or not one.whole:
+    if one.exponent or not one.whole or one.text in _DEGREES:
         return one
     if not one.half:
         return literal(f"{one.text}.0") if one.value > 1 else one

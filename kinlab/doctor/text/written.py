@@ -223,10 +223,12 @@ class Together:
 
     Attributes:
         texts: the formulas.
-        made: what counts of their values, (N, K), as (N, ...).
+        shape: that of the answer they are.
+        made: what counts of their values, (N, *shape).
     """
 
     texts: tuple[Written, ...]
+    shape: tuple[int, ...]
     made: Callable[[Array], Array]
 
     @cached_property
@@ -236,10 +238,14 @@ class Together:
 
     def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
         """What is made of the values, one after the other."""
+        return self.made(self.answers(at, numbers)).ravel()
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """The values themselves."""
         ends = np.cumsum([len(text.literals) for text in self.texts])
         parts = [None] * len(self.texts) if numbers is None else np.split(numbers, ends[:-1])
         columns = [text.values(at, own) for text, own in zip(self.texts, parts, strict=True)]
-        return self.made(np.stack(columns, axis=1)).ravel()
+        return np.stack(columns, axis=1).reshape(-1, *self.shape)
 
 
 def _called(trees: Iterable[ast.expr]) -> set[str]:
