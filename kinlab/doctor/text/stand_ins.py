@@ -31,8 +31,6 @@ FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
 _DEGREES = ("90", "180", "270", "360")
 """Whole numbers that are none but themselves: near pi in an angle there is always another."""
-_SETTLED = 1e-9
-"""Part of its digits by which a number moves no more."""
 
 
 class Numbered(Protocol):
@@ -246,7 +244,7 @@ class _Search:
             moved = moved + step
             if np.max(np.abs(moved)) > 10.0:
                 return None
-            if np.max(np.abs(step)) <= _SETTLED:
+            if np.max(np.abs(step)) <= TOLERANCES.same_number:  # of their digits
                 break
         final = numbers(moved)
         gap = np.abs(self.target - self.text.values(self.at, final)) / self.scale
@@ -279,7 +277,8 @@ class _Search:
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
         few = max(2, min((one.digits for one, _x in changed if not one.whole), default=_WHOLE))
-        near = [abs(x - one.value) <= CLOSE * abs(x) for one, x in changed]
+        lone = not np.ptp(self.target)  # an answer of one number is what it says
+        near = [not lone and abs(x - one.value) <= CLOSE * abs(x) for one, x in changed]
         pairs = zip(changed, near, strict=True)
         if not changed or not all(
             self.meanings.credible(*pair, 2 if close else few) for pair, close in pairs
