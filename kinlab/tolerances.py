@@ -159,8 +159,13 @@ class Tolerances:
     """Relative error up to which a function may be right with rounded constants inside; nobody
     can tell."""
 
-    may_be_rounded: float = 1e-2
-    """Relative error of a program up to which it is asked whether its numbers are rounded."""
+    nearly_throughout: float = 0.02
+    """The same of every entry by its own largest value, at every state: no slip but an exact one is
+    looked for in what is nearer than rounded numbers, coarse steps and tables may be."""
+
+    may_be_rounded: float = 0.06
+    """Relative error of a program up to which it is asked whether its numbers are rounded: half a
+    unit of a number with two digits is up to 5 %."""
 
     left_of_slip: float = 1e-4
     """Share of what was off that may be left once a slip is undone, in a function that takes

@@ -6,6 +6,7 @@ named too, the simplest first.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import Any
 
@@ -86,8 +87,8 @@ def examine(
     near = excuse is not None and excuse.form == "near"
     if near and not written:
         first = next(case.looked_through(engine, TOLERANCES.formula_agrees), None)
-        if first is not None and first.digits:
-            excuse, near = Excuse("rounded", first.digits), False
+        if first is not None and first.excuse is not None:
+            excuse, near = first.excuse, False
     if same and excuse is None:
         values, errors = case.hand, relative_errors(case.hand, engine)
         worst = float(np.max(errors))
@@ -104,7 +105,11 @@ def examine(
         partial = (said.format(first=repr(alone[0]), last=repr(alone[1])),)
     ranked = _ranked(causes)
     right_parts = proved(case, engine, split) if same and not ranked else ()
-    close = not ranked and not written and (near or (same and worst <= TOLERANCES.nearly_agrees))
+    off = verdicts.largest_share(case, engine) if same and not written else math.inf
+    near = near or worst <= TOLERANCES.nearly_agrees or off <= TOLERANCES.nearly_throughout
+    close = same and not ranked and not written and near
+    if close:
+        right_parts += verdicts.by_how_much(case, engine, off)
     k = first_largest(errors)
     where, furthest = _worst(values, engine, k, case) if same else ("shape", ())
     return Diagnosis(
@@ -152,10 +157,10 @@ def _explained(
     read = same and not written and (silent is not None or not bare)
     looking = case.looked_through(engine, _left(worst)) if read else iter(())
     program: WrongLines | None = next(looking, None)
-    if program is not None and program.digits is not None:
-        if program.digits:
-            return [], (), Excuse("rounded", program.digits), None
-        program = next(looking, None)
+    # so near, what leaves the numbers open is no cause: rounding would be laid into it
+    near = read and verdicts.largest_share(case, engine) <= TOLERANCES.nearly_throughout
+    if program is not None and program.excuse is not None:
+        return [], (), program.excuse, None
     edited = _exactly(program.causes, worst) if program else []
     rough: list[Cause] = []
     ways: Ready = []
@@ -185,7 +190,7 @@ def _explained(
         if ways and program is None and all(cause.cost > _FETCHED for cause in exact):
             every += map(_as_steps, taken_at_one_joint(loose, ways))
             exact = [c for c in every if c.error_after <= TOLERANCES.formula_agrees]
-        rough = [] if exact else _roughly(every, worst)
+        rough = [] if exact or near else _roughly(every, worst)
         if program is not None and not edited:
             limit = _PLAIN if program.written_out else _FETCHED
             if all(cause.cost > limit for cause in exact or rough):
@@ -201,15 +206,18 @@ def _explained(
         by_values = program is None or program.written_out
         if not written and by_values and off and (not causes or len(off) <= RIVALS):
             found, partial = slips_in(case, off, written)
-            causes += found
+            causes += [c for c in found if not near or "coefficient" not in c.kinds]
     # one number of the robot that is another may look like a slip in every term it stands in
     listed = all({*c.kinds} == {"coefficient"} or len(c.kinds) > _SLIPS for c in causes)
     if listed and same and not written and not signs:
-        changed = list(other_numbers(case, None if program is None else program.numbers))
+        held = None if program is None else program.numbers
+        changed = [] if near else list(other_numbers(case, held))
         causes = [*singly(case, changed)] or rough or causes
-        near = None if causes else verdicts.to_digits(case, engine)
-        if near is not None:
-            return [], (), near, None
+        excuse = None if causes else verdicts.to_digits(case, engine)
+        if excuse is not None:
+            return [], (), excuse, None
+    if near:
+        return causes, (), None, None
     split: Apart | None = None
     if not causes and not signs:
         split = apart(case)

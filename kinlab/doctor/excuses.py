@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries
@@ -20,7 +21,7 @@ from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
 from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
-from kinlab.doctor.text.written import Beyond, Written
+from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
@@ -44,8 +45,7 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
     for said_of_all in rounding.roundings(case, engine, not written):
         return case, Excuse("rounded", said_of_all)
     if not written:
-        odd = verdicts.unusual_and_rounded(case, engine)
-        return case, odd or verdicts.of_coefficients(case, engine)
+        return case, verdicts.of_coefficients(case, engine)
     remarks: list[str] = []
     settled, right = np.array(case.hand), True
     for entry in entries(case, engine):
@@ -70,37 +70,13 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
 
 def _unusual_and_rounded(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
     """A potential's other zero, or another valid C, with rounded numbers in it."""
-    name, every = case.quantity.name, entries(replace(case, hand=engine), engine)
-    texts = {entry.local: written.get(entry.label) for entry in every}
-    at = verdicts.numbers_at(case)
-    rows: list[tuple[Written, Array]] = []
-    said = ""
-    only = next(iter(texts.values())) if len(texts) == 1 else None
-    if only is not None and name in verdicts.ENERGIES:
-        same = {field.name: getattr(only, field.name) for field in fields(only)}
-        rows = [(Beyond(**same), engine.ravel() - engine.ravel()[0])]
-        said = verdicts.zero_moved(float(f"{np.median(case.hand - engine):.3g}"))
-    elif name == "coriolis_matrix" and len(texts) == engine[0].size > 1 and not case.index:
-        torques = np.einsum("nij,nj->ni", engine, case.arguments["v"])
-        rates = range(engine.shape[2])
-        for i, torque in enumerate(torques.T):
-            row = [texts.get((i, j)) for j in rates]
-            first = row[0]
-            if first is None or any(one is None for one in row):
-                return None
-            sum_ = " + ".join(f"({one.text})*qd{j + 1}" for j, one in enumerate(row) if one)
-            rows.append((replace(first, text=sum_), torque))
-        said = _("C*qd is right, but C is not Christoffel's")
-    remarks: list[str] = []
-    for text, wanted in rows:
-        scale = error_sizes(wanted[:, None])
-        gap = np.abs(text.values(at) - wanted) / scale
-        if np.max(gap) > TOLERANCES.formula_agrees:
-            changed = stand_ins(text, at, wanted, scale)
-            if changed is None:
-                return None
-            remarks += rounding_remarks(changed, at)
-    return Excuse("unusual", (said, *dict.fromkeys(remarks))) if rows else None
+    every = entries(replace(case, hand=engine), engine)
+    texts = tuple(written[entry.label] for entry in every if entry.label in written)
+    shape = engine.shape[1:]
+    if not verdicts.any_other(case) or len(texts) != math.prod(shape):
+        return None
+    whole = Together(texts, shape, lambda x: verdicts.essential(case, x))
+    return verdicts.by_digits(whole, case, engine)
 
 
 def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] | None:
@@ -108,9 +84,9 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     if text is None:
         return None
     at = verdicts.numbers_at(case)
-    changed = stand_ins(text, at, entry.engine, entry.scale)
-    if changed is not None:
-        return [*text.rounded, *rounding_remarks(changed, at)]
+    found = stand_ins(text, at, entry.engine, entry.scale)
+    if found is not None:
+        return [*text.rounded, *rounding_remarks(found.changed, at)]
     derived = derivation_of(case)
     if derived is None:
         return None

@@ -6,24 +6,23 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import Any, Protocol
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.quantities.registry import quantity as find_quantity
-from kinlab.doctor.changes import AnswerEntry, Case, entries
+from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
     coefficients_rounded,
     data_rounded,
-    gravity_rounded,
     same_values,
-    weightless,
 )
 from kinlab.doctor.terms import anywhere, as_rods, names_for
-from kinlab.doctor.text.stand_ins import FREE, fitted
+from kinlab.doctor.text.stand_ins import FITS, FREE, Numbered, fitted, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
@@ -119,12 +118,10 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
         engine: the engine's answers.
         slack: relative error that finite differences may leave, beside rounding.
     """
-    name, hand = case.quantity.name, case.hand
+    hand = case.hand
     if hand.shape != engine.shape or not np.isfinite(hand).all():
         return None
-    if name == "coriolis_matrix" and len(case.index) <= 1:
-        return _another_split(case, engine, slack)
-    if name == "christoffel" and not case.index:
+    if case.quantity.name == "christoffel" and not case.index:
         symmetric = 0.5 * (hand + np.swapaxes(hand, 2, 3))
         if same_values(symmetric, engine, engine, slack):
             said = _(
@@ -132,40 +129,62 @@ def unusual(case: Case, engine: Array, slack: float = 0.0) -> Excuse | None:
                 "sums over qd_j qd_k are the same"
             )
             return Excuse("unusual", (said,))
-    if name in ENERGIES:
-        gap = hand - engine
-        constant = gap[:1]
-        if same_values(gap, np.broadcast_to(constant, gap.shape), engine, slack):
-            size = float(np.ravel(constant)[np.argmax(np.abs(np.ravel(constant)))])
-            return Excuse("unusual", (zero_moved(size),))
-    return None
-
-
-def zero_moved(size: float) -> str:
-    """What is said of a potential that is another everywhere, by so much."""
-    said = _(
-        "the potential has another zero (the difference is {size:.6g} J everywhere), "
-        "which changes no torque"
-    )
-    return said.format(size=size)
-
-
-def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
-    speeds = case.arguments["v"]
-    torques = np.einsum("n...j,nj->n...", engine, speeds)
-    mine = np.einsum("n...j,nj->n...", case.hand, speeds)
-    if not same_values(mine, torques, torques, slack):
+    if not any_other(case):
         return None
-    if case.index:
-        return Excuse("unusual", (_("C*qd is right, but C is not Christoffel's"),))
+    mine, theirs = essential(case, hand), essential(case, engine)
+    size = engine if case.quantity.name in ENERGIES else theirs
+    same = same_values(mine, theirs, size, slack)
+    return Excuse("unusual", (other_form(case, engine, slack),)) if same else None
+
+
+def any_other(case: Case) -> bool:
+    """Whether other answers are right, too, if what is :func:`essential` of them is the same."""
+    split = case.quantity.name == "coriolis_matrix" and len(case.index) <= 1
+    return split or case.quantity.name in ENERGIES
+
+
+def essential(case: Case, answers: Array, which: Any = slice(None)) -> Array:
+    """What is the same of all valid formulas: of a C its C qd, of a potential what it changes by.
+
+    Args:
+        case: the states.
+        answers: the answers at some of them.
+        which: those states.
+    """
+    if not any_other(case):
+        return answers
+    if case.quantity.name in ENERGIES:
+        return np.asarray(answers - np.mean(answers, axis=0))
+    rates: Array = np.einsum("n...j,nj->n...", answers, case.arguments["v"][which])
+    return rates
+
+
+def other_form(case: Case, engine: Array, slack: float) -> str:
+    """In what answers are others that are as valid, in words.
+
+    Args:
+        case: with the answers.
+        engine: the engine's.
+        slack: relative error of what is essential in them.
+    """
+    if case.quantity.name in ENERGIES:
+        middle = np.ravel(np.median(case.hand - engine, axis=0))
+        size = float(middle[np.argmax(np.abs(middle))])
+        said = _(
+            "the potential has another zero (the difference is {size:.6g} J everywhere), "
+            "which changes no torque"
+        )
+        return said.format(size=size)
+    said = _("C*qd is right, but C is not Christoffel's")
+    if case.index or slack > TOLERANCES.finite_differences:
+        return said
     slope = engine + np.swapaxes(engine, 1, 2)  # Mdot
     rest = slope - case.hand - np.swapaxes(case.hand, 1, 2)
-    said = _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
     if same_values(rest, np.zeros_like(rest), slope, slack):
-        said = _(
+        return _(
             "C*qd is right, but C is not Christoffel's: Mdot - 2C is skew-symmetric all the same"
         )
-    return Excuse("unusual", (said,))
+    return _("C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric")
 
 
 # -------- The same asked of one entry of a case
@@ -174,12 +193,13 @@ def _another_split(case: Case, engine: Array, slack: float) -> Excuse | None:
 def numbers_at(case: Case) -> dict[str, Array]:
     """Values of every name of the robot at the case's states."""
     count = len(next(iter(case.arguments.values())))
-    words = vocabulary(case.robot.table).values if case.robot.table is not None else {}
+    table = table_of(case.robot)
+    words = vocabulary(table).values if table is not None else {}
     at = {name: np.full(count, float(value)) for name, value in words.items()}
     for argument, stack in case.arguments.items():
         if argument in LETTERS:
-            for i in range(case.robot.n):
-                at[f"{LETTERS[argument]}{i + 1}"] = stack[:, i]
+            for i, column in enumerate(stack.T):
+                at[f"{LETTERS[argument]}{i + 1}"] = column
         if argument == "wrench":
             at |= dict(zip(WRENCH, stack.T, strict=True))
     return at
@@ -276,6 +296,26 @@ def _own_error(case: Case, engine: Array) -> tuple[float, float]:
     most = float(np.max(own))
     error = float(np.max(gap / np.where(own > TOLERANCES.formula_agrees * most, own, most)))
     return error, most
+
+
+def largest_share(case: Case, engine: Array) -> float:
+    """The largest error of what is essential, by the largest value of its own entry."""
+    if case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
+        return math.inf
+    own = replace(case, hand=essential(case, case.hand))
+    return _own_error(own, essential(case, engine))[0]
+
+
+def by_how_much(case: Case, engine: Array, share: float) -> tuple[str, ...]:
+    """Of a function that is nearly right, how nearly, and what that may be."""
+    if not share <= TOLERANCES.nearly_throughout:
+        return ()
+    other = max(relative_errors(case.hand, engine)) > TOLERANCES.may_be_rounded
+    said = _(
+        "no entry is off by more than {share:.2g} % of its largest value: the step of a "
+        "difference, single precision, a series or a table, numbers of few digits, or a small slip"
+    ).format(share=100 * share)
+    return (*([other_form(case, engine, share)] if other and any_other(case) else ()), said)
 
 
 def to_digits(case: Case, engine: Array) -> Excuse | None:
@@ -383,6 +423,49 @@ def of_coefficients(case: Case, engine: Array) -> Excuse | None:
     )
 
 
+class Answering(Numbered, Protocol):
+    """What has answers whose values are what is :func:`essential` of them, one after the other."""
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """Its answers at all states where the numbers are others; NaN where it has none."""
+
+
+def by_digits(
+    formula: Answering, case: Case, engine: Array, which: Any = slice(None), fits: int = FITS
+) -> Excuse | None:
+    """Why a formula is right, and what its numbers stand for, if those are all that is off.
+
+    Args:
+        formula: texts, or a program.
+        case: the states, and its answers.
+        engine: the engine's answers.
+        which: the states at which its values are.
+        fits: sets of numbers that may be tried.
+    """
+    wanted = essential(case, engine[which], which)
+    at = numbers_at(case)
+    scale = np.repeat(error_sizes(wanted), wanted[0].size)
+    found = stand_ins(formula, at, wanted.ravel(), scale, fits)
+    if found is None:
+        return None
+    meant = replace(case, hand=formula.answers(at, found.numbers))
+    return rounded_otherwise(meant, engine, rounding_remarks(found.changed, at))
+
+
+def rounded_otherwise(meant: Case, engine: Array, rounded: Iterable[str]) -> Excuse | None:
+    """The excuse of rounded numbers, if what they stand for is right, or another valid form.
+
+    Args:
+        meant: the answers with the numbers that are meant.
+        engine: the engine's answers.
+        rounded: what the numbers stand for, in words.
+    """
+    if np.max(relative_errors(meant.hand, engine)) <= TOLERANCES.formula_agrees:
+        return Excuse("rounded", tuple(rounded))
+    odd = unusual(meant, engine)
+    return odd and replace(odd, remarks=(*odd.remarks, *rounded))
+
+
 def of_bare_numbers(
     text: Written, entry: AnswerEntry, derived: Derivation, case: Case
 ) -> list[str] | None:
@@ -392,45 +475,6 @@ def of_bare_numbers(
     shown = [one for one in text.literals if not one.exponent]
     found = _of_function(entry, derived, case, shown)
     return found[0] or None if found is not None else None
-
-
-def unusual_and_rounded(case: Case, engine: Array) -> Excuse | None:
-    """A function's potential with another zero, or another valid C, and rounded numbers in it."""
-    name, hand = case.quantity.name, case.hand
-    if hand.shape != engine.shape or not np.isfinite(hand).all() or case.index:
-        return None
-    if name == "coriolis_matrix":
-        said = _("C*qd is right, but C is not Christoffel's")
-        torques, mine = (np.einsum("nij,nj->ni", x, case.arguments["v"]) for x in (engine, hand))
-        asked = replace(case, quantity=find_quantity("coriolis_torques"), hand=mine)
-        found = of_coefficients(asked, torques)
-    elif name in ENERGIES and engine.ndim == 1:
-        weight = engine - replace(case, robot=weightless(case.robot)).answer(())
-        columns = np.stack([np.ones(len(hand)), weight], axis=1)
-        (size, _share), *_rest = np.linalg.lstsq(columns, hand - (engine - weight), rcond=None)
-        said = zero_moved(float(f"{size:.3g}"))
-        asked = replace(case, hand=hand - size)
-        weighed = gravity_rounded(asked, engine)
-        found = Excuse("rounded", weighed) if weighed else _of_potential(case, engine)
-    else:
-        return None
-    if found is None or found.form != "rounded":
-        return None
-    return Excuse("unusual", (said, *found.remarks))
-
-
-def _of_potential(case: Case, engine: Array) -> Excuse | None:
-    """Coefficients that are the derived ones, rounded, beside a constant that is any."""
-    derived = derivation_of(case)
-    if derived is None or not searchable(derived.polys.item()):
-        return None
-    right = derived.tree(derived.polys.item())
-    words = joint_functions([right], names_for(derived, case.quantity.arguments))
-    at = numbers_at(case)
-    rows = [np.broadcast_to(tree.evaluate(w, at), case.hand.shape) for w in words]
-    moving = [row for row in rows if np.ptp(row) > 0] + [np.ones(len(case.hand))]
-    mine, *_rest = np.linalg.lstsq(np.array(moving).T, case.hand - engine, rcond=None)
-    return of_coefficients(replace(case, hand=case.hand - mine[-1]), engine)
 
 
 def _of_function(

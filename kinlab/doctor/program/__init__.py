@@ -3,6 +3,7 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
+``cuts``          Where a program rounds by itself: ``round``, single precision, whole numbers
 ``digits``        Whether a program is right to the digits that its numbers are written with
 ``elsewhere``     The lines of a function that lives in another process
 ``kept``          What a program's data hold, so that what an edited run writes into them is put

@@ -2,24 +2,33 @@
 
 from __future__ import annotations
 
+import ast
 import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.check.compare import relative_errors
-from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.check.compare import error_sizes
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
+from kinlab.doctor.program.places import ProgramEdit, places
 from kinlab.doctor.program.repair import LineSearch, changed
 from kinlab.doctor.program.trial import quietly
 from kinlab.doctor.text.meanings import stands_for
-from kinlab.doctor.text.written import literal
+from kinlab.doctor.text.stand_ins import roughly
+from kinlab.doctor.text.written import Literal, beneath, inside, literal, operands
+from kinlab.doctor.verdicts import Excuse, by_digits, essential, rounded_otherwise
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
 _WORK = 15_000_000
 """Operations of numbers, or what amounts to them, that may be done."""
+_COMPILING = 30
+"""What compiling one node amounts to."""
 _FEWEST = 3
-"""Digits from which on a number may be another one rounded."""
+"""Digits from which on a number may be another one rounded, though others make up for it."""
 _MOST = 7
 """Digits from which on it is not."""
 _PARTS = 1000
@@ -28,95 +37,180 @@ _ENDLESS = (1 / 3, 2 / 3, 1 / 6, 1 / 12, math.pi, math.pi / 2, math.sqrt(2), mat
 """Numbers that nobody can type in full."""
 _TOLD = 3
 """Numbers that are told."""
+_SIDES = (ast.List, ast.Tuple, ast.Assign, ast.Return, ast.UnaryOp)
+"""Around a whole number that is one, and no index or size."""
+_FARTHEST, _BEYOND = 0.25, 1.2
+"""Share of the largest answer, and times what numbers reach within their digits, that may be off:
+at first sight."""
 _TURNS = 4
 """Steps in which the numbers are solved for."""
 _OVER = 3
 """Equations asked for each number that is solved for."""
 
 
-def nearly(hand: Array, wanted: Array) -> bool:
-    """Whether answers differ by so little that rounded numbers may be all of it."""
-    if hand.shape != wanted.shape:
-        return False
-    return bool(np.max(relative_errors(hand, wanted)) <= TOLERANCES.may_be_rounded)
+@dataclass(eq=False)
+class _Numbers:
+    """A program by its numbers, as a text is by its own.
 
-
-def to_the_digits(search: LineSearch) -> tuple[str, ...]:
-    """What rounded numbers of a program stand for, where they are all that is wrong, in words.
-
-    Each number may move by half of its last digit; with all of them so the program must be right
-    at every state.
+    Attributes:
+        search: the program, and what it should answer.
+        places: where the numbers are.
+        literals: what is written there, without signs.
+        which: the states at which it is asked.
     """
-    places = [place for place in numbers(search.trial, search.observed) if _typed(place)]
-    size = int(np.prod(search.wanted.shape[1:], initial=1))
-    count = min(len(search.wanted), -(-_OVER * len(places) // size) + 1)
-    run = max(search.amounts.values()) // len(search.watched)
-    if not places or len(places) * count * run > _WORK:
-        return ()
+
+    search: LineSearch
+    places: list[NumberPlace]
+    literals: tuple[Literal, ...]
+    which: range
+
+    def edits(self, numbers: Array) -> tuple[ProgramEdit, ...]:
+        """Other numbers put into the program."""
+        changed_ = [
+            (place, math.copysign(value, place.value))
+            for place, one, value in zip(self.places, self.literals, numbers.tolist(), strict=True)
+            if value != one.value
+        ]
+        return tuple(together(changed_))
+
+    def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """What is essential of its answers; NaN where it has none."""
+        found = self._asked(self.which, numbers)
+        return essential(self.search.case, found, self.which).ravel()
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """Its answers at all states; NaN where it has none."""
+        return self._asked(range(len(self.search.wanted)), numbers)
+
+    def _asked(self, which: range, numbers: Array | None) -> Array:
+        with changed(self.search.trial, () if numbers is None else self.edits(numbers)):
+            found = self.search.answers(which)
+        wanted = self.search.wanted[list(which)]
+        return np.full_like(wanted, np.nan) if found is None else found
+
+    @property
+    def near(self) -> bool:
+        """Whether all numbers together, each within its digits, may change the answers so much."""
+        target = essential(self.search.case, self.search.wanted[list(self.which)], self.which)
+        now, numbers_ = self.values({}), np.array([one.value for one in self.literals])
+        reach = np.zeros(len(now))
+        for one, step in zip(self.literals, np.diag(numbers_ / _PARTS), strict=True):
+            most = max(one.reach, roughly(one).half)
+            if most:
+                moved = np.abs(self.values({}, numbers_ + step) - now) / np.max(step)
+                reach += most * np.where(np.isfinite(moved), moved, 0.0)
+        gap = np.abs(now - target.ravel())
+        size = TOLERANCES.formula_agrees * np.max(np.abs(target))
+        return bool((gap <= _BEYOND * reach + size).all())
+
+
+def of_rounded_numbers(search: LineSearch) -> Excuse | None:
+    """Why a program is right, if rounded numbers are all that is off in it."""
+    case, wanted = search.case, search.wanted
+    if case.hand.shape != wanted.shape:
+        return None
+    gap = np.abs(essential(case, case.hand) - essential(case, wanted))
+    if not np.max(gap) <= _FARTHEST * np.max(np.abs(essential(case, wanted))):
+        return None
+    every = [*_literals(search)]
+    size = int(np.prod(wanted.shape[1:], initial=1))
+    which = range(min(len(wanted), -(-_OVER * len(every) // size) + 2))
+    run = max(search.amounts.values()) * len(which) // len(search.watched)
+    trees = sum(search.nodes)
+    turn = (run + _COMPILING * trees) * (len(every) + 1)
+    if not every or turn > _WORK:
+        return None
     with quietly():
-        return _solved(search, places, range(count))
+        places, literals = zip(*every, strict=True)
+        own = _Numbers(search, list(places), literals, which)
+        if not own.near:
+            return None
+        found = by_digits(own, case, wanted, which, _WORK // turn)
+        if found is not None:
+            return found
+        typed = [pair for pair in every if _typed(pair[1])]
+        if not typed:
+            return None
+        places, literals = zip(*typed, strict=True)
+        return _laid(_Numbers(search, list(places), literals, which))
 
 
-def _typed(place: NumberPlace) -> bool:
-    """Whether a number may be another one rounded."""
-    if not isinstance(place.value, float):
-        return False
-    one = literal(f"{abs(place.value):.15g}")
-    endless = any(0 < abs(one.value - x) <= 1.0001 * one.half for x in _ENDLESS)
-    return _FEWEST <= one.digits < _MOST or (endless and one.digits >= _FEWEST)
+def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
+    """The numbers of a program that somebody typed, and what each is."""
+    trial = search.trial
+    above: dict[int, str] = {}
+    for tree in trial.trees:
+        for node in nodes(tree):
+            for k, part in enumerate(operands(node) if isinstance(node, ast.expr) else ()):
+                above[id(part)] = inside(node, k, above.get(id(node), ""))
+    for place in (*numbers(trial, search.observed), *_whole_numbers(search)):
+        value = abs(place.value)
+        if not math.isfinite(value):
+            continue
+        one = literal(repr(float(value)) if isinstance(place.value, float) else str(int(value)))
+        if 0 < one.digits < _MOST:
+            yield place, beneath(one, above.get(id(place.node), ""))
 
 
-def _stands(value: float, meant: float) -> bool:
+def _whole_numbers(search: LineSearch) -> Iterator[NumberPlace]:
+    """Whole numbers that are no index: the entries of ``[0, -64, 0]``, the side of an equation."""
+    known = {id(place.node) for place in numbers(search.trial, search.observed)}
+    for part, tree in enumerate(search.trial.trees):
+        for here in places(part, tree):
+            value = getattr(here.node, "value", None)
+            if type(value) is not int or id(here.node) in known:
+                continue
+            index = any(isinstance(one, ast.Subscript | ast.Slice) for one in here.above)
+            if isinstance(here.parent, _SIDES) and not index and search.observed.of(here.node):
+                yield NumberPlace(value, part, here.node, "value", here.node)
+
+
+def _typed(one: Literal) -> bool:
+    """Whether a number may be rounded where several in one term may be."""
+    return one.half > 0 and one.seen >= _FEWEST
+
+
+def _stands(one: Literal, meant: float) -> bool:
     """Whether one number is another to its digits, or was multiplied by one that is: ``0.333``."""
-    one = literal(f"{abs(value):.15g}")
-    if abs(meant - value) <= one.half * (1 + TOLERANCES.same_relation):
+    if abs(meant - one.value) <= one.half * (1 + TOLERANCES.same_relation):
         return True
     ratios = (exact / round(exact, digits) for exact in _ENDLESS for digits in range(3, _MOST))
-    return any(abs(meant / value - x) <= TOLERANCES.same_relation * abs(x - 1) for x in ratios)
+    ratio = meant / one.value
+    return any(abs(ratio - x) <= TOLERANCES.same_relation * abs(x - 1) for x in ratios)
 
 
-def _solved(search: LineSearch, places: list[NumberPlace], which: range) -> tuple[str, ...]:
-    units = [abs(place.value) / _PARTS for place in places]
-    reach = np.array([literal(f"{abs(place.value):.15g}").half for place in places]) / units
-    own = search.values(which)
-    if own is None:
-        return ()
-    columns: list[Array] = []
-    for place, unit in zip(places, units, strict=True):
-        with changed(search.trial, (place.edit(place.value + unit),)):
-            there = search.values(which)
-        if there is None:
-            return ()
-        columns.append((there - own).ravel())
-    matrix, wanted = np.array(columns).T, search.wanted[list(which)].ravel()
-    moved, now = np.zeros(len(places)), own.ravel()
+def _laid(own: _Numbers) -> Excuse | None:
+    """The same of numbers of three digits or more, of which one may make up for another."""
+    case, wanted = own.search.case, own.search.wanted
+    target = essential(case, wanted[list(own.which)], own.which)
+    scale = np.repeat(error_sizes(target), target[0].size)
+    numbers_ = np.array([one.value for one in own.literals])
+    reach = np.array([one.half for one in own.literals])
+    now = own.values({}, None)
+    steps = np.diag(numbers_ / _PARTS)
+    columns = [(own.values({}, numbers_ + step) - now) / np.max(step) for step in steps]
+    matrix = np.array(columns).T
     for _turn in range(_TURNS):
+        if not (np.isfinite(matrix).all() and np.isfinite(now).all()):
+            return None
         # what cannot be told apart is laid into the roughest number
-        step, *_rest = np.linalg.lstsq(matrix * reach, wanted - now, rcond=1e-9)
-        moved = moved + reach * step
-        meant = [
-            place.value + unit * x
-            for place, unit, x in zip(places, units, moved.tolist(), strict=True)
-        ]
-        edits = tuple(place.edit(value) for place, value in zip(places, meant, strict=True))
-        with changed(search.trial, edits):
-            there = search.values(which)
-            if there is not None and search.error_of(there, which) <= TOLERANCES.formula_agrees:
-                good = search.error(range(len(search.wanted))) <= TOLERANCES.formula_agrees
-                return _told(places, meant, matrix) if good else ()
-        if there is None:
-            return ()
-        now = there.ravel()
-    return ()
+        step, *_rest = np.linalg.lstsq(matrix * reach, target.ravel() - now, rcond=1e-9)
+        numbers_ = numbers_ + reach * step
+        now = own.values({}, numbers_)
+        if np.max(np.abs(now - target.ravel()) / scale) <= TOLERANCES.formula_agrees:
+            told = _told(own.literals, numbers_.tolist(), matrix)
+            meant = replace(case, hand=own.answers({}, numbers_))
+            return rounded_otherwise(meant, wanted, told) if told else None
+    return None
 
 
-def _told(places: list[NumberPlace], meant: list[float], matrix: Array) -> tuple[str, ...]:
-    pairs = [(float(place.value), value) for place, value in zip(places, meant, strict=True)]
+def _told(written: tuple[Literal, ...], meant: list[float], matrix: Array) -> tuple[str, ...]:
+    pairs = [*zip(written, meant, strict=True)]
     if not all(_stands(*pair) for pair in pairs):
         return ()
-    far = sorted(pairs, key=lambda pair: -abs(pair[1] / pair[0] - 1))
-    off = [p for p in far if abs(p[1] - p[0]) > TOLERANCES.same_relation * abs(p[0])][:_TOLD]
-    if not off or np.linalg.matrix_rank(matrix) < len(places):
+    far = sorted(pairs, key=lambda pair: -abs(pair[1] / pair[0].value - 1))
+    off = [p for p in far if abs(p[1] / p[0].value - 1) > TOLERANCES.same_relation][:_TOLD]
+    if not off or np.linalg.matrix_rank(matrix) < len(written):
         return (_("the program's numbers are right to the digits that they are written with"),)
-    told = (stands_for(f"{abs(old):.15g}", f"{abs(new):.7g}") for old, new in off)
+    told = (stands_for(old.text, f"{abs(new):.7g}") for old, new in off)
     return tuple(dict.fromkeys(told))

@@ -533,7 +533,18 @@ class LineSearch:
         return sum(len(np.unique(np.round(one, 9), axis=0)) for one in rows)
 
     def values(self, which: Sequence[int]) -> Array | None:
-        """The answers of the program as it stands now, None where it has none."""
+        """The answers of the program as it stands now, None where it has none.
+
+        A potential's are moved to the right zero.
+        """
+        values = self.answers(which)
+        if values is None or self.case.quantity.name not in ANY_ZERO:
+            return values
+        _stacks, wanted = self._few if which is self.first else self._at(which)
+        return np.asarray(values + (wanted[:1] - values[:1]))
+
+    def answers(self, which: Sequence[int]) -> Array | None:
+        """The same as they are."""
         quantity, robot = self.case.quantity, self.case.robot
         stacks, wanted = self._few if which is self.first else self._at(which)
         try:
@@ -546,9 +557,7 @@ class LineSearch:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):
             return None
-        if values.shape != wanted.shape:
-            return None
-        return values + (wanted[:1] - values[:1]) if quantity.name in ANY_ZERO else values
+        return values if values.shape == wanted.shape else None
 
 
 def _named_numbers(trial: Trial) -> set[int]:

@@ -13,13 +13,15 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
-from kinlab.doctor.program.digits import nearly, to_the_digits
+from kinlab.doctor.program.cuts import cuts
+from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
 from kinlab.doctor.program.trial import FailedError, FieldChange, NoProgramError, Trial, quietly
+from kinlab.doctor.verdicts import Excuse, rounded_otherwise
 from kinlab.host.language import N_, _
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -95,14 +97,13 @@ class WrongLines:
         written_out: whether the program is a formula written out: no loops, no products of
             matrices.
         numbers: those that the program comes to at the first state, sorted.
-        digits: of a program that is nearly right, what its rounded numbers stand for, if they are
-            all of it; nothing else is said then.
+        excuse: of a program that is right all the same, why; nothing else is said then.
     """
 
     causes: list[Cause]
     written_out: bool
     numbers: Array
-    digits: tuple[str, ...] | None = None
+    excuse: Excuse | None = None
 
 
 def lines(
@@ -110,7 +111,7 @@ def lines(
 ) -> Iterator[WrongLines]:
     """What single lines of a function should be, and then, if asked on, what several should.
 
-    Of a function that is nearly right, before them, what its rounded numbers stand for.
+    Of a function that is right with rounded numbers nothing but that.
 
     Args:
         function: the hand formula; nothing comes of one that cannot be read.
@@ -128,14 +129,35 @@ def lines(
     if not search.faithful:
         return
     numbers = search.observed.numbers(len(search.states))
-    if nearly(case.hand, wanted):
-        yield WrongLines([], search.written_out, numbers, to_the_digits(search))
+    excuse = _of_cuts(search) or of_rounded_numbers(search)
+    if excuse is not None:
+        yield WrongLines([], search.written_out, numbers, excuse)
+        return
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
         yield WrongLines([cause_of(one, search) for one in told], search.written_out, numbers)
+
+
+def _of_cuts(search: LineSearch) -> Excuse | None:
+    """Why a program is right that rounds by itself, if nothing else is off but rounded numbers."""
+    edits = cuts(search)
+    if not edits:
+        return None
+    told = _("{place} rounds: `{piece}`")
+    said = [told.format(place=_line(edit, search.trial), piece=_text(edit.node)) for edit in edits]
+    try:
+        with quietly(), changed(search.trial, edits):
+            answers = search.answers(range(len(search.wanted)))
+            meant = None if answers is None else replace(search.case, hand=answers)
+            more = rounded_otherwise(meant, search.wanted, said) if meant is not None else None
+            if more is None and (more := of_rounded_numbers(search)) is not None:
+                more = replace(more, remarks=(*said, *more.remarks))
+    except NoProgramError:
+        return None
+    return more
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:

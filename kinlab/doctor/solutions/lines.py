@@ -171,18 +171,9 @@ class _Line:
             return []
         at = {word: x[few] for word, x in self.at.items()}
         scale = np.full(int(few.sum()), np.max(np.abs(target[few])))
-        changed = stand_ins(self.text, at, target[few], scale)
-        if changed is None:
-            return []
-        alike = {one.text: value for one, value in changed}
-        ways = (
-            [alike.get(number.text, number.value) for number in self.text.literals],
-            [
-                next((value for one, value in changed if one is number), number.value)
-                for number in self.text.literals
-            ],
-        )
-        return rounding_remarks(changed, at) if any(map(self._right, map(np.array, ways))) else []
+        meant = stand_ins(self.text, at, target[few], scale)
+        right = meant is not None and self._right(meant.numbers)
+        return rounding_remarks(meant.changed, at) if meant is not None and right else []
 
     def off(self, target: Array) -> tuple[list[str], Cause | None]:
         """The one number that is off, beside others that are only rounded."""

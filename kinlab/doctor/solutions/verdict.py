@@ -109,8 +109,8 @@ def judged(
         own = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
         edited: list[Cause] = []
         for some in own.looked_through(engine, TOLERANCES.formula_agrees):
-            if some.digits:
-                return replace(right, form="rounded", remarks=some.digits)
+            if some.excuse is not None:
+                return replace(right, form=some.excuse.form, remarks=some.excuse.remarks)
             if edited := some.causes:
                 break
         causes = _causes(found, engine)

@@ -164,11 +164,8 @@ def _with_right_parts(text: Written, parts: Sequence[Part]) -> Written:
     exact: dict[int, str] = {}
     for at, target in parts:
         scale = np.full_like(target, np.max(np.abs(target)))
-        for one, value in stand_ins(text, at, target, scale) or ():
-            alike = [
-                k
-                for k, (other, _span) in enumerate(zip(text.literals, text.spans, strict=False))
-                if other is one
-            ]
-            exact.update(dict.fromkeys(alike, repr(value)))
+        meant = stand_ins(text, at, target, scale)
+        for k, (one, _span) in enumerate(zip(text.literals, text.spans, strict=False)):
+            if meant is not None and meant.numbers[k] != one.value:
+                exact[k] = repr(float(meant.numbers[k]))
     return _with_exact(text, exact) if exact else text

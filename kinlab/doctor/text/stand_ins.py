@@ -11,13 +11,14 @@ error could be laid between them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.meanings import Meanings, stands_for
-from kinlab.doctor.text.written import Literal, Written, literal
+from kinlab.doctor.text.meanings import CLOSE, Meanings, stands_for
+from kinlab.doctor.text.written import Literal, literal
 from kinlab.tolerances import TOLERANCES
 
 STEPS, FREE = 12, 120
@@ -25,30 +26,57 @@ STEPS, FREE = 12, 120
 _ROUGHLY = 2
 """Digits of all a text's numbers where a whole number of one digit may be a rounding, too."""
 _WHOLE = 3
-"""Digits of a whole number that may be a rounding where no other number is rounded."""
-_FITS = 200
+"""Digits of a whole number that may be a rounding, if not a near one, where no other number is."""
+FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
+_DEGREES = ("90", "180", "270", "360")
+"""Whole numbers that are none but themselves: near pi in an angle there is always another."""
+
+
+class Numbered(Protocol):
+    """What has values with its numbers as they are written, and with others: a text, a program."""
+
+    @property
+    def literals(self) -> tuple[Literal, ...]:
+        """Its numbers."""
+
+    def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """Its values where the numbers are others, in the order of the literals."""
+
+
+@dataclass(frozen=True, eq=False)
+class Meant:
+    """What numbers stand for.
+
+    Attributes:
+        changed: the literals that must be other numbers, each with its number.
+        numbers: those of all literals.
+    """
+
+    changed: list[tuple[Literal, float]]
+    numbers: Array
 
 
 def stand_ins(
-    text: Written, at: Mapping[str, Array], target: Array, scale: Array
-) -> list[tuple[Literal, float]] | None:
+    text: Numbered, at: Mapping[str, Array], target: Array, scale: Array, fits: int = FITS
+) -> Meant | None:
     """Numbers within the digits of those written that give the wanted values at every state.
 
     Args:
-        text: the formula.
+        text: the formula, or several, or a program.
         at: values of the robot's names, (N,) each.
         target: the values wanted, (N,).
         scale: what differences are relative to, (N,).
+        fits: sets of numbers that may be tried.
 
     Returns:
-        The literals that must be other numbers, each with its number; None where none will do.
+        The numbers; None where none will do.
     """
     literals = text.literals
     inexact = [k for k, one in enumerate(literals) if one.half > 0]
     if not inexact or len(inexact) > FREE:
         return None
-    search = _Search(text, literals, at, target, scale, Meanings.at(at))
+    search = _Search(text, literals, at, target, scale, Meanings.at(at), fits)
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
     found = search.among(rest)
@@ -59,25 +87,27 @@ def stand_ins(
     alike = [k for k in inexact if k in rest or literals[k].digits > 1]
     if len(rest) < len(alike):
         found = search.among(alike)
-    if found is None and max(literals[k].digits for k in inexact) <= _ROUGHLY:
-        rough = tuple(map(_roughly, literals))  # 2 beside 35 and 13 may be 1.962
-        search = _Search(text, rough, at, target, scale, search.meanings)
+    if found is None and max(literals[k].seen for k in inexact) <= _ROUGHLY:
+        rough = tuple(map(roughly, literals))  # 2 beside 35 and 13 may be 1.962
+        search = _Search(text, rough, at, target, scale, search.meanings, fits)
         more = [k for k, one in enumerate(rough) if one.half > 0 and not literals[k].half]
-        found = search.among(sorted((*alike, *more)))
-        shown = {f"{one.text}.0": one for one in literals}
-        return found and [(shown.get(one.text, one), x) for one, x in found]
+        found = search.among(sorted({*alike, *more}))
+        shown = dict(zip(map(id, rough), literals, strict=True))
+        return found and Meant([(shown[id(one)], x) for one, x in found.changed], found.numbers)
     return found
 
 
-def _roughly(one: Literal) -> Literal:
-    """A whole number of one digit as one of two."""
-    if one.exponent or one.half or one.text not in "23456789":
+def roughly(one: Literal) -> Literal:
+    """A whole number as one of two digits: 2 as 2.0, and nothing but places behind 25 in 250."""
+    if one.exponent or not one.whole or one.text in _DEGREES:
         return one
-    return literal(f"{one.text}.0")
+    if not one.half:
+        return literal(f"{one.text}.0") if one.value > 1 else one
+    return replace(one, half=0.5 * 10.0 ** (one.digits - max(one.seen, _ROUGHLY)))
 
 
 def fitted(
-    text: Written,
+    text: Numbered,
     at: Mapping[str, Array],
     target: Array,
     free: list[int],
@@ -120,15 +150,15 @@ def fitted(
 class _Search:
     """Looks for numbers that explain a text's difference."""
 
-    text: Written
+    text: Numbered
     literals: tuple[Literal, ...]
     at: Mapping[str, Array]
     target: Array
     scale: Array
     meanings: Meanings
-    left: int = _FITS
+    left: int
 
-    def among(self, rest: list[int]) -> list[tuple[Literal, float]] | None:
+    def among(self, rest: list[int]) -> Meant | None:
         """The same where those numbers may be others, alike ones together or each by itself."""
         groups: dict[str, list[int]] = {}
         for k in rest:
@@ -136,7 +166,7 @@ class _Search:
         singly = [self.explained([members]) for members in groups.values()]
         found = [way for way in singly if way]
         if found:
-            return min(found, key=lambda way: self.oddness(*way[0]))
+            return min(found, key=lambda way: self.oddness(*way.changed[0]))
         for ways in (list(groups.values()), [[k] for k in rest]):
             together = self.explained(ways) if len(ways) > 1 else None
             if together is not None:
@@ -147,14 +177,14 @@ class _Search:
         """Of several numbers that would do, the one that means something, and the roughest."""
         return self.meanings.named(value) == f"{value:.7g}", one.digits
 
-    def explained(self, ways: list[list[int]]) -> list[tuple[Literal, float]] | None:
+    def explained(self, ways: list[list[int]]) -> Meant | None:
         """The literals that change, where each group moves as one within its digits, or None."""
         found = self._settled(ways, {}, False)
         return found if found is not None else self._settled(ways, {}, True)
 
     def _settled(
         self, ways: list[list[int]], fixed: Mapping[int, float], own: bool
-    ) -> list[tuple[Literal, float]] | None:
+    ) -> Meant | None:
         """The same with the values of some groups settled, by their first member.
 
         An error that could lie in either of two numbers is laid into neither unless all of them
@@ -201,18 +231,21 @@ class _Search:
             if not np.isfinite(rest).all():
                 return None
             slopes = [
-                (self.text.values(self.at, numbers(moved + step)) - values)
-                / (float(np.max(step)) * self.scale)
-                for step in steps
+                (self.text.values(self.at, numbers(moved + one)) - values)
+                / (float(np.max(one)) * self.scale)
+                for one in steps
             ]
             turned = np.array(slopes).reshape(len(free), -1).T
             if not np.isfinite(turned).all():
                 return None
             if not free or np.max(np.abs(rest)) <= 0.01 * TOLERANCES.formula_agrees:
                 break
-            moved = moved + np.linalg.lstsq(turned, rest, rcond=1e-10)[0]
+            step = np.linalg.lstsq(turned, rest, rcond=1e-10)[0]
+            moved = moved + step
             if np.max(np.abs(moved)) > 10.0:
                 return None
+            if np.max(np.abs(step)) <= TOLERANCES.same_number:  # of their digits
+                break
         final = numbers(moved)
         gap = np.abs(self.target - self.text.values(self.at, final)) / self.scale
         fits = np.isfinite(gap).all() and float(np.max(gap)) <= TOLERANCES.formula_agrees
@@ -234,9 +267,7 @@ class _Search:
         k = int(np.argmax(np.round(share, 6)))
         return free[k] if share[k] > TOLERANCES.same_relation else None
 
-    def _sound(
-        self, ways: list[list[int]], numbers: Array, alone: bool
-    ) -> list[tuple[Literal, float]] | None:
+    def _sound(self, ways: list[list[int]], numbers: Array, alone: bool) -> Meant | None:
         """What changes, if every number means something or, as is allowed, is alone in its term."""
         literals = self.literals
         changed = [
@@ -245,20 +276,34 @@ class _Search:
             if abs(numbers[k] - literals[k].value)
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
-        few = min((one.digits for one, _x in changed if not one.whole), default=_WHOLE)
-        if not changed or not all(self.meanings.credible(*pair, max(2, few)) for pair in changed):
+        few = max(2, min((one.digits for one, _x in changed if not one.whole), default=_WHOLE))
+        lone = not np.ptp(self.target)  # an answer of one number is what it says
+        near = [not lone and abs(x - one.value) <= CLOSE * abs(x) for one, x in changed]
+        pairs = zip(changed, near, strict=True)
+        if not changed or not all(
+            self.meanings.credible(*pair, 2 if close else few) for pair, close in pairs
+        ):
             return None
         bare = [
             k
             for k, one in enumerate(literals)
-            if one.half > 0 and not self.meanings.holds(float(numbers[k]))
+            if one.half > 0
+            and not self.meanings.holds(float(numbers[k]))
+            and self._felt(k, numbers)
         ]
         if bare and not (alone and told_apart(self.text, self.at, numbers, bare)):
             return None
-        return changed
+        return Meant(changed, numbers)
+
+    def _felt(self, k: int, numbers: Array) -> bool:
+        """Whether a number changes anything: the zero of a potential does not."""
+        moved = numbers.copy()
+        moved[k] += _step(self.literals[k])
+        gap = self.text.values(self.at, moved) - self.text.values(self.at, numbers)
+        return not np.max(np.abs(gap) / self.scale) <= TOLERANCES.no_effect
 
 
-def told_apart(text: Written, at: Mapping[str, Array], numbers: Array, free: list[int]) -> bool:
+def told_apart(text: Numbered, at: Mapping[str, Array], numbers: Array, free: list[int]) -> bool:
     """Whether no error of one number could be another's: not of one term or one coefficient.
 
     Args:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -59,6 +59,11 @@ class Literal:
         found = _DECIMAL.fullmatch(self.text)
         shown = "".join(found.group(1, 2)) if found else self.text
         return len(shown.lstrip("0"))
+
+    @property
+    def seen(self) -> int:
+        """Digits that are no mere places: of 43600 three."""
+        return len(self.text.rstrip("0").lstrip("0")) if self.whole else self.digits
 
     @property
     def reach(self) -> float:
@@ -127,17 +132,15 @@ class Written:
         found: list[Literal] = []
         for place in self._used:
             source = self.symbols.get(place, self.text) if place else self.text
-            for constant, exact in _constants(self._trees[place]):
+            for constant, above in constants(self._trees[place]):
                 piece = source.encode()[constant.col_offset : constant.end_col_offset]
-                shown = piece.decode()
-                one = literal(shown)
-                found.append(Literal(shown, one.value, 0.0, True) if exact else one)
+                found.append(beneath(literal(piece.decode()), above))
         return tuple(found)
 
     @cached_property
     def spans(self) -> list[tuple[int, int]]:
         """Where the numbers of the text itself stand, which are the first of :attr:`literals`."""
-        inside = (constant for constant, _exact in _constants(self._trees[""]))
+        inside = (constant for constant, _above in constants(self._trees[""]))
         return [(one.col_offset, one.end_col_offset or 0) for one in inside]
 
     @cached_property
@@ -210,18 +213,39 @@ class Written:
 
     @cached_property
     def _starts(self) -> list[int]:
-        counts = [sum(1 for _ in _constants(self._trees[place])) for place in self._used]
+        counts = [sum(1 for _ in constants(self._trees[place])) for place in self._used]
         return [int(k) for k in np.concatenate([[0], np.cumsum(counts)[:-1]])]
 
 
 @dataclass(frozen=True, eq=False)
-class Beyond(Written):
-    """A formula by what it changes from its first value: a potential, wherever its zero is."""
+class Together:
+    """Several formulas, and what is made of their values: of a matrix C, say, C qd.
+
+    Attributes:
+        texts: the formulas.
+        shape: that of the answer they are.
+        made: what counts of their values, (N, *shape).
+    """
+
+    texts: tuple[Written, ...]
+    shape: tuple[int, ...]
+    made: Callable[[Array], Array]
+
+    @cached_property
+    def literals(self) -> tuple[Literal, ...]:
+        """The numbers of all of them."""
+        return tuple(one for text in self.texts for one in text.literals)
 
     def values(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
-        """The differences from the first state's value."""
-        found = super().values(at, numbers)
-        return np.asarray(found - found[0])
+        """What is made of the values, one after the other."""
+        return self.made(self.answers(at, numbers)).ravel()
+
+    def answers(self, at: Mapping[str, Array], numbers: Array | None = None) -> Array:
+        """The values themselves."""
+        ends = np.cumsum([len(text.literals) for text in self.texts])
+        parts = [None] * len(self.texts) if numbers is None else np.split(numbers, ends[:-1])
+        columns = [text.values(at, own) for text, own in zip(self.texts, parts, strict=True)]
+        return np.stack(columns, axis=1).reshape(-1, *self.shape)
 
 
 def _called(trees: Iterable[ast.expr]) -> set[str]:
@@ -241,10 +265,25 @@ def operands(node: ast.expr) -> list[ast.expr]:
     return []
 
 
-def _constants(node: ast.expr, exact: bool = False) -> Iterator[tuple[ast.Constant, bool]]:
-    """The numbers in the order in which they are read, and whether each is an exponent."""
+def constants(node: ast.expr, above: str = "") -> Iterator[tuple[ast.Constant, str]]:
+    """The numbers in the order in which they are read, and what each is: see :func:`beneath`."""
     if isinstance(node, ast.Constant):
-        yield node, exact
+        yield node, above
     for k, part in enumerate(operands(node)):
-        power = k == 1 and isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow)
-        yield from _constants(part, exact or power)
+        yield from constants(part, inside(node, k, above))
+
+
+def inside(node: ast.AST, k: int, above: str = "") -> str:
+    """What numbers are that stand in an operand: an exponent, a divisor's factors, or nothing."""
+    operator = node.op if isinstance(node, ast.BinOp) else None
+    if above == "exponent" or (k == 1 and isinstance(operator, ast.Pow)):
+        return "exponent"
+    factor = above == "divisor" and isinstance(operator, ast.Mult)
+    return "divisor" if factor or (k == 1 and isinstance(operator, ast.Div)) else ""
+
+
+def beneath(one: Literal, above: str) -> Literal:
+    """A number as an exponent, or as a divisor: of these whole ones are what they say."""
+    if above == "exponent" or (above and one.whole):
+        return replace(one, half=0.0, exponent=above == "exponent")
+    return one

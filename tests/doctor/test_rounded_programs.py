@@ -1,0 +1,153 @@
+"""Programs with rounded numbers, and programs that round: right, as a text with these numbers is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+
+ARM = kl.DHTable(
+    "arm",
+    "standard",
+    [
+        kl.DHLink("revolute", a=0.45, mass=3.2, com=(-0.24, 0, 0), inertia=np.diag([0, 0.1, 0.1])),
+        kl.DHLink("revolute", a=0.37, mass=1.7, com=(-0.21, 0, 0)),
+    ],
+    gravity=(0, -9.81, 0),
+)
+"""m2 l1 lc2 = 0.1224; the weights are 14.09697 and 2.66832."""
+C = """
+def f(q, v):
+    h = {h}*np.sin(q[1])
+    return np.array([[{first}, -h*v[1]], [h*v[0], 0]])
+"""
+V = """
+def f(q):
+    return {a}*np.sin(q[0]) + {b}*np.sin(q[0] + q[1]) + 100
+"""
+WEIGHT = """
+def f(q):
+    a, b = {a}*np.cos(q[0]), {b}*np.cos(q[0] + q[1])
+    return np.array([a + b, b])
+"""
+CUT = """
+def C(x):
+    return {cut}
+
+def f(q):
+    g2 = {b}*C(q[0] + q[1])
+    return np.array([14.09697*C(q[0]) + g2, g2])
+"""
+
+
+def judged(quantity: str, text: str, **numbers: object) -> kl.Diagnosis:
+    space = {"np": np}
+    exec("import numpy as np\n" + text.format(**numbers), space)  # noqa: S102
+    return kl.diagnose(ARM, quantity, space["f"], samples=30)
+
+
+@pytest.mark.parametrize(
+    ("h", "first", "right"),
+    [
+        ("0.122", "-2*h*v[1]", True),
+        ("0.12", "-2*h*v[1]", True),
+        ("0.124", "-2*h*v[1]", False),
+        ("0.122", "-3*h*v[1]", False),
+        ("0.122", "2*h*v[1]", False),
+    ],
+)
+def test_another_c_with_a_rounded_number(h: str, first: str, right: bool) -> None:
+    found = judged("coriolis_matrix", C, h=h, first=first)
+    assert found.agrees == right
+    if right:
+        assert found.form == "unusual"
+        said = "C*qd is right, but C is not Christoffel's: Mdot - 2C is not skew-symmetric"
+        assert found.remarks == (said, f"{h} stands for 0.1224")
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "right"),
+    [
+        ("14.1", "2.67", True),
+        ("14", "2.7", True),
+        ("14.2", "2.67", False),
+        ("14", "2.9", False),
+        ("14", "-2.7", False),
+    ],
+)
+def test_another_zero_with_rounded_numbers(a: str, b: str, right: bool) -> None:
+    found = judged("potential_energy", V, a=a, b=b)
+    assert found.agrees == right
+    if right:
+        assert found.form == "unusual"
+        assert "another zero (the difference is 100 J everywhere)" in found.remarks[0]
+        assert f"{b} stands for 2.66832" in found.remarks
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "right"),
+    [("14", "2.7", True), ("14.1", "2.7", True), ("15", "2.7", False), ("14", "2.6", False)],
+)
+def test_two_digits_and_whole_numbers(a: str, b: str, right: bool) -> None:
+    found = judged("gravity_torques", WEIGHT, a=a, b=b)
+    assert found.agrees == right
+    if right:
+        assert found.form == "rounded"
+        assert "2.7 stands for 2.66832" in found.remarks
+
+
+def test_whole_numbers_with_places_behind() -> None:
+    heavy = kl.DHTable(
+        "crane",
+        "standard",
+        [kl.DHLink("revolute", a=14.0, mass=3200.0, com=(-7.0, 0, 0))],
+        gravity=(0, -9.81, 0),
+    )
+    assert kl.diagnose(heavy, "V", "220000*sin(q1) + 100", samples=30).form == "unusual"
+    assert not kl.diagnose(heavy, "V", "210000*sin(q1) + 100", samples=30).agrees
+
+
+def test_a_divisor_is_no_rounding() -> None:
+    """m l^2 / 12 is not the inertia of something that is nearly a rod."""
+    nearly = kl.DHTable(
+        "nearly",
+        "standard",
+        [kl.DHLink("revolute", a=1.0, mass=12.0, inertia=np.diag([0, 1.01, 1.01]))],
+    )
+    assert not kl.diagnose(nearly, "M11", "m1*l1^2/12", samples=20).agrees
+
+
+@pytest.mark.parametrize(
+    ("cut", "b", "piece"),
+    [
+        ("round(np.cos(x)*4096)/4096", "2.66832", "round(np.cos(x)*4096)"),
+        ("float(np.float16(np.cos(x)))", "2.66832", "np.float16(np.cos(x))"),
+        ("np.asarray(np.cos(x)).astype(np.float16)", "2.66832", "astype(np.float16)"),
+        ("round(np.cos(x)*4096)/4096", "2.67", "round(np.cos(x)*4096)"),
+    ],
+)
+def test_a_program_that_rounds_is_right_with_rounded_numbers(cut: str, b: str, piece: str) -> None:
+    found = judged("gravity_torques", CUT, cut=cut, b=b)
+    assert found.agrees and found.form == "rounded"
+    assert found.remarks[0].startswith("line 4 (in C) rounds: ")
+    assert piece in found.remarks[0]
+    assert ("2.67 stands for 2.66832" in found.remarks) == (b == "2.67")
+    assert not judged("gravity_torques", CUT, cut=cut.replace("cos", "sin"), b=b).agrees
+
+
+def test_what_rounds_far_too_much_is_wrong() -> None:
+    assert not judged("gravity_torques", CUT, cut="int(np.cos(x)*4)/4", b="2.66832").agrees
+
+
+def test_of_what_is_nearly_right_it_is_said_how_nearly() -> None:
+    text = """
+def V(q):
+    return 14.09697*np.sin(q[0]) + 2.66832*np.sin(q[0] + q[1])
+
+def f(q):
+    return np.array([(V(q + 1e-2*e) - V(q))/1e-2 for e in np.eye(2)])
+"""
+    found = judged("gravity_torques", text)
+    assert found.grade == "not sure" and not found.causes
+    assert any("no entry is off by more than 0.5" in one for one in found.proved)
