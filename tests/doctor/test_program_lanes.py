@@ -134,7 +134,7 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
         # what changes how often a loop turns is lost, and said to be
         assert len(followed) > 0.8 * len(placed)
         assert sum(not close[k] and not lost[k] for k in placed) < 0.03 * len(placed)
-        apart = lanes.woven.inside(len(tried))
+        apart = lanes.woven.inside()
         pairs = [(i, j) for i in followed for j in followed if i < j and not apart[i, j]]
         pairs = [pairs[k] for k in dice.permutation(len(pairs))[:200]]
         both = lanes.answers(np.array(pairs))

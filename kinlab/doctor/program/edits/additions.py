@@ -74,6 +74,10 @@ class Scope:
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
+        for kind in trial.classes.values():
+            for name, told in getattr(kind, "__annotations__", {}).items():
+                if told in (float, "float"):
+                    self.attributes.setdefault(name, ())
         every = {name for one in trial.trees for name in names(one, ast.Load)}
         here = {*names(tree, ast.Load)}
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}

@@ -51,7 +51,7 @@ class Woven:
     """
 
     def __init__(self, trial: Trial, observed: Observed, edits: Edits) -> None:
-        self.observed = observed
+        self.observed, self._count = observed, len(edits)
         self._above: dict[int, Spot] = {}
         self._lists: dict[int, tuple[ast.AST, str]] = {}
         for tree in trial.trees:
@@ -115,9 +115,9 @@ class Woven:
                 return path
             spot = self._above[id(parent)]
 
-    def inside(self, count: int) -> Any:
-        """Which of so many edits are in one another, (count, count)."""
-        found = np.zeros((count, count), dtype=bool)
+    def inside(self) -> Any:
+        """Which edits are in one another, (E, E)."""
+        found = np.zeros((self._count, self._count), dtype=bool)
         at: dict[Key, list[int]] = defaultdict(list)
         for number, path in self._at:
             at[path[0]].append(number)

@@ -7,6 +7,7 @@ another are told from their pairs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from itertools import islice
 from typing import Any
@@ -27,8 +28,8 @@ _SOUND = 0.6
 """Share of the edits that lanes must follow, for what they tell to be of use."""
 _WITHIN = 200
 """Edits of which one may be in the other."""
-_THREE = 480
-"""Edits of which any three may go together."""
+_THREE, _KEPT = 600, 6_000_000
+"""Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
 _ALL, _LEAST = 100_000_000, 20_000_000
@@ -71,7 +72,8 @@ class Together:
                 break
         size = known.rows.shape[1] * self.count // len(search.first)
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
-        self.both = np.full((_THREE, _THREE, size), np.nan)
+        self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
+        self.both = np.full((self.three, self.three, size), np.nan)
         self.chosen: list[Any] = []
         self.marks: list[Array] = []
 
@@ -85,7 +87,7 @@ class Together:
         size = np.maximum(1.0, np.abs(self.known.rows[:count]).max(axis=1))
         placed = np.isin(np.arange(count), [*self.lanes.placed])
         self.sound = np.flatnonzero((gap <= self.known.near * size) & placed)
-        self.within = self.lanes.woven.inside(count)
+        self.within = self.lanes.woven.inside()
         return len(self.sound) >= _SOUND * count
 
     def _rows(self, chosen: Any, count: int | None) -> Array | None:
@@ -154,7 +156,7 @@ class Together:
         """What pairs do, for threes: of the likeliest all, of others one number."""
         self.chosen.append(chosen)
         self.marks.append(rows @ self.weights)
-        few = np.flatnonzero((chosen < _THREE).all(axis=1))
+        few = np.flatnonzero((chosen < self.three).all(axis=1))
         one, other = chosen[few].T
         self.both[one, other] = self.both[other, one] = rows[few]
 
@@ -189,7 +191,7 @@ class Together:
 
     def _of_pairs(self) -> Iterator[Chosen]:
         """Three of the likeliest of which each two may act on one another."""
-        few = self.sound[self.sound < _THREE]
+        few = self.sound[self.sound < self.three]
         size = len(self.weights)
         both, each = self.both[np.ix_(few, few)], self.known.rows[few, :size]
         goal = self.known.goal[:size]
