@@ -148,8 +148,13 @@ def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
         if not math.isfinite(value):
             continue
         one = literal(repr(float(value)) if isinstance(place.value, float) else str(int(value)))
-        if 0 < one.digits < _MOST:
+        if 0 < one.digits < _MOST or _endless(one):
             yield place, beneath(one, above.get(id(place.node), ""))
+
+
+def _endless(one: Literal) -> bool:
+    """Whether a number is one that nobody can type in full, to however many digits."""
+    return any(0 < abs(one.value - exact) <= one.half for exact in _ENDLESS)
 
 
 def _whole_numbers(search: LineSearch) -> Iterator[NumberPlace]:
