@@ -202,6 +202,9 @@ class Tolerances:
     same_relation: float = 1e-7
     """Relative difference below which a solved number is the one that a relation gives."""
 
+    typed_endless: float = 1e-6
+    """Relative difference up to which a typed number of many digits is pi, a third, a root of 2."""
+
     solved_angle: float = 1e-7
     """rad. Slack of an angle that is solved for from exact poses."""
 

@@ -151,3 +151,26 @@ def f(q):
     found = judged("gravity_torques", text)
     assert found.grade == "not sure" and not found.causes
     assert any("no entry is off by more than 0.5" in one for one in found.proved)
+
+
+@pytest.mark.parametrize("pi", ["3.1415927", "3.141593", "3.1416"])
+def test_pi_to_however_many_digits(pi: str) -> None:
+    text = f"""
+def f(q):
+    turned = {pi}/2 - q[0] - q[1]
+    g2 = 2.66832*np.sin(turned)
+    return np.array([14.09697*np.cos(q[0]) + g2, g2])
+"""
+    found = judged("gravity_torques", text)
+    assert found.form == "rounded", str(found)
+    assert "stands for pi" in str(found)
+
+
+def test_of_pi_a_digit_that_is_another_is_wrong() -> None:
+    text = """
+def f(q):
+    turned = 3.1425927/2 - q[0] - q[1]
+    g2 = 2.66832*np.sin(turned)
+    return np.array([14.09697*np.cos(q[0]) + g2, g2])
+"""
+    assert judged("gravity_torques", text).form != "rounded"

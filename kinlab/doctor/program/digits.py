@@ -148,8 +148,18 @@ def _literals(search: LineSearch) -> Iterator[tuple[NumberPlace, Literal]]:
         if not math.isfinite(value):
             continue
         one = literal(repr(float(value)) if isinstance(place.value, float) else str(int(value)))
-        if 0 < one.digits < _MOST:
-            yield place, beneath(one, above.get(id(place.node), ""))
+        endless = _endless(one) if one.digits >= _MOST else None
+        if endless is not None or 0 < one.digits < _MOST:
+            yield place, beneath(endless or one, above.get(id(place.node), ""))
+
+
+def _endless(one: Literal) -> Literal | None:
+    """A number that nobody can type in full, as far as it is right; None of any other."""
+    for exact in _ENDLESS:
+        off = abs(one.value - exact)
+        if 0 < off <= TOLERANCES.typed_endless * exact:
+            return replace(one, half=max(one.half, off))
+    return None
 
 
 def _whole_numbers(search: LineSearch) -> Iterator[NumberPlace]:
