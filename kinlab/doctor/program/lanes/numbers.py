@@ -25,7 +25,7 @@ class LaneError(Exception):
     """A program does something with a number that no lane can follow alone."""
 
 
-class Place:
+class LaneGroup:
     """Some of the lanes: all, or those of an edit.
 
     Args:
@@ -39,8 +39,8 @@ class Place:
         self._chosen, self.which = chosen, which
         self.size = len(chosen) if which is None else len(which)
         self._edits: dict[int, Any] | None = None
-        self._inner: dict[int, Place] = {}
-        self._where: dict[Place, Any] = {}
+        self._inner: dict[int, LaneGroup] = {}
+        self._where: dict[LaneGroup, Any] = {}
 
     @property
     def edits(self) -> dict[int, Any]:
@@ -56,13 +56,13 @@ class Place:
             self._edits = {edit: lanes[start:end] for edit, start, end in parts}
         return self._edits
 
-    def inner(self, edit: int) -> Place:
+    def inner(self, edit: int) -> LaneGroup:
         """Those of the lanes here that have an edit."""
         if edit not in self._inner:
-            self._inner[edit] = Place(self._chosen, self.edits[edit])
+            self._inner[edit] = LaneGroup(self._chosen, self.edits[edit])
         return self._inner[edit]
 
-    def where(self, outer: Place) -> Any:
+    def where(self, outer: LaneGroup) -> Any:
         """At which places of an outer one these lanes are."""
         if outer.which is None:
             return self.which
@@ -79,7 +79,7 @@ class Lanes:
     """
 
     def __init__(self, chosen: Any) -> None:
-        self.all = self.here = Place(chosen)
+        self.all = self.here = LaneGroup(chosen)
         self.lost = np.zeros(len(chosen), dtype=bool)
         self.work = 0
 
@@ -90,7 +90,7 @@ class Lanes:
         known = here.edits
         if known.keys().isdisjoint(edits):
             return value
-        found: list[tuple[Place, Any]] = []
+        found: list[tuple[LaneGroup, Any]] = []
         for edit in edits:
             if edit not in known:
                 continue
@@ -104,11 +104,11 @@ class Lanes:
                 self.here = here
         return self.joined(value, found) if found else value
 
-    def lose(self, place: Place, some: Any = slice(None)) -> None:
+    def lose(self, place: LaneGroup, some: Any = slice(None)) -> None:
         """Lanes whose answers are not to be believed."""
         self.lost[some if place.which is None else place.which[some]] = True
 
-    def joined(self, value: Any, found: list[tuple[Place, Any]]) -> Any:
+    def joined(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
         """A value with what it is in some lanes."""
         if is_number(value):
             return self._number(value, found)
@@ -127,14 +127,14 @@ class Lanes:
         self._without(found, [one for one in found if one[1] is value])
         return value
 
-    def _without(self, found: list[tuple[Place, Any]], sound: list[tuple[Place, Any]]) -> None:
+    def _without(self, found: list[tuple[LaneGroup, Any]], sound: list[tuple[LaneGroup, Any]]) -> None:
         for one in found:
             if one not in sound:
                 self.lose(one[0])
 
-    def _number(self, value: Any, found: list[tuple[Place, Any]]) -> Any:
+    def _number(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
         sound = [(place, new) for place, new in found if new is not value]
-        numbers: list[tuple[Place, Any]] = []
+        numbers: list[tuple[LaneGroup, Any]] = []
         for place, new in sound:
             if isinstance(new, np.ndarray) and new.shape == ():
                 new = new[()]
@@ -152,7 +152,7 @@ class Lanes:
         self.work += _STEP + len(values) // _NUMBERS
         return Laned(values, self, self.here)
 
-    def _array(self, value: Any, found: list[tuple[Place, Any]]) -> Any:
+    def _array(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
         arrays = []
         for place, new in found:
             try:
@@ -179,7 +179,7 @@ def is_number(value: Any) -> bool:
     return isinstance(value, Laned | int | float | complex | np.number)
 
 
-def values_in(value: Any, place: Place) -> Any:
+def values_in(value: Any, place: LaneGroup) -> Any:
     """What a number is in some lanes; of one without lanes itself."""
     return value.within(place) if isinstance(value, Laned) else value
 
@@ -244,10 +244,10 @@ class Laned:
     __slots__ = ("lanes", "place", "values")
     __array_ufunc__ = None
 
-    def __init__(self, values: Any, lanes: Lanes, place: Place) -> None:
+    def __init__(self, values: Any, lanes: Lanes, place: LaneGroup) -> None:
         self.values, self.lanes, self.place = values, lanes, place
 
-    def within(self, place: Place) -> Any:
+    def within(self, place: LaneGroup) -> Any:
         """The values in some of the lanes that have any."""
         if self.place is place:
             return self.values

@@ -16,7 +16,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
-from kinlab.doctor.program.several.together import Together
+from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.several.witnesses import Witnesses
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
@@ -86,7 +86,7 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
-        together = Together(search, known)
+        together = TriedTogether(search, known)
         found = tried.likeliest(known, together.pairs())
         if not found and together.usable:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())

@@ -38,7 +38,7 @@ _NONE = -1
 """In place of an edit's number."""
 
 
-class Together:
+class TriedTogether:
     """The effects of edits of a wrong program, tried together.
 
     Args:
