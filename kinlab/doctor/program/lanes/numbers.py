@@ -71,6 +71,10 @@ class LaneGroup:
         return self._where[outer]
 
 
+Edited = list[tuple[LaneGroup, Any]]
+"""What a value is in some lanes."""
+
+
 class Lanes:
     """Which edits each lane has, and where in the program it is just now.
 
@@ -90,7 +94,7 @@ class Lanes:
         known = here.edits
         if known.keys().isdisjoint(edits):
             return value
-        found: list[tuple[LaneGroup, Any]] = []
+        found: Edited = []
         for edit in edits:
             if edit not in known:
                 continue
@@ -108,7 +112,7 @@ class Lanes:
         """Lanes whose answers are not to be believed."""
         self.lost[some if place.which is None else place.which[some]] = True
 
-    def joined(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
+    def joined(self, value: Any, found: Edited) -> Any:
         """A value with what it is in some lanes."""
         if is_number(value):
             return self._number(value, found)
@@ -127,14 +131,14 @@ class Lanes:
         self._without(found, [one for one in found if one[1] is value])
         return value
 
-    def _without(self, found: list[tuple[LaneGroup, Any]], sound: list[tuple[LaneGroup, Any]]) -> None:
+    def _without(self, found: Edited, sound: Edited) -> None:
         for one in found:
             if one not in sound:
                 self.lose(one[0])
 
-    def _number(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
+    def _number(self, value: Any, found: Edited) -> Any:
         sound = [(place, new) for place, new in found if new is not value]
-        numbers: list[tuple[LaneGroup, Any]] = []
+        numbers: Edited = []
         for place, new in sound:
             if isinstance(new, np.ndarray) and new.shape == ():
                 new = new[()]
@@ -152,7 +156,7 @@ class Lanes:
         self.work += _STEP + len(values) // _NUMBERS
         return Laned(values, self, self.here)
 
-    def _array(self, value: Any, found: list[tuple[LaneGroup, Any]]) -> Any:
+    def _array(self, value: Any, found: Edited) -> Any:
         arrays = []
         for place, new in found:
             try:
