@@ -14,11 +14,12 @@ module            what it holds
 ``read``          The functions that a formula is made of, as syntax trees, and the data they use
 ``repair``        The edits that make a program right
 ``trial``         A program run with edits in it
-``variants``        Many edits of one function compiled together
+``variants``      Many edits of one function compiled together
 ``words``         A repair in words: the line, what stands there, what should
 ``own/``          What it is made of beside its functions, and what of it may be run again
 ``edits/``        What could stand in a program instead: every edit that undoes one kind of slip
 ``grounds/``      What speaks for an edit, and against it
+``lanes/``        A program run once for many combinations of edits
 ``several/``      Two or three edits that together make a program right
 ================  =================================================================================
 """

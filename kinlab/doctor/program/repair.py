@@ -61,7 +61,7 @@ _SAME = 0.011
 """Costs that are one."""
 _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
-_ANY_ZERO = ("potential_energy", "lagrangian")
+ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
@@ -199,7 +199,7 @@ class LineSearch:
             own, hand = self.values(self.watched), self.case.hand[self.watched]
         if own is None or own.shape != hand.shape:
             return False
-        if self.case.quantity.name in _ANY_ZERO:
+        if self.case.quantity.name in ANY_ZERO:
             hand = hand + (self.wanted[:1] - hand[:1])
         size = max(float(np.max(np.abs(hand))), float(np.max(self.sizes)))
         return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size))
@@ -242,6 +242,8 @@ class LineSearch:
             every += of_table(self.trial, self.observed, self.case.robot)
             sure = as_it_is(self.trial, self.observed, self.case.robot)
             every = [edit for edit in every if edit.part != DATA or not sure(edit)]
+            named = _named_numbers(self.trial)
+            every = [edit for edit in every if not self._mirrors(edit, named)]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
@@ -421,6 +423,18 @@ class LineSearch:
             return False
         return new == -old or _is_free(new)
 
+    def _mirrors(self, edit: ProgramEdit, named: set[int]) -> bool:
+        """Whether a number that has a name, and is the robot's, would have the other sign."""
+        if edit.kind != "sign":
+            return False
+        if edit.part == DATA and edit.numbers and not edit.place:
+            old: Any = edit.numbers[0]
+        elif isinstance(edit.node, ast.Constant) and id(edit.changes[0].holder) in named:
+            old = edit.node.value
+        else:
+            return False
+        return isinstance(old, int | float) and self.is_own(old) and not self.is_own(-old)
+
     def _is_strange(self, place: NumberPlace) -> bool:
         """Whether a number of the data is none of the robot's, and none that anything may have."""
         value = abs(float(place.value))
@@ -524,7 +538,7 @@ class LineSearch:
         A potential's are moved to the right zero.
         """
         values = self.answers(which)
-        if values is None or self.case.quantity.name not in _ANY_ZERO:
+        if values is None or self.case.quantity.name not in ANY_ZERO:
             return values
         _stacks, wanted = self._few if which is self.first else self._at(which)
         return np.asarray(values + (wanted[:1] - values[:1]))
@@ -534,12 +548,28 @@ class LineSearch:
         quantity, robot = self.case.quantity, self.case.robot
         stacks, wanted = self._few if which is self.first else self._at(which)
         try:
-            values = np.asarray(self._asked(None, *stacks), dtype=float)
+            answers = np.asarray(self._asked(None, *stacks))
+            if np.iscomplexobj(answers) and np.any(answers.imag):
+                return None
+            real = answers.real if np.iscomplexobj(answers) else answers
+            values = np.asarray(real, dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):
             return None
         return values if values.shape == wanted.shape else None
+
+
+def _named_numbers(trial: Trial) -> set[int]:
+    """Where numbers hang that statements give names to."""
+    found: set[int] = set()
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Assign):
+                found.add(id(node))
+                if isinstance(node.value, ast.Tuple) and isinstance(node.targets[0], ast.Tuple):
+                    found.add(id(node.value.elts))
+    return found
 
 
 def _is_free(value: float) -> bool:

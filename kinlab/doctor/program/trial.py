@@ -120,7 +120,7 @@ class Trial:
         self._keep()
         for name, value in self.space.items():
             if value is np or value is np.cross:
-                self.space[name] = _QUICK if value is np else _cross
+                self.space[name] = QUICK if value is np else _cross
         self.trees = [
             bounded(part.tree, None if part.sets else part.function) for part in program.parts
         ]
@@ -240,6 +240,10 @@ class Trial:
         with _its_own_errors():
             for k in self._loads:
                 self._placed[k]()
+
+    def stale(self) -> None:
+        """Sees to it that the lines of the module run again before the function is asked."""
+        self._stale = bool(self._loads)
 
     @contextmanager
     def as_loaded(self) -> Iterator[None]:
@@ -414,8 +418,8 @@ def _array(*given: Any, **named: Any) -> Any:
     return found
 
 
-_QUICK = ModuleType("numpy")
-_QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
+QUICK = ModuleType("numpy")
+QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
 
 
 def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:

@@ -73,6 +73,7 @@ _WHAT = {
     "in the loop": N_("the line stands in the loop, and belongs before it"),
     "before the loop": N_("the line stands before the loop, and belongs in it"),
     "missing statement": N_("a line is missing"),
+    "missing argument": N_("an argument is missing"),
     "missing matrix": N_("the product with a rotation or another matrix is missing"),
 }
 

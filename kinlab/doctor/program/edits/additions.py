@@ -15,6 +15,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
 
 ANGLES = ("sin", "cos", "tan")
+ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan")
+PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _ODD = 0.04
@@ -37,6 +39,7 @@ class Scope:
         counters: names that count.
         ranges: what they count through.
         unused: names that are set, in the part or in the module, and used nowhere.
+        arcs: names of angles whose sine, cosine or tangent was known.
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
@@ -71,6 +74,10 @@ class Scope:
                 self._of_member(node, observed)
         for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
             self._of_object(held)
+        for kind in trial.classes.values():
+            for name, told in getattr(kind, "__annotations__", {}).items():
+                if told in (float, "float"):
+                    self.attributes.setdefault(name, ())
         every = {name for one in trial.trees for name in names(one, ast.Load)}
         here = {*names(tree, ast.Load)}
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
@@ -82,6 +89,14 @@ class Scope:
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
+        self.arcs = {
+            name
+            for node in nodes(tree)
+            if isinstance(node, ast.Assign)
+            for target in node.targets
+            for name, value in _set(target, node.value)
+            if isinstance(value, ast.Call) and called(value) in ARCS
+        }
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         for name, value in trial.program.space.items():
             if name[:1] != "_" and _is_number(value):
@@ -119,6 +134,8 @@ class Scope:
             self.keys.setdefault(key.value, shape)
 
     def _of_object(self, held: object) -> None:
+        if isinstance(held, list | tuple) and held and not _is_number(held[0]):
+            self._of_object(held[0])
         own = self.keys if isinstance(held, dict) else self.attributes
         members = held if isinstance(held, dict) else getattr(held, "__dict__", {})
         for name, value in members.items():
@@ -135,8 +152,8 @@ class Scope:
             return
         if isinstance(node, ast.Name):
             self.shapes.setdefault(node.id, seen.shape)
-            if seen.whole and seen.shape == ():
-                return
+            if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:
+                return  # it counts, and is no sign
         text = ast.unparse(node)
         if not inner.isdisjoint(names(node)) or len(text) > _LONG:
             return
@@ -336,7 +353,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
-        if entry and not isinstance(piece, ast.BinOp) and scope.dear(piece):
+        used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
+        if entry and used and not _of_a_kind(piece, node):
             continue
         dear = scope.dear(piece)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
@@ -347,6 +365,12 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
+
+
+def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:
+    """Whether a name has another number than those of an expression: ``a3`` and ``-a2``."""
+    letters = {name.rstrip("0123456789") for name in names(node)}
+    return isinstance(piece, ast.Name) and piece.id.rstrip("0123456789") in letters
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:

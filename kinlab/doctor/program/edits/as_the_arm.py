@@ -26,6 +26,8 @@ _COST = 0.96
 """Less than anything else in the numbers of a program: the table says so."""
 _ROWS = 4
 """Rows that several columns of the table may make of one."""
+_TOLD, _MOVING = 3, 2
+"""Numbers of a column that tell which of the table's it is; how many may be no numbers."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -45,9 +47,11 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
     columns = _columns_of(trial, observed)
     for name, found in columns.items():
-        if sorted(found) == [*range(table.n)]:
-            values = [found[i].value for i in range(table.n)]
-            for k, right in dict.fromkeys(_wrong(values, _columns(table))):
+        rows = sorted(found)  # of a column with None for what turns or slides, those that are told
+        if rows and rows[-1] < table.n and len(rows) >= max(_TOLD, table.n - _MOVING):
+            told = [column[rows] for column in _columns(table)]
+            for at, right in dict.fromkeys(_wrong([found[i].value for i in rows], told)):
+                k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
     for (name, k), cells in off.items():
         whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]

@@ -209,14 +209,14 @@ def numbers(trial: Trial, observed: Observed) -> Iterator[NumberPlace]:
             if not isinstance(node, ast.Constant) or observed.of(node) is None:
                 continue
             counts = type(node.value) is int and (
-                isinstance(here.parent, ast.BinOp) or _measured(here.parent)
+                isinstance(here.parent, ast.BinOp) or measured(here.parent)
             )
             if isinstance(node.value, int | float) and (counts or isinstance(node.value, float)):
                 yield NumberPlace(node.value, part, node, "value", node)
     yield from leaves(trial)
 
 
-def _measured(holder: ast.AST) -> bool:
+def measured(holder: ast.AST) -> bool:
     """A list that holds numbers with a point: a 0 in it is one of them, and no index."""
     return isinstance(holder, ast.List | ast.Tuple) and any(
         isinstance(one, ast.Constant) and isinstance(one.value, float) for one in holder.elts

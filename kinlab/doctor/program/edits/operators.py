@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from itertools import permutations
 from typing import Any
 
-from kinlab.doctor.program.edits.additions import ANGLES, Scope
+from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
+from kinlab.doctor.program.edits.data import measured
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
@@ -193,6 +194,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         for other, count in scope.functions.items():
             if other != name and count == len(node.args) and count == scope.functions.get(name):
                 yield here.within(node, "func", ast.Name(other, ast.Load()), "function", 1.1)
+        if scope.functions.get(name, 0) == len(node.args) + 1 and not node.keywords:
+            for given in scope.shapes:  # the last one has a default
+                if given not in scope.counters:
+                    args = [*node.args, ast.Name(given, ast.Load())]
+                    yield here.within(node, "args", args, "missing argument", 1.15)
     if name == "diag" and (observed.shape(node) or ())[1:] == ():
         yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
@@ -340,6 +346,8 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id:
                 yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
         return
+    if node.id in scope.arcs and scope.has_numpy:
+        yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
@@ -361,12 +369,21 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     """Another attribute of the same object: ``arm.r`` for ``arm.l``."""
     node = here.node
     shape = observed.shape(node)
-    if shape is None or not isinstance(node.value, ast.Name):
+    if shape is None:
+        return
+    for one, other in (("real", "imag"), ("imag", "real")):
+        if node.attr == one:
+            yield here.within(node, "attr", other, "function", 1.05)
+    if not isinstance(node.value, ast.Name):
         return
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
             cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
             yield here.within(node, "attr", other, "name", cost)
+    for other, known in scope.shapes.items():
+        if known == shape and other not in scope.counters and shape == ():
+            cost = 1.2 if other[:1].lower() == node.attr[:1].lower() else 1.25
+            yield here.instead(ast.Name(other, ast.Load()), "name", cost)
 
 
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
@@ -380,6 +397,10 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             for step in (1, -1):
                 yield here.within(here.node, "value", value + step, "index", 1.15)
         return
+    if value == 0 and scope.has_numpy and measured(here.parent):
+        half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
+        for turned in (half, ast.UnaryOp(ast.USub(), half)):
+            yield here.instead(turned, "number", 1.13)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new

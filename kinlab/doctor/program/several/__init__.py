@@ -8,6 +8,7 @@ module            what it holds
 ``repairs``       Two or three edits that together make a program right
 ``rest``          A wrong program asked where parts of its answer are silent: at rest, with one
                   motion alone
+``together``      Two or three edits that change the same numbers of an answer, tried in lanes
 ``witnesses``     What statements give while edits are tried: which of them are a textbook's
 ================  =================================================================================
 """

@@ -22,7 +22,7 @@ from kinlab.doctor.text.pairs import pairs_adding_up
 from kinlab.tolerances import TOLERANCES
 
 _TRIPLES = 250
-"""Edits of which any three are added up."""
+"""Edits of which any three may be in one product."""
 _PAIRED = 900
 """Edits of which any two may go together."""
 _LEADING = 40
@@ -116,15 +116,31 @@ class Effects:
 
     def adding_up(self, count: int) -> list[Chosen]:
         """Two or three edits whose effects add up to what is missing, the likeliest first."""
-        rows, goal, allowance = self.rows, self.goal, TOLERANCES.effects_add_up
-        found: list[Chosen] = []
+        allowance = TOLERANCES.effects_add_up
         if count == 2:
-            found += pairs_adding_up(rows, goal, allowance)
+            found: list[Chosen] = [*pairs_adding_up(self.rows, self.goal, allowance)]
         else:
-            for k in range(2, min(_TRIPLES, len(rows))):
-                pairs = pairs_adding_up(rows[:k], goal - rows[k], allowance)
-                found += [(k, one, two) for one, two in pairs]
+            found = self._threes(allowance)
         return sorted(found, key=self.cost)
+
+    def _threes(self, allowance: float) -> list[Chosen]:
+        """Three effects that add up to what is missing."""
+        weights = np.random.default_rng(5).uniform(0.5, 1.5, len(self.goal))
+        marks, goal = self.rows @ weights, float(self.goal @ weights)
+        order = np.argsort(marks, kind="stable")
+        line, wide = marks[order], allowance * len(weights)
+        found: list[Chosen] = []
+        for k in range(len(marks) - 2):
+            sought = goal - marks[k] - marks[k + 1 :]
+            low = np.searchsorted(line, sought - wide)
+            hits = np.flatnonzero(line[np.minimum(low, len(line) - 1)] - sought <= wide)
+            for i in hits[low[hits] < len(line)]:
+                one, last = k + 1 + int(i), int(np.searchsorted(line, sought[i] + wide, "right"))
+                for other in order[low[i] : last]:
+                    total = self.rows[[k, one, other]].sum(axis=0)
+                    if other > one and np.max(np.abs(total - self.goal)) <= allowance:
+                        found.append((k, one, int(other)))
+        return found
 
     def in_a_row(self, count: int, shape: tuple[int, int]) -> list[Chosen]:
         """Edits of factors of one product of matrices, as the answer is."""

@@ -16,6 +16,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
 from kinlab.doctor.program.several.rest import AtRest
+from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.several.witnesses import Witnesses
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
@@ -85,22 +86,33 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
+        together = TriedTogether(search, known)
+        found = tried.likeliest(known, together.pairs())
+        if not found and together.usable:
+            found = tried.likeliest(known, known.adding_up(3) + together.threes())
+        if found:
+            return self._settled(search, found)
         steps = Witnesses(search).steps(known, search.most // _WATCHING)
-        firsts = _apart([step.edit for step in steps])[: _STEPS - 1]
+        firsts = _apart([step.edit for step in steps])[: 1 if together.usable else _STEPS - 1]
         found = self._after(search, firsts)
         if found:
             return found
-        wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
-        joined = known if wider is None else known.beside(wider)
-        found = self._settled(search, tried.likeliest(joined, joined.pairs()))
+        joined = known
+        if not together.usable:
+            wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
+            joined = known if wider is None else known.beside(wider)
+            found = self._settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
-            gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:_STEPS]
+            most = 1 if together.usable else _STEPS
+            gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
             found = self._after(search, [edit for edit in gaining if edit not in firsts])
         if not found and not search.stand:
-            found = tried.likeliest(known, known.adding_up(3))
+            if not together.usable:
+                found = tried.likeliest(known, known.adding_up(3))
             if not found and pose:
                 found = tried.likeliest(known, known.in_a_row(3, _POSE))
-            found = found or tried.likeliest(joined, joined.triples())
+            if not found and not together.usable:
+                found = tried.likeliest(joined, joined.triples())
             found = self._settled(search, found)
         return found
 

@@ -1,0 +1,11 @@
+"""A program run once for many combinations of edits: each combination has a lane of its own.
+
+================  =================================================================================
+module            what it holds
+================  =================================================================================
+``functions``     What a program calls of numpy and the standard library, for numbers with lanes
+``numbers``       A number that has another value in each lane
+``run``           A program run in lanes, and what it answers in each
+``woven``         The trees of a program with all edits in them, each asked for its lanes
+================  =================================================================================
+"""

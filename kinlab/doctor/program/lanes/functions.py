@@ -1,0 +1,229 @@
+"""What a program calls of numpy and the standard library, for numbers with lanes."""
+
+from __future__ import annotations
+
+import cmath
+import functools
+import math
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.program.lanes.numbers import Laned, Lanes, values_in
+
+_OF_ONE = (
+    *("sin", "cos", "tan", "arcsin", "arccos", "arctan"),
+    *("sinh", "cosh", "tanh", "arcsinh", "arccosh", "arctanh", "exp", "log", "sqrt", "cbrt"),
+    *("square", "sign", "conj", "conjugate", "real", "imag", "angle", "abs", "absolute", "fabs"),
+    *("deg2rad", "radians", "rad2deg", "degrees"),
+)
+_OF_TWO = ("arctan2", "hypot", "power", "float_power", "divide", "true_divide", "mod")
+_MATH = {"asin": "arcsin", "acos": "arccos", "atan": "arctan", "phase": "angle"}
+_MATH_OF_TWO = {"atan2": "arctan2", "hypot": "hypot", "pow": "power", "fmod": "fmod"}
+_MADE = (
+    *("zeros", "ones", "empty", "zeros_like", "ones_like", "empty_like"),
+    *("eye", "identity", "full", "full_like"),
+)
+_ARRAYS = ("array", "asarray", "ascontiguousarray", "asanyarray")
+_AS_FLOAT = (float, np.float64, "float", "float64", "d", complex, "complex")
+
+
+def with_lanes(space: dict[str, Any], quick: ModuleType) -> dict[str, Any]:
+    """What the names of a program stand for where its numbers have lanes.
+
+    Args:
+        space: what they stand for now.
+        quick: what stands for numpy there.
+    """
+    library = _module(quick, _NUMPY | {"linalg": _module(np.linalg, _LINEAR)})
+    known: dict[int, Any] = {id(quick): library, id(np): library}
+    known[id(np.linalg)] = library.linalg
+    known[id(math)], known[id(cmath)] = _module(math, _OF_MATH), _module(cmath, _OF_MATH)
+    for module, own in ((np, _NUMPY), (quick, _NUMPY), (np.linalg, _LINEAR)):
+        known |= {id(getattr(module, name)): new for name, new in own.items()}
+    known |= {id(getattr(math, name)): new for name, new in _OF_MATH.items() if hasattr(math, name)}
+    new = {name: known[id(value)] for name, value in space.items() if id(value) in known}
+    return {"float": _as_number(float), "complex": _as_number(complex), **new}
+
+
+def _module(old: ModuleType, own: dict[str, Any]) -> Any:
+    new = ModuleType(old.__name__)
+    new.__dict__.update(vars(old), **own)
+    return new
+
+
+def _laned(value: Any) -> bool:
+    """Whether a value holds objects, as numbers with lanes are."""
+    if isinstance(value, np.ndarray):
+        return bool(value.dtype == object)
+    if isinstance(value, list | tuple):
+        return any(map(_laned, value))
+    return isinstance(value, Laned)
+
+
+def _of_one(function: Callable[[Any], Any], plain: Callable[..., Any]) -> Any:
+    """A function of each number; of those without lanes what it is anyway."""
+
+    def each(value: Any) -> Any:
+        return value.of(function) if isinstance(value, Laned) else function(value)
+
+    def asked(value: Any, *rest: Any, **named: Any) -> Any:
+        if isinstance(value, Laned):
+            return value.of(function)
+        if _laned(value):
+            return np.frompyfunc(each, 1, 1)(np.array(value, dtype=object))
+        return plain(value, *rest, **named)
+
+    return asked
+
+
+def _of_two(function: Callable[[Any, Any], Any], plain: Callable[..., Any]) -> Any:
+    def each(one: Any, other: Any) -> Any:
+        laned = one if isinstance(one, Laned) else other
+        if not isinstance(laned, Laned):
+            return function(one, other)
+        lanes = laned.lanes
+        lanes.work += lanes.here.size // 8
+        values = function(values_in(one, lanes.here), values_in(other, lanes.here))
+        return Laned(values, lanes, lanes.here)
+
+    def asked(one: Any, other: Any, *rest: Any, **named: Any) -> Any:
+        if isinstance(one, Laned) or isinstance(other, Laned):
+            if not (isinstance(one, np.ndarray | list) or isinstance(other, np.ndarray | list)):
+                return each(one, other)
+        elif not (_laned(one) or _laned(other)):
+            return plain(one, other, *rest, **named)
+        entries = (np.array(x, dtype=object) for x in (one, other))
+        return np.frompyfunc(each, 2, 1)(*entries)
+
+    return asked
+
+
+def _object(plain: Callable[..., Any]) -> Any:
+    """A new array that takes numbers with lanes."""
+
+    def asked(*given: Any, **named: Any) -> Any:
+        found = plain(*given, **named)
+        return found.astype(object) if found.dtype.kind in "fc" else found
+
+    return asked
+
+
+def _array(plain: Callable[..., Any]) -> Any:
+    """An array of what may have lanes."""
+
+    def asked(value: Any, *rest: Any, **named: Any) -> Any:
+        if not _laned(value):
+            return plain(value, *rest, **named)
+        kind = rest[0] if rest else named.pop("dtype", float)
+        if kind is not None and kind is not object and kind not in _AS_FLOAT:
+            raise TypeError("numbers with lanes are of no other type")
+        return np.array(value, dtype=object, **named)
+
+    return asked
+
+
+def _as_number(plain: Callable[..., Any]) -> Any:
+    def asked(*given: Any) -> Any:
+        if any(isinstance(one, Laned) for one in given):
+            return given[0] if len(given) == 1 else given[0] + 1j * given[1]
+        return plain(*given)
+
+    return asked
+
+
+def _stacked(lanes: Lanes, value: Any) -> Any:
+    """An array with the lanes in front."""
+    here = lanes.here
+    array = np.array(value, dtype=object)
+    found = np.empty((here.size, array.size))
+    for k, entry in enumerate(array.ravel()):
+        found[:, k] = values_in(entry, here)
+    lanes.work += found.size // 4
+    return found.reshape(here.size, *array.shape)
+
+
+def _apart(lanes: Lanes, stack: Any) -> Any:
+    """An array of numbers with lanes, of one with the lanes in front."""
+    flat = stack.reshape(len(stack), -1).T
+    found = np.empty(len(flat), dtype=object)
+    for k, values in enumerate(flat):
+        found[k] = Laned(np.ascontiguousarray(values), lanes, lanes.here)
+    return found.reshape(stack.shape[1:]) if stack.ndim > 1 else found[0]
+
+
+def _lanes_of(*values: Any) -> Lanes | None:
+    for value in values:
+        if isinstance(value, Laned):
+            return value.lanes
+        if isinstance(value, np.ndarray | list | tuple):
+            entries = value.ravel() if isinstance(value, np.ndarray) else value
+            found = _lanes_of(*entries) if _laned(value) else None
+            if found is not None:
+                return found
+    return None
+
+
+def _linear(plain: Callable[..., Any]) -> Any:
+    """A function of matrices, of each lane's."""
+
+    def asked(*given: Any, **named: Any) -> Any:
+        lanes = _lanes_of(*given)
+        if lanes is None:
+            numbers = [np.array(x, dtype=float) if _laned(x) else x for x in given]
+            return plain(*numbers, **named)
+        stacks = [_stacked(lanes, x) for x in given]
+        vectors = len(stacks) == 2 and stacks[1].ndim == 2
+        if vectors:
+            stacks[1] = stacks[1][..., None]
+        found = plain(*stacks, **named)
+        return _apart(lanes, found[..., 0] if vectors else found)
+
+    return asked
+
+
+def _norm(value: Any, *rest: Any, **named: Any) -> Any:
+    if not _laned(value) or rest or named:
+        return np.linalg.norm(value, *rest, **named)
+    entries = np.array(value, dtype=object).ravel()
+    return _NUMPY["sqrt"](sum(abs(x) ** 2 for x in entries))
+
+
+def _power(matrix: Any, count: int) -> Any:
+    if not _laned(matrix) or count < 1:
+        return np.linalg.matrix_power(matrix, count)
+    return functools.reduce(lambda one, other: one @ other, [matrix] * count)
+
+
+def _dot_of_all(matrices: Any) -> Any:
+    return functools.reduce(lambda one, other: one @ other, map(np.asarray, matrices))
+
+
+def _with_float(plain: Callable[..., Any]) -> Any:
+    return lambda value, *rest: value if isinstance(value, Laned) else plain(value, *rest)
+
+
+_NUMPY: dict[str, Any] = {
+    **{name: _of_one(getattr(np, name), getattr(np, name)) for name in _OF_ONE},
+    **{name: _of_two(getattr(np, name), getattr(np, name)) for name in _OF_TWO},
+    **{name: _object(getattr(np, name)) for name in _MADE},
+    **{name: _array(getattr(np, name)) for name in _ARRAYS},
+    "float64": _with_float(np.float64),
+}
+_OF_MATH: dict[str, Any] = {
+    **{
+        name: _of_one(getattr(np, _MATH.get(name, name)), getattr(math, name, None) or
+                      getattr(cmath, name))
+        for name in (*_OF_ONE, *_MATH)
+        if hasattr(math, name) or hasattr(cmath, name)
+    },
+    **{name: _of_two(getattr(np, own), getattr(math, name)) for name, own in _MATH_OF_TWO.items()},
+}  # fmt: skip
+_LINEAR: dict[str, Any] = {
+    **{name: _linear(getattr(np.linalg, name)) for name in ("inv", "solve", "pinv", "det")},
+    "norm": _norm,
+    "matrix_power": _power,
+    "multi_dot": _dot_of_all,
+}

@@ -1,0 +1,315 @@
+"""A number that has another value in each lane.
+
+A lane is one way to edit a program. Where an edit stands, what it makes of a value is computed
+for its lanes alone and put among the others': inside such a place numbers are narrower.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+
+_STEP, _NUMBERS = 40, 25
+"""What an operation amounts to beside its numbers, and how many of these amount to one."""
+_EDIT = 800
+"""What evaluating an edit amounts to beside its operations."""
+
+
+_PLAIN = (float, int, complex, bool)
+
+
+class LaneError(Exception):
+    """A program does something with a number that no lane can follow alone."""
+
+
+class LaneGroup:
+    """Some of the lanes: all, or those of an edit.
+
+    Args:
+        chosen: the numbers of the edits of every lane, (L, most); -1 for none.
+        which: the numbers of the lanes here, ascending; None for all.
+    """
+
+    __slots__ = ("_chosen", "_edits", "_inner", "_where", "size", "which")
+
+    def __init__(self, chosen: Any, which: Any = None) -> None:
+        self._chosen, self.which = chosen, which
+        self.size = len(chosen) if which is None else len(which)
+        self._edits: dict[int, Any] | None = None
+        self._inner: dict[int, LaneGroup] = {}
+        self._where: dict[LaneGroup, Any] = {}
+
+    @property
+    def edits(self) -> dict[int, Any]:
+        """The edits that any lane here has, with these lanes."""
+        if self._edits is None:
+            chosen = self._chosen if self.which is None else self._chosen[self.which]
+            which = np.arange(self.size) if self.which is None else self.which
+            order = np.argsort(chosen, axis=None, kind="stable")
+            edits, starts = np.unique(chosen.ravel()[order], return_index=True)
+            lanes = which[order // chosen.shape[1]]
+            ends = [*starts[1:].tolist(), len(lanes)]
+            parts = zip(edits.tolist(), starts.tolist(), ends, strict=True)
+            self._edits = {edit: lanes[start:end] for edit, start, end in parts}
+        return self._edits
+
+    def inner(self, edit: int) -> LaneGroup:
+        """Those of the lanes here that have an edit."""
+        if edit not in self._inner:
+            self._inner[edit] = LaneGroup(self._chosen, self.edits[edit])
+        return self._inner[edit]
+
+    def where(self, outer: LaneGroup) -> Any:
+        """At which places of an outer one these lanes are."""
+        if outer.which is None:
+            return self.which
+        if outer not in self._where:
+            self._where[outer] = np.searchsorted(outer.which, self.which)
+        return self._where[outer]
+
+
+Edited = list[tuple[LaneGroup, Any]]
+"""What a value is in some lanes."""
+
+
+class Lanes:
+    """Which edits each lane has, and where in the program it is just now.
+
+    Args:
+        chosen: the numbers of the edits of each lane, (L, most); -1 for none.
+    """
+
+    def __init__(self, chosen: Any) -> None:
+        self.all = self.here = LaneGroup(chosen)
+        self.lost = np.zeros(len(chosen), dtype=bool)
+        self.work = 0
+
+    def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]) -> Any:
+        """What a place of the program gives: for the lanes of its edits what these make of it."""
+        here = self.here
+        value = old()
+        known = here.edits
+        if known.keys().isdisjoint(edits):
+            return value
+        found: Edited = []
+        for edit in edits:
+            if edit not in known:
+                continue
+            self.here = inner = here.inner(edit)
+            self.work += _EDIT
+            try:
+                found.append((inner, new(edit)))
+            except Exception:  # noqa: BLE001  what edited programs may raise
+                self.lose(inner)
+            finally:
+                self.here = here
+        return self.joined(value, found) if found else value
+
+    def lose(self, place: LaneGroup, some: Any = slice(None)) -> None:
+        """Lanes whose answers are not to be believed."""
+        self.lost[some if place.which is None else place.which[some]] = True
+
+    def joined(self, value: Any, found: Edited) -> Any:
+        """A value with what it is in some lanes."""
+        if is_number(value):
+            return self._number(value, found)
+        if isinstance(value, np.ndarray):
+            return self._array(value, found)
+        if isinstance(value, list | tuple) and type(value) in (list, tuple):
+            same = [
+                one for one in found if type(one[1]) is type(value) and len(one[1]) == len(value)
+            ]
+            self._without(found, same)
+            entries = (
+                self.joined(old, [(place, new[k]) for place, new in same])
+                for k, old in enumerate(value)
+            )
+            return type(value)(entries)
+        self._without(found, [one for one in found if one[1] is value])
+        return value
+
+    def _without(self, found: Edited, sound: Edited) -> None:
+        for one in found:
+            if one not in sound:
+                self.lose(one[0])
+
+    def _number(self, value: Any, found: Edited) -> Any:
+        sound = [(place, new) for place, new in found if new is not value]
+        numbers: Edited = []
+        for place, new in sound:
+            if isinstance(new, np.ndarray) and new.shape == ():
+                new = new[()]
+            if is_number(new):
+                numbers.append((place, values_in(new, place)))
+            else:
+                self.lose(place)
+        if not numbers:
+            return value
+        kind = np.result_type(float, values_in(value, self.here), *(new for _place, new in numbers))
+        values = np.empty(self.here.size, dtype=kind)
+        values[:] = values_in(value, self.here)
+        for place, new in numbers:
+            values[place.where(self.here)] = new
+        self.work += _STEP + len(values) // _NUMBERS
+        return Laned(values, self, self.here)
+
+    def _array(self, value: Any, found: Edited) -> Any:
+        arrays = []
+        for place, new in found:
+            try:
+                new = np.asarray(new)
+                arrays.append((place, np.broadcast_to(new, value.shape).ravel()))
+            except ValueError:
+                self.lose(place)
+        flat = value.ravel()
+        joined = np.empty(flat.size, dtype=object)
+        for k, old in enumerate(flat):
+            other = [(place, new[k]) for place, new in arrays if not _same(new[k], old)]
+            joined[k] = self._number(old, other) if other else old
+        return joined.reshape(value.shape)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if one is other:
+        return True
+    return not isinstance(one, Laned) and not isinstance(other, Laned) and bool(one == other)
+
+
+def is_number(value: Any) -> bool:
+    """Whether it is one number, with lanes or without."""
+    return isinstance(value, Laned | int | float | complex | np.number)
+
+
+def values_in(value: Any, place: LaneGroup) -> Any:
+    """What a number is in some lanes; of one without lanes itself."""
+    return value.within(place) if isinstance(value, Laned) else value
+
+
+def _both(operate: Callable[[Any, Any], Any], turned: bool = False) -> Any:
+    """An operation of two numbers, the second of which may have no lanes."""
+
+    def operated(self: Laned, other: Any) -> Any:
+        lanes = self.lanes
+        here = lanes.here
+        kind = type(other)
+        if kind is Laned:
+            others = other.values if other.place is here else other.within(here)
+        elif kind in _PLAIN or isinstance(other, np.number):
+            others = other
+        elif kind is np.ndarray:
+            return _entries(operate, self, turned)(other)
+        else:
+            return NotImplemented
+        values = self.values if self.place is here else self.within(here)
+        lanes.work += _STEP + here.size // _NUMBERS
+        return Laned(operate(others, values) if turned else operate(values, others), lanes, here)
+
+    return operated
+
+
+def _entries(operate: Callable[[Any, Any], Any], one: Laned, turned: bool) -> Any:
+    if turned:
+        return np.frompyfunc(lambda entry: operate(entry, one), 1, 1)
+    return np.frompyfunc(lambda entry: operate(one, entry), 1, 1)
+
+
+def _plus(turned: bool = False) -> Any:
+    operated = _both(operator.add, turned)
+    return lambda self, other: self if _is(other, 0) else operated(self, other)
+
+
+def _times(turned: bool = False) -> Any:
+    operated = _both(operator.mul, turned)
+
+    def times(self: Laned, other: Any) -> Any:
+        if _is(other, 0):
+            return 0.0
+        return self if _is(other, 1) else operated(self, other)
+
+    return times
+
+
+def _is(other: Any, number: int) -> bool:
+    return type(other) in (float, int) and bool(other == number)
+
+
+class Laned:
+    """A number with another value in each lane.
+
+    Args:
+        values: of the lanes of a place.
+        lanes: all of them.
+        place: those that have values.
+    """
+
+    __slots__ = ("lanes", "place", "values")
+    __array_ufunc__ = None
+
+    def __init__(self, values: Any, lanes: Lanes, place: LaneGroup) -> None:
+        self.values, self.lanes, self.place = values, lanes, place
+
+    def within(self, place: LaneGroup) -> Any:
+        """The values in some of the lanes that have any."""
+        if self.place is place:
+            return self.values
+        return self.values[place.where(self.place)]
+
+    def of(self, function: Callable[[Any], Any]) -> Laned:
+        """A function of it."""
+        lanes = self.lanes
+        lanes.work += _STEP + 4 * lanes.here.size // _NUMBERS
+        return Laned(function(self.within(lanes.here)), lanes, lanes.here)
+
+    __add__, __radd__ = _plus(), _plus(turned=True)
+    __mul__, __rmul__ = _times(), _times(turned=True)
+    __sub__, __rsub__ = _both(operator.sub), _both(operator.sub, turned=True)
+    __truediv__ = _both(operator.truediv)
+    __rtruediv__ = _both(operator.truediv, turned=True)
+    __pow__, __rpow__ = _both(operator.pow), _both(operator.pow, turned=True)
+    __mod__, __rmod__ = _both(operator.mod), _both(operator.mod, turned=True)
+    __lt__, __le__ = _both(operator.lt), _both(operator.le)
+    __gt__, __ge__ = _both(operator.gt), _both(operator.ge)
+    __eq__, __ne__ = _both(operator.eq), _both(operator.ne)
+    __hash__ = object.__hash__
+
+    def __neg__(self) -> Laned:
+        return self.of(operator.neg)
+
+    def __pos__(self) -> Laned:
+        return self
+
+    def __abs__(self) -> Laned:
+        return self.of(np.abs)
+
+    def conjugate(self) -> Laned:
+        """As of any number."""
+        return self.of(np.conjugate)
+
+    conj = conjugate
+
+    @property
+    def real(self) -> Laned:
+        """As of any number."""
+        return self.of(np.real)
+
+    @property
+    def imag(self) -> Laned:
+        """As of any number."""
+        return self.of(np.imag)
+
+    def __bool__(self) -> bool:
+        """What it is in most lanes; the others are lost."""
+        values = np.asarray(self.within(self.lanes.here), dtype=bool)
+        yes = 2 * int(values.sum()) > len(values)
+        if (values != yes).any():
+            self.lanes.lose(self.lanes.here, values != yes)
+        return yes
+
+    def __float__(self) -> float:
+        values = self.within(self.lanes.here)
+        if len(values) and (values == values[0]).all():
+            return float(values[0])
+        raise LaneError("one number of several")

@@ -1,0 +1,153 @@
+"""A program run in lanes, and what it answers in each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.program.lanes.functions import with_lanes
+from kinlab.doctor.program.lanes.numbers import Laned, Lanes
+from kinlab.doctor.program.lanes.woven import Edits, Woven
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.trial import QUICK, FailedError, FieldChange, Trial, made
+
+
+class InLanes:
+    """A program with many edits, of which each lane has its own.
+
+    Args:
+        trial: the program.
+        observed: its expressions as it is.
+        edits: of each effect those that have it; their numbers are their places.
+        states: at which it is asked.
+        counts: whether edits of whole numbers of the data are among them.
+
+    Attributes:
+        placed: the numbers of the edits that lanes can follow.
+        counts: whether whole numbers of the data are among them.
+
+    Raises:
+        NoProgramError: it cannot be written with them.
+    """
+
+    def __init__(
+        self,
+        trial: Trial,
+        observed: Observed,
+        edits: Edits,
+        states: Sequence[tuple[Any, ...]],
+        counts: bool,
+    ) -> None:
+        self.trial, self.states = trial, states
+        self.woven = Woven(trial, observed, edits)
+        whole = {n for n, change in self.woven.data if isinstance(change.now, int)}
+        self.counts = counts and bool(whole)
+        self.placed = self.woven.placed - (set() if counts else whole)
+        self._functions = [
+            made(self.woven.tree(tree), part, trial.space)
+            for tree, part in zip(trial.trees, trial.program.parts, strict=True)
+        ]
+        data = [one for one in self.woven.data if one[0] in self.placed]
+        self._wide, self._data = _of_objects(trial, data)
+        self.work = 0
+
+    def answers(self, chosen: Any, count: int | None = None) -> Array | None:
+        """The numbers of the answers with these edits, (C, S, P); NaN where a lane was lost.
+
+        None where the program does something that lanes cannot follow.
+
+        Args:
+            chosen: the numbers of the edits of each lane, (C, most); -1 for none.
+            count: how many of the states are asked; None for all.
+        """
+        lanes = Lanes(chosen)
+        stacks: list[Any] = []
+        with self._placed(lanes):
+            try:
+                for state in self.states[:count]:
+                    answer = self.trial.function(*(x.copy() for x in state))
+                    entries = np.array(answer, dtype=object).ravel()
+                    stacks.append([_full(entry, lanes) for entry in entries])
+                found = np.array(stacks)
+            except (FailedError, TypeError, ValueError):
+                return None
+            finally:
+                self.work += lanes.work
+        found = found.transpose(2, 0, 1)
+        found[lanes.lost] = np.nan
+        return found
+
+    @contextmanager
+    def _placed(self, lanes: Lanes) -> Iterator[None]:
+        """The program with its numbers in lanes."""
+        trial = self.trial
+        every = range(len(self._functions))
+        kept, space = [trial.placed(k) for k in every], dict(trial.space)
+        changes = [(change, change.now) for change in self._wide]
+        changes += [(change, change.now) for _number, change in self._data]
+        try:
+            with trial.as_loaded():
+                for change in self._wide:
+                    change.put(change.new)
+                trial.space.update(with_lanes(trial.space, QUICK))
+                trial.space["_pick"] = lanes.pick
+                for k in every:
+                    trial.place(k, self._functions[k])
+                for number, change in self._data:
+                    self._put(lanes, number, change)
+                trial.stale()
+                yield
+        finally:
+            for change, value in reversed(changes):
+                change.put(value)
+            trial.space.clear()
+            trial.space.update(space)
+            for k in every:
+                trial.place(k, kept[k])
+
+    @staticmethod
+    def _put(lanes: Lanes, number: int, change: FieldChange) -> None:
+        """One number of the data that an edit changes."""
+        before = change.now
+        change.put(lanes.pick((number,), lambda: before, lambda _number: change.new))
+
+
+def _of_objects(
+    trial: Trial, data: Sequence[tuple[int, FieldChange]]
+) -> tuple[list[FieldChange], list[tuple[int, FieldChange]]]:
+    """Arrays that take numbers with lanes, where the data has others; and its changes in them."""
+    arrays = {id(change.holder) for _number, change in data if _narrow(change.holder)}
+    wide: list[FieldChange] = []
+    new: dict[int, Any] = {}
+    holders: list[Any] = [trial.space]
+    holders += [x for x in trial.space.values() if isinstance(x, dict | list)]
+    for holder in holders:
+        for key in [*holder] if isinstance(holder, dict) else range(len(holder)):
+            value = holder[key]
+            if id(value) in arrays:
+                new.setdefault(id(value), value.astype(object))
+                wide.append(FieldChange(holder, key, new[id(value)]))
+    kept: list[tuple[int, FieldChange]] = []
+    for number, change in data:
+        holder = new.get(id(change.holder), change.holder)
+        if not _narrow(holder):
+            kept.append((number, replace(change, holder=holder)))
+    return wide, kept
+
+
+def _narrow(value: Any) -> bool:
+    return isinstance(value, np.ndarray) and value.dtype != object
+
+
+def _full(entry: Any, lanes: Lanes) -> Array:
+    values = (
+        entry.within(lanes.all) if isinstance(entry, Laned) else np.asarray(entry).astype(complex)
+    )
+    full: Array = np.full(lanes.all.size, np.real(values), dtype=float)
+    lanes.lost |= np.imag(values) != 0.0
+    return full

@@ -1,0 +1,396 @@
+"""The trees of a program with all edits in them, each asked for its lanes.
+
+An expression of which there are edits becomes a call that gives its value, and what each edit
+makes of it: ``_pick((3, 8), lambda: a + b, lambda _edit: a - b if _edit < 8 else a * b)``. These
+calls are named in front of their statement, so that an expression that stands in several others
+is written once.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections import defaultdict
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, ProgramEdit, called
+from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, is_data
+
+_SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
+"""Statements whose expressions are asked."""
+_COUNTS = ("range", "len", "isinstance", "sorted", "map", "next")
+"""Calls that no number with lanes can be given."""
+_RUNS = ("enumerate", "zip", "reversed")
+"""Calls that give what they are given one after another."""
+_WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setdefault", "clear")
+"""Calls that change what they are called on."""
+_EDIT = "_edit"
+_LISTS = ast.ListComp | ast.SetComp | ast.GeneratorExp
+
+Spot = tuple[ast.AST, str, int | None]
+"""Where a node hangs: in which, in which field, at which place of a list there."""
+Key = tuple[int, str, int | None]
+Edits = Sequence[Sequence[ProgramEdit]]
+
+
+class Woven:
+    """A program's trees with edits in them.
+
+    Args:
+        trial: the program.
+        observed: its expressions as it is.
+        edits: of each effect those that have it; their numbers are their places here.
+
+    Attributes:
+        placed: the edits that are in them; others are none that lanes can follow.
+        data: what edits change in the data: the number of each, and what is put where.
+    """
+
+    def __init__(self, trial: Trial, observed: Observed, edits: Edits) -> None:
+        self.observed, self._count = observed, len(edits)
+        self._above: dict[int, Spot] = {}
+        self._lists: dict[int, tuple[ast.AST, str]] = {}
+        for tree in trial.trees:
+            self._hang(tree)
+        self._sites: dict[Key, list[tuple[int, ast.expr]]] = defaultdict(list)
+        self._same: dict[int, ast.AST] = {}
+        self._new: dict[int, tuple[ast.AST, str, int | None]] = {}
+        self._holding: set[int] = set()
+        self.data: list[tuple[int, FieldChange]] = []
+        self.placed: set[int] = set()
+        self._at: list[tuple[int, list[Key]]] = []
+        for number, alike in enumerate(edits):
+            for edit in alike:
+                if self._put(number, edit):
+                    self.placed.add(number)
+                    break
+        self._names = 0
+
+    def _put(self, number: int, edit: ProgramEdit) -> bool:
+        """Puts an edit where it is asked, if it can be."""
+        if edit.part == DATA:
+            if not all(is_data(change.holder) for change in edit.changes):
+                return False
+            self.data += [(number, change) for change in edit.changes]
+            return True
+        spots = [self._spot(change) for change in edit.changes]
+        sound = [spot for spot in spots if spot is not None]
+        if len(sound) < len(spots):
+            return False
+        for (parent, name, k), new in sound:
+            self._sites[(id(parent), name, k)].append((number, new))
+            self._mark(parent)
+            self._at.append((number, self._path((parent, name, k))))
+        return True
+
+    def _hang(self, tree: ast.AST) -> None:
+        for node in nodes(tree):
+            for name, value in ast.iter_fields(node):
+                if isinstance(value, list):
+                    self._lists[id(value)] = (node, name)
+                    for k, one in enumerate(value):
+                        if isinstance(one, ast.AST):
+                            self._above[id(one)] = (node, name, k)
+                elif isinstance(value, ast.AST):
+                    self._above[id(value)] = (node, name, None)
+
+    def _mark(self, node: ast.AST) -> None:
+        while id(node) not in self._holding:
+            self._holding.add(id(node))
+            if id(node) not in self._above:
+                break
+            node = self._above[id(node)][0]
+
+    def _path(self, spot: Spot) -> list[Key]:
+        """A place, and those in which it is, down from its statement."""
+        path: list[Key] = []
+        while True:
+            parent, name, k = spot
+            path.append((id(parent), name, k))
+            if isinstance(parent, ast.stmt) or id(parent) not in self._above:
+                return path
+            spot = self._above[id(parent)]
+
+    def inside(self) -> Any:
+        """Which edits are in one another, (E, E)."""
+        found = np.zeros((self._count, self._count), dtype=bool)
+        at: dict[Key, list[int]] = defaultdict(list)
+        for number, path in self._at:
+            at[path[0]].append(number)
+        for number, path in self._at:
+            for key in path:
+                found[number, at.get(key, [])] = True
+        return found | found.T
+
+    # -------- Where an edit is asked
+
+    def _spot(self, change: FieldChange) -> tuple[Spot, ast.expr] | None:
+        """The expression that an edit changes, and what that becomes; None without one."""
+        holder, field, new = change.holder, change.field, change.new
+        if isinstance(holder, list):
+            if id(holder) not in self._lists:
+                return None
+            spot: Spot = (*self._lists[id(holder)], field)
+        else:
+            spot = (holder, field, None)
+        now = _at(spot)
+        if isinstance(now, ast.stmt):
+            return self._of_statement(now, new)
+        if isinstance(spot[0], ast.Tuple) and spot[1] == "elts" and isinstance(new, list):
+            outer = self._above[id(spot[0])][0]
+            if isinstance(outer, ast.Assign) and outer.value is not spot[0]:
+                return (outer, "value", None), _permuted(outer.value, now, new)
+        if isinstance(spot[0], ast.AugAssign) and spot[1] == "op":
+            both = {type(now), type(new)} == {ast.Add, ast.Sub}
+            value = ast.UnaryOp(ast.USub(), spot[0].value)
+            return ((spot[0], "value", None), value) if both else None
+        while not (isinstance(now, ast.expr) and isinstance(new, ast.expr)):
+            if isinstance(spot[0], ast.stmt):
+                return None
+            now, new, spot = self._outside(spot, new)
+        top = self._outermost(spot)
+        while top is not None and (spot[0] is not top[0] or spot[1:] != top[1:]):
+            _now, new, spot = self._outside(spot, new)
+        if top is None or not isinstance(new, ast.expr):
+            return None
+        parts = [*nodes(new), *nodes(_at(spot))]
+        writes = any(isinstance(node, ast.Call) and called(node) in _WRITES for node in parts)
+        return None if writes else (spot, new)
+
+    def _outside(self, spot: Spot, new: Any) -> tuple[ast.AST, ast.AST, Spot]:
+        """The node in which a place is, with something else there."""
+        parent, name, k = spot
+        other = type(parent)()
+        other.__dict__.update(parent.__dict__)
+        if k is not None:
+            entries = [*getattr(parent, name)]
+            entries[k] = new
+            new = entries
+        setattr(other, name, new)
+        self._same[id(other)] = parent
+        self._new[id(other)] = (other, name, k)
+        return parent, other, self._above[id(parent)]
+
+    def _outermost(self, spot: Spot) -> Spot | None:
+        """The place of the value that numbers with lanes may be part of; None without one."""
+        best: Spot | None = spot
+        at = spot
+        while True:
+            parent, name, _k = at
+            node = _at(at)
+            if isinstance(parent, ast.Call) and name == "args" and called(parent) in _RUNS:
+                pass  # entries may have lanes, not what is run over
+            elif not self._follows(parent, name, node):
+                best = None
+            elif best is None:
+                best = at
+            if isinstance(parent, ast.stmt):
+                sound = isinstance(parent, _SIMPLE) and name == "value"
+                return best if sound or (isinstance(parent, ast.For) and name == "iter") else None
+            if not isinstance(parent, ast.AST) or id(parent) not in self._above:
+                return None
+            if isinstance(parent, ast.Lambda | ast.JoinedStr | ast.NamedExpr | ast.arguments):
+                return None
+            at = self._above[id(parent)]
+
+    def _follows(self, parent: ast.AST, name: str, node: Any) -> bool:
+        """Whether a node may have lanes where it stands."""
+        if not isinstance(node, ast.expr) or isinstance(getattr(node, "ctx", None), ast.Store):
+            return False
+        inner = ast.Subscript | ast.Slice | ast.Attribute | ast.Starred | ast.comprehension
+        if isinstance(parent, inner | ast.Compare | ast.BoolOp | ast.GeneratorExp):
+            # what a generator gives is used where it stands; what it runs over is not a number
+            return isinstance(parent, ast.GeneratorExp) and name == "elt"
+        if isinstance(parent, ast.UnaryOp) and isinstance(parent.op, ast.Not):
+            return False
+        if isinstance(parent, ast.IfExp) and name == "test":
+            return False
+        if isinstance(parent, ast.Call) and (name == "func" or called(parent) in _COUNTS):
+            return False
+        above = self._above.get(id(parent), (None,))[0]
+        if isinstance(parent, ast.Tuple) and isinstance(above, ast.Subscript):
+            return False
+        if isinstance(node, ast.GeneratorExp | ast.Slice | ast.Lambda):
+            return False
+        seen = self.observed.of(node)
+        if seen is not None and seen.whole and seen.shape is not None:
+            # what counts is a whole number, or one of several that are run over
+            runs = isinstance(parent, ast.For)
+            return not runs if seen.shape else isinstance(parent, ast.List)
+        numeric = seen is not None and seen.shape is not None
+        return numeric or isinstance(node, _LISTS) or isinstance(parent, ast.stmt)
+
+    def _of_statement(self, now: ast.stmt, new: Any) -> tuple[Spot, ast.expr] | None:
+        """Of a statement that is left out, or becomes a sum: what it sets instead."""
+        if isinstance(now, ast.AugAssign) and isinstance(new, ast.Pass):
+            sums = isinstance(now.op, ast.Add | ast.Sub)
+            return ((now, "value", None), ast.Constant(0.0)) if sums else None
+        if isinstance(now, ast.Assign) and len(now.targets) == 1:
+            target = now.targets[0]
+            if not isinstance(target, ast.Name | ast.Subscript):
+                return None
+            old = _copy(target)
+            old.ctx = ast.Load()
+            if isinstance(new, ast.Pass):
+                return (now, "value", None), old
+            if isinstance(new, ast.AugAssign) and new.value is now.value:
+                return (now, "value", None), ast.BinOp(old, new.op, now.value)
+        return None
+
+    # -------- The trees
+
+    def tree(self, old: Any) -> Any:
+        """A function's definition, or the lines of a module, with the edits in it."""
+        found = _copy(old)
+        found.body = self._body(old.body)
+        return ast.fix_missing_locations(found)
+
+    def _body(self, body: list[ast.stmt]) -> list[ast.stmt]:
+        found: list[ast.stmt] = []
+        for statement in body:
+            if id(statement) not in self._holding:
+                found.append(statement)
+            elif isinstance(statement, _SIMPLE):
+                found += self._statement(statement)
+            else:
+                other = _copy(statement)
+                if isinstance(statement, ast.For):
+                    asked: dict[Key, Any] = {}
+                    other.iter = self._expression((statement, "iter", None), (), asked)
+                    found += [one for one, _name, _given in asked.values()]
+                for name in ("body", "orelse", "finalbody"):
+                    block = getattr(statement, name, None)
+                    if isinstance(block, list):
+                        setattr(other, name, self._body(block))
+                found.append(other)
+        return found
+
+    def _statement(self, statement: Any) -> list[ast.stmt]:
+        inside = nodes(statement)
+        if any(isinstance(node, ast.Yield | ast.YieldFrom | ast.NamedExpr) for node in inside):
+            return [statement]
+        if any(isinstance(node, ast.Name) and node.id == "super" for node in inside):
+            return [statement]
+        asked: dict[Key, tuple[ast.stmt | None, str, tuple[str, ...]]] = {}
+        other = _copy(statement)
+        other.value = self._expression((statement, "value", None), (), asked)
+        return [*(one for one, _name, _given in asked.values() if one is not None), other]
+
+    def _expression(self, spot: Spot, scope: tuple[str, ...], asked: dict[Key, Any]) -> Any:
+        """An expression with the edits in it."""
+        parent, name, k = spot
+        return self._edited(_at(spot), (id(parent), name, k), scope, asked)
+
+    def _edited(
+        self, node: Any, key: Key | None, scope: tuple[str, ...], asked: dict[Key, Any]
+    ) -> Any:
+        edited = None if key is None else self._sites.get(key)
+        if not edited or key is None:
+            return self._inside(node, scope, asked)
+        if key not in asked:
+            self._names += 1
+            label = f"_asked{self._names}"
+            asked[key] = (None, label, scope)
+            numbers: Any = tuple(number for number, _new in edited)
+            new = _chosen([(number, self._inside(new, scope, asked)) for number, new in edited])
+            given = [
+                ast.Constant(numbers),
+                _lambda(self._inside(node, scope, asked)),
+                _lambda(new, (_EDIT,)),
+            ]
+            call = ast.Call(ast.Name("_pick", ast.Load()), given, [])
+            target = ast.Name(label, ast.Store())
+            asked[key] = (ast.Assign([target], _lambda(call, scope)), label, scope)
+        _statement, label, own = asked[key]
+        if not {*own} <= {*scope}:
+            raise NoProgramError("an expression that stands in two places")
+        names: list[ast.expr] = [ast.Name(one, ast.Load()) for one in own]
+        return ast.Call(ast.Name(label, ast.Load()), names, [])
+
+    def _inside(self, node: Any, scope: tuple[str, ...], asked: dict[Key, Any]) -> Any:
+        """An expression with the edits of its pieces."""
+        if not self._holds(node):
+            return node
+        if isinstance(node, _LISTS | ast.DictComp):
+            targets = [one for part in node.generators for one in nodes(part.target)]
+            scope = (*scope, *(one.id for one in targets if isinstance(one, ast.Name)))
+            scope = tuple(dict.fromkeys(scope))
+        other = _copy(node)
+        own = id(self._same.get(id(node), node))
+        for name, value in ast.iter_fields(node):
+            if name in ("slice", "generators", "ctx", "func") and not (
+                name == "func" and isinstance(value, ast.Attribute)
+            ):
+                continue
+            if isinstance(value, list):
+                keys = [self._key(node, own, name, k) for k in range(len(value))]
+                pieces = zip(value, keys, strict=True)
+                setattr(other, name, [self._piece(one, key, scope, asked) for one, key in pieces])
+            elif isinstance(value, ast.AST):
+                key = self._key(node, own, name, None)
+                setattr(other, name, self._piece(value, key, scope, asked))
+        return other
+
+    def _key(self, node: ast.AST, own: int, name: str, k: int | None) -> Key | None:
+        """Under which edits of a piece are known; None of what an edit has put there."""
+        _other, field, place = self._new.get(id(node), (None, "", None))
+        new = field == name and (place is None or place == k)
+        return None if new else (own, name, k)
+
+    def _piece(
+        self, value: Any, key: Key | None, scope: tuple[str, ...], asked: dict[Key, Any]
+    ) -> Any:
+        if isinstance(value, ast.Lambda):
+            return value
+        if isinstance(value, ast.expr):
+            return self._edited(value, key, scope, asked)
+        if isinstance(value, ast.keyword):
+            return self._inside(value, scope, asked)
+        return value
+
+    def _holds(self, node: Any) -> bool:
+        """Whether there are edits in it; what an edit puts there may have pieces of its own."""
+        if id(node) in self._holding:
+            return True
+        if id(node) in self._above:
+            return False
+        return any(id(one) in self._holding for one in nodes(node))
+
+
+def _permuted(value: ast.expr, names: list[ast.expr], other: list[ast.expr]) -> ast.expr:
+    """What is set where names stand in another order."""
+    given = ast.Name("_given", ast.Load())
+    entries: list[ast.expr] = [
+        ast.Subscript(given, ast.Constant(other.index(one)), ast.Load()) for one in names
+    ]
+    return ast.Call(_lambda(ast.Tuple(entries, ast.Load()), ("_given",)), [value], [])
+
+
+def _chosen(edited: list[tuple[int, ast.expr]]) -> ast.expr:
+    """What the edit of a number makes of an expression; their numbers ascend."""
+    if len(edited) == 1:
+        return edited[0][1]
+    half = len(edited) // 2
+    before = ast.Compare(ast.Name(_EDIT, ast.Load()), [ast.Lt()], [ast.Constant(edited[half][0])])
+    return ast.IfExp(before, _chosen(edited[:half]), _chosen(edited[half:]))
+
+
+def _at(spot: Spot) -> Any:
+    parent, name, k = spot
+    value = getattr(parent, name)
+    return value if k is None else value[k]
+
+
+def _copy(node: Any) -> Any:
+    other = type(node)()
+    other.__dict__.update(node.__dict__)
+    return other
+
+
+def _lambda(body: ast.expr, names: tuple[str, ...] = ()) -> ast.Lambda:
+    given = [ast.arg(name) for name in names]
+    return ast.Lambda(ast.arguments([], given, None, [], [], None, []), body)

@@ -1,0 +1,208 @@
+"""Two or three edits that change the same numbers of an answer, tried in lanes.
+
+Where edits change the same numbers, what they do together cannot be told from what each does
+alone. Pairs are run all together, each in a lane; three of which no more than two act on one
+another are told from their pairs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.program.lanes.run import InLanes
+from kinlab.doctor.program.repair import ANY_ZERO, LineSearch
+from kinlab.doctor.program.several.effects import Chosen, Effects
+from kinlab.doctor.program.trial import NoProgramError
+
+_BLOCK = 120
+"""Edits of which each is run with each of as many others at a time."""
+_EDITS = 1600
+"""Edits of which any two are run together."""
+_SOUND = 0.6
+"""Share of the edits that lanes must follow, for what they tell to be of use."""
+_WITHIN = 200
+"""Edits of which one may be in the other."""
+_THREE, _KEPT = 600, 6_000_000
+"""Edits of which any three may go together, fewer where their pairs have more numbers."""
+_TRIED = 2000
+"""Threes that are run, of each way to tell them."""
+_ALL, _LEAST = 100_000_000, 20_000_000
+"""Work that may be done for single edits and those tried together; the least for these."""
+_NONE = -1
+"""In place of an edit's number."""
+
+
+class TriedTogether:
+    """The effects of edits of a wrong program, tried together.
+
+    Args:
+        search: whose program is wrong.
+        known: the effects of single edits.
+
+    Attributes:
+        left: work that may still be done.
+        usable: whether lanes can follow the program.
+    """
+
+    def __init__(self, search: LineSearch, known: Effects) -> None:
+        self.search, self.known = search, known
+        self.left = search.most if search.stand else max(_LEAST, _ALL - search.work)
+        self.zero = search.case.quantity.name in ANY_ZERO
+        self.count = 1 + self.zero
+        self.sound = np.empty(0, dtype=int)
+        self.usable = False
+        stacks = search.case.arguments.values()
+        states = [tuple(stack[k].copy() for stack in stacks) for k in search.first]
+        edits = known.alike[:_EDITS]
+        if search.case.quantity.read is not None:
+            return
+        for counts in (True, False):  # whole numbers may be what something is counted by
+            try:
+                self.lanes = InLanes(search.trial, search.observed, edits, states, counts)
+            except NoProgramError:
+                return
+            self.usable = self._follows(len(edits))
+            if self.usable or not self.lanes.counts:
+                break
+        size = known.rows.shape[1] * self.count // len(search.first)
+        self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
+        self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
+        self.both = np.full((self.three, self.three, size), np.nan)
+        self.chosen: list[Any] = []
+        self.marks: list[Array] = []
+
+    def _follows(self, count: int) -> bool:
+        """Whether most edits do in lanes what they do alone: others are left out."""
+        alone = np.arange(_NONE, count)[:, None]
+        rows = self._rows(alone, None)
+        if rows is None or not np.abs(rows[0]).max() <= self.known.near:
+            return False
+        gap = np.abs(rows[1:] - self.known.rows[:count]).max(axis=1)
+        size = np.maximum(1.0, np.abs(self.known.rows[:count]).max(axis=1))
+        placed = np.isin(np.arange(count), [*self.lanes.placed])
+        self.sound = np.flatnonzero((gap <= self.known.near * size) & placed)
+        self.within = self.lanes.woven.inside()
+        return len(self.sound) >= _SOUND * count
+
+    def _rows(self, chosen: Any, count: int | None) -> Array | None:
+        """What edits change together, relative to the answer's size, (C, P)."""
+        before = self.lanes.work
+        found = self.lanes.answers(chosen, count)
+        self.left -= self.lanes.work - before
+        if found is None:
+            return None
+        states = self.search.first[: found.shape[1]]
+        wanted = self.search.wanted[states].reshape(len(states), -1)
+        if wanted.shape != found.shape[1:]:
+            return None
+        if self.zero:
+            found = found + (wanted[:1] - found[:, :1])
+        scale = self.search.scale[: len(states)].reshape(len(states), -1)
+        rows: Array = (found / scale).reshape(len(chosen), -1)
+        return rows - self.known.own[: rows.shape[1]]
+
+    def _fits(self, rows: Array) -> Any:
+        """Which effects make the first numbers right."""
+        gap = np.abs(rows - self.known.goal[: rows.shape[1]])
+        return np.flatnonzero((gap <= self.known.near).all(axis=1))
+
+    # -------- Two
+
+    def pairs(self) -> list[Chosen]:
+        """Any two edits that make the program right, the likeliest first."""
+        found: list[Chosen] = []
+        rank = -1
+        for total, one, other in self._blocks() if self.usable else ():
+            if total != rank and (found or self.left <= 0):
+                break
+            rank = total
+            chosen = self._apart(one, other)
+            if not len(chosen):
+                continue
+            rows = self._rows(chosen, self.count)
+            if rows is None:
+                return []
+            right = chosen[self._fits(rows)]
+            if len(right) and self.count < len(self.search.first):
+                whole = self._rows(right, None)
+                right = right[self._fits(whole)] if whole is not None else right[:0]
+            found += [(int(i), int(j)) for i, j in right]
+            self._keep(chosen, rows)
+        return sorted(found, key=self.known.cost)
+
+    def _blocks(self) -> Iterator[tuple[int, Any, Any]]:
+        """Some edits and others, the likeliest first."""
+        blocks = [self.sound[k : k + _BLOCK] for k in range(0, len(self.sound), _BLOCK)]
+        each = range(len(blocks))
+        for total, i, j in sorted((i + j, i, j) for i in each for j in each if i <= j):
+            yield total, blocks[i], blocks[j]
+
+    def _apart(self, one: Any, other: Any) -> Any:
+        """Each of some edits with each of others; within one another only the likeliest."""
+        usable = ~self.within[np.ix_(one, other)]
+        usable |= (one < _WITHIN)[:, None] & (other < _WITHIN)
+        first, last = np.nonzero(np.triu(usable, 1) if one is other else usable)
+        return np.stack([one[first], other[last]], axis=1)
+
+    # -------- Three
+
+    def _keep(self, chosen: Any, rows: Array) -> None:
+        """What pairs do, for threes: of the likeliest all, of others one number."""
+        self.chosen.append(chosen)
+        self.marks.append(rows @ self.weights)
+        few = np.flatnonzero((chosen < self.three).all(axis=1))
+        one, other = chosen[few].T
+        self.both[one, other] = self.both[other, one] = rows[few]
+
+    def threes(self) -> list[Chosen]:
+        """Any three edits that make the program right as far as their pairs tell, likeliest first.
+
+        Of three, two act on one another and the third beside them; or each two do, and not all.
+        """
+        if not self.usable or not self.chosen:
+            return []
+        with np.errstate(all="ignore"):
+            ways = (self._beside_pairs(), self._of_pairs())
+            found = {three for way in ways for three in islice(way, _TRIED)}
+        ranked = sorted(found, key=self.known.cost)
+        rows = self._rows(np.array(ranked), None) if ranked else None
+        return [] if rows is None else [ranked[k] for k in self._fits(rows)]
+
+    def _beside_pairs(self) -> Iterator[Chosen]:
+        """A pair, and an edit whose effect adds up with the pair's."""
+        chosen, marks = np.concatenate(self.chosen), np.concatenate(self.marks)
+        order = np.argsort(marks, kind="stable")
+        marks = marks[order]
+        size = len(self.weights)
+        sought = (self.known.goal[:size] - self.known.rows[self.sound, :size]) @ self.weights
+        wide = self.known.near * float(self.weights.sum())
+        low, high = np.searchsorted(marks, sought - wide), np.searchsorted(marks, sought + wide)
+        for n in np.flatnonzero(high > low):
+            for i, j in chosen[order[low[n] : high[n]]].tolist():
+                k = int(self.sound[n])
+                if k not in (i, j):
+                    yield tuple(sorted((i, j, k)))
+
+    def _of_pairs(self) -> Iterator[Chosen]:
+        """Three of the likeliest of which each two may act on one another."""
+        few = self.sound[self.sound < self.three]
+        size = len(self.weights)
+        both, each = self.both[np.ix_(few, few)], self.known.rows[few, :size]
+        goal = self.known.goal[:size]
+        told = int(np.argmax(np.abs(goal)))
+        left = goal[told] - (both[..., told] - each[:, None, told] - each[None, :, told])
+        for n in range(2, len(few)):
+            # what n does beside i, and beside j
+            inner = both[n, :n, told]
+            fits = left[:n, :n] - inner[:, None] - inner[None, :] + each[n, told]
+            ends = np.argwhere(np.triu(np.abs(fits) <= self.known.near, 1))
+            whole = both[n, ends].sum(axis=1) + both[ends[:, 0], ends[:, 1]]
+            whole -= each[ends].sum(axis=1) + each[n]
+            for i, j in ends[(np.abs(whole - goal) <= self.known.near).all(axis=1)].tolist():
+                yield tuple(int(few[k]) for k in (i, j, n))

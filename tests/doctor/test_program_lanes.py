@@ -1,0 +1,233 @@
+"""A program run once for many combinations of edits: each lane answers as the program with its
+edits does, run alone."""
+
+import numpy as np
+import pytest
+from hand_programs import PROGRAMS, lines_named, repaired
+
+import kinlab as kl
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import Case
+from kinlab.doctor.examine import prepare
+from kinlab.doctor.program.lanes.numbers import Laned, Lanes
+from kinlab.doctor.program.lanes.run import InLanes
+from kinlab.doctor.program.read import read
+from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.trial import NoProgramError, quietly
+
+OTHERS = {
+    "complex numbers": (
+        "planar3r",
+        "planar_jacobian",
+        """
+import numpy as np
+
+def f(q):
+    joints = [0]
+    for k, l in enumerate((0.5, 0.4, 0.25)):
+        joints.append(joints[-1] + l*np.exp(1j*sum(q[:k + 1])))
+    tip = joints.pop()
+    columns = [1j*(tip - z) for z in joints]
+    return np.array([[c.real for c in columns], [c.imag for c in columns], [1.0]*3])
+""",
+    ),
+    "objects, recursion, a table in the module": (
+        "planar3r",
+        "gravity_torques",
+        """
+import math
+from dataclasses import dataclass
+
+@dataclass
+class Link:
+    l: float
+    lc: float
+    m: float
+
+ARM = [Link(0.5, 0.25, 3.0), Link(0.4, 0.2, 2.0), Link(0.25, 0.125, 1.0)]
+G = 9.81
+
+def below(k, angle):
+    if k == len(ARM):
+        return 0.0, 0.0
+    link = ARM[k]
+    weight, moment = below(k + 1, angle)
+    return weight + link.m*G, moment
+
+def f(q):
+    tau = [0.0, 0.0, 0.0]
+    for j in range(3):
+        for k in range(j, 3):
+            angle = 0.0
+            x = 0.0
+            for i in range(k + 1):
+                angle += q[i]
+                if i >= j:
+                    x += (ARM[i].l if i < k else ARM[i].lc)*math.cos(angle)
+            tau[j] += ARM[k].m*G*x
+    return tau
+""",
+    ),
+    "inverse of a matrix": (
+        "planar2r",
+        "forward_dynamics",
+        """
+import numpy as np
+
+l1, l2, m1, m2, g = 0.5, 0.4, 2.0, 1.5, 9.81
+
+def f(q, v, tau):
+    b = m2*l1*l2*np.cos(q[1])
+    h = m2*l1*l2*np.sin(q[1])
+    d = m2*l2**2
+    M = np.array([[(m1 + m2)*l1**2 + d + 2*b, d + b], [d + b, d]])
+    G2 = m2*g*l2*np.cos(q[0] + q[1])
+    n = np.array([-h*v[1]*(2*v[0] + v[1]) + (m1 + m2)*g*l1*np.cos(q[0]) + G2, h*v[0]**2 + G2])
+    return np.linalg.inv(M) @ (tau - n)
+""",
+    ),
+}
+
+
+def searched(robot, quantity, text):
+    """A search in a program, right or wrong, with what it has tried."""
+    space = {"__name__": "hand"}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
+    case, engine = prepare(robot, quantity, (), 10, 3)
+    states = [*zip(*case.arguments.values(), strict=True)]
+    hand = np.array([space["f"](*map(np.copy, state)) for state in states], dtype=float)
+    case = Case(**{**vars(case), "hand": hand})
+    program = read(space["f"])
+    assert program is not None
+    search = LineSearch(program, case, engine + 1.0, 1e-9)  # nothing is right: all is tried
+    search.singles()
+    return search
+
+
+def in_lanes(search, some):
+    stacks = search.case.arguments.values()
+    states = [tuple(stack[k].copy() for stack in stacks) for k in search.first]
+    return InLanes(search.trial, search.observed, [[edit] for edit in some], states, counts=False)
+
+
+TEXTS = {
+    **{name: (one.robot, one.quantity, one.text) for name, one in PROGRAMS.items()},
+    **OTHERS,
+}
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_lane_answers_as_the_edited_program(name) -> None:
+    search = searched(*TEXTS[name])
+    dice = np.random.default_rng(7)
+    tried = [search.tried[k] for k in dice.permutation(len(search.tried))[:250]]
+    with quietly():
+        lanes = in_lanes(search, [edit for edit, _values in tried])
+        single = lanes.answers(np.arange(-1, len(tried))[:, None])
+        assert single is not None
+        alone = np.array([values.reshape(single.shape[1:]) for _edit, values in tried])
+        close = np.isclose(single[1:], alone, rtol=1e-9, atol=1e-9).all(axis=(1, 2))
+        lost = np.isnan(single[1:]).any(axis=(1, 2))
+        placed = sorted(lanes.placed)
+        followed = [k for k in placed if close[k]]
+        assert len(placed) > 0.85 * len(tried)
+        # what changes how often a loop turns is lost, and said to be
+        assert len(followed) > 0.8 * len(placed)
+        assert sum(not close[k] and not lost[k] for k in placed) < 0.03 * len(placed)
+        apart = lanes.woven.inside()
+        pairs = [(i, j) for i in followed for j in followed if i < j and not apart[i, j]]
+        pairs = [pairs[k] for k in dice.permutation(len(pairs))[:200]]
+        both = lanes.answers(np.array(pairs))
+        assert both is not None
+        seen = 0
+        for (i, j), values in zip(pairs, both, strict=True):
+            if np.isnan(values).any():  # a lane that was lost tells nothing
+                continue
+            try:
+                with changed(search.trial, (tried[i][0], tried[j][0])):
+                    right = search.answers(search.first)
+            except NoProgramError:
+                continue
+            if right is not None:
+                np.testing.assert_allclose(values.ravel(), right.ravel(), rtol=1e-8, atol=1e-8)
+                seen += 1
+    assert seen > 0.7 * len(pairs)
+
+
+def test_a_program_is_left_as_it_was() -> None:
+    search = searched(*OTHERS["objects, recursion, a table in the module"])
+    before = search.answers(search.first)
+    space, sizes = dict(search.trial.space), [len(nodes(tree)) for tree in search.trial.trees]
+    with quietly():
+        in_lanes(search, [edit for edit, _values in search.tried]).answers(
+            np.arange(len(search.tried))[:, None]
+        )
+    assert search.trial.space == space
+    assert [len(nodes(tree)) for tree in search.trial.trees] == sizes
+    np.testing.assert_array_equal(search.answers(search.first), before)
+
+
+def test_a_place_within_a_place() -> None:
+    lanes = Lanes(np.array([[0, 1], [0, -1], [1, -1], [-1, -1]]))
+    x = 3.0
+
+    def inner():
+        return lanes.pick((1,), lambda: x, lambda _edit: 2 * x)
+
+    value = lanes.pick((0,), lambda: inner() + 1.0, lambda _edit: 10 * inner())
+    np.testing.assert_array_equal(value.within(lanes.all), [60.0, 30.0, 7.0, 4.0])
+
+
+def test_lanes_that_would_go_another_way_are_lost() -> None:
+    lanes = Lanes(np.array([[0], [1], [-1], [-1]]))
+    value = lanes.pick((0, 1), lambda: 1.0, lambda edit: -1.0 if edit == 0 else 2.0)
+    assert isinstance(value, Laned)
+    assert value > 0
+    np.testing.assert_array_equal(lanes.lost, [True, False, False, False])
+
+
+def asked(name, slips):
+    """What is said of a program with slips in it, and whether what is said mends it."""
+    robot, quantity, text = TEXTS[name]
+    for right, wrong in slips:
+        assert text.count(right) == 1, right
+        text = text.replace(right, wrong)
+    space = {"__name__": "hand"}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
+    found = kl.diagnose(robot, quantity, space["f"], samples=20)
+    assert not found.agrees
+    case, engine = prepare(robot, quantity, (), 10, 3)
+    states = [*zip(*case.arguments.values(), strict=True)]
+    good = False
+    for after in repaired(text, found.sentence):
+        values = np.array([after["f"](*map(np.copy, state)) for state in states])
+        good |= bool(np.allclose(values, engine, rtol=1e-9, atol=1e-9))
+    return found, good
+
+
+@pytest.mark.parametrize(
+    ("name", "slips"),
+    [
+        pytest.param(
+            "inverse of a matrix",
+            [("l1*np.cos(q[0])", "l1*np.sin(q[0])"), ("2*b, d + b], [d", "2*b, d - b], [d")],
+            id="two that multiply",
+        ),
+        pytest.param(
+            "complex numbers",
+            [("1j*(tip - z)", "1j*(tip + z)"), ("sum(q[:k + 1])", "sum(q[:k])"),
+             ("[[c.real for", "[[c.imag for")],
+            id="three in one chain",
+        ),
+        pytest.param(
+            "inverse of a matrix",
+            [("d = m2*l2**2", "d = m2*l2"), ("h*v[0]**2 + G2", "-h*v[0]**2 + G2"),
+             ("2*b, d + b", "b, d + b")],
+            id="three that multiply two by two",
+        ),
+    ],
+)  # fmt: skip
+def test_slips_that_act_on_one_another(name, slips) -> None:
+    found, good = asked(name, slips)
+    assert good, found.sentence
+    assert len({*lines_named(found.sentence)}) == len(slips)
