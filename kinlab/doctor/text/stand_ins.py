@@ -17,7 +17,7 @@ from typing import Protocol
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.text.meanings import CLOSE, Meanings, stands_for
+from kinlab.doctor.text.meanings import Meanings, stands_for
 from kinlab.doctor.text.written import Literal, literal
 from kinlab.tolerances import TOLERANCES
 
@@ -26,7 +26,7 @@ STEPS, FREE = 12, 120
 _ROUGHLY = 2
 """Digits of all a text's numbers where a whole number of one digit may be a rounding, too."""
 _WHOLE = 3
-"""Digits of a whole number that may be a rounding, if not a near one, where no other number is."""
+"""Digits of a whole number that may be a rounding where it is the whole answer."""
 FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
 _DEGREES = ("90", "180", "270", "360")
@@ -58,7 +58,12 @@ class Meant:
 
 
 def stand_ins(
-    text: Numbered, at: Mapping[str, Array], target: Array, scale: Array, fits: int = FITS
+    text: Numbered,
+    at: Mapping[str, Array],
+    target: Array,
+    scale: Array,
+    fits: int = FITS,
+    alone: bool = True,
 ) -> Meant | None:
     """Numbers within the digits of those written that give the wanted values at every state.
 
@@ -68,6 +73,7 @@ def stand_ins(
         target: the values wanted, (N,).
         scale: what differences are relative to, (N,).
         fits: sets of numbers that may be tried.
+        alone: whether it is the whole answer: one number then is what it says.
 
     Returns:
         The numbers; None where none will do.
@@ -76,7 +82,8 @@ def stand_ins(
     inexact = [k for k, one in enumerate(literals) if one.half > 0]
     if not inexact or len(inexact) > FREE:
         return None
-    search = _Search(text, literals, at, target, scale, Meanings.at(at), fits)
+    whole = _WHOLE if alone and not np.ptp(target) else _ROUGHLY
+    search = _Search(text, literals, at, target, scale, Meanings.at(at), whole, fits)
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
     found = search.among(rest)
@@ -89,7 +96,7 @@ def stand_ins(
         found = search.among(alike)
     if found is None and max(literals[k].seen for k in inexact) <= _ROUGHLY:
         rough = tuple(map(roughly, literals))  # 2 beside 35 and 13 may be 1.962
-        search = _Search(text, rough, at, target, scale, search.meanings, fits)
+        search = _Search(text, rough, at, target, scale, search.meanings, whole, fits)
         more = [k for k, one in enumerate(rough) if one.half > 0 and not literals[k].half]
         found = search.among(sorted({*alike, *more}))
         shown = dict(zip(map(id, rough), literals, strict=True))
@@ -156,6 +163,7 @@ class _Search:
     target: Array
     scale: Array
     meanings: Meanings
+    whole: int
     left: int
 
     def among(self, rest: list[int]) -> Meant | None:
@@ -276,13 +284,8 @@ class _Search:
             if abs(numbers[k] - literals[k].value)
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
-        few = max(2, min((one.digits for one, _x in changed if not one.whole), default=_WHOLE))
-        lone = not np.ptp(self.target)  # an answer of one number is what it says
-        near = [not lone and abs(x - one.value) <= CLOSE * abs(x) for one, x in changed]
-        pairs = zip(changed, near, strict=True)
-        if not changed or not all(
-            self.meanings.credible(*pair, 2 if close else few) for pair, close in pairs
-        ):
+        few = min((one.digits for one, _x in changed if not one.whole), default=self.whole)
+        if not changed or not all(self.meanings.credible(*pair, max(2, few)) for pair in changed):
             return None
         bare = [
             k
