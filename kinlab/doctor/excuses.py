@@ -84,7 +84,7 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     if text is None:
         return None
     at = verdicts.numbers_at(case)
-    found = stand_ins(text, at, entry.engine, entry.scale)
+    found = stand_ins(text, at, entry.engine, entry.scale, alone=case.hand.ndim == 1)
     if found is not None:
         return [*text.rounded, *rounding_remarks(found.changed, at)]
     derived = derivation_of(case)

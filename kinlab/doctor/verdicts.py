@@ -445,7 +445,7 @@ def by_digits(
     wanted = essential(case, engine[which], which)
     at = numbers_at(case)
     scale = np.repeat(error_sizes(wanted), wanted[0].size)
-    found = stand_ins(formula, at, wanted.ravel(), scale, fits)
+    found = stand_ins(formula, at, wanted.ravel(), scale, fits, case.hand.ndim == 1)
     if found is None:
         return None
     meant = replace(case, hand=formula.answers(at, found.numbers))

@@ -9,7 +9,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from kinlab.arrays import Array
+from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
@@ -143,7 +146,7 @@ def lines(
 
 def _of_cuts(search: LineSearch) -> Excuse | None:
     """Why a program is right that rounds by itself, if nothing else is off but rounded numbers."""
-    edits = cuts(search)
+    edits = cuts(search) if search.case.quantity.read is None else ()
     if not edits:
         return None
     told = _("{place} rounds: `{piece}`")
@@ -151,13 +154,20 @@ def _of_cuts(search: LineSearch) -> Excuse | None:
     try:
         with quietly(), changed(search.trial, edits):
             answers = search.answers(range(len(search.wanted)))
-            meant = None if answers is None else replace(search.case, hand=answers)
-            more = rounded_otherwise(meant, search.wanted, said) if meant is not None else None
+            if answers is None or not _little(search.case.hand, answers):
+                return None
+            more = rounded_otherwise(replace(search.case, hand=answers), search.wanted, said)
             if more is None and (more := of_rounded_numbers(search)) is not None:
                 more = replace(more, remarks=(*said, *more.remarks))
     except NoProgramError:
         return None
     return more
+
+
+def _little(hand: Array, answers: Array) -> bool:
+    """Whether answers differ by no more than rounding may change them."""
+    same = hand.shape == answers.shape and bool(np.isfinite(answers).all())
+    return same and bool(np.max(relative_errors(hand, answers)) <= TOLERANCES.may_be_rounded)
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:

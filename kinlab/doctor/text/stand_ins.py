@@ -26,9 +26,11 @@ STEPS, FREE = 12, 120
 _ROUGHLY = 2
 """Digits of all a text's numbers where a whole number of one digit may be a rounding, too."""
 _WHOLE = 3
-"""Digits of a whole number that may be a rounding, if not a near one, where no other number is."""
+"""Digits of a whole number that may be a rounding where it is the whole answer."""
 FITS = 200
 """Sets of numbers tried for one formula in which several numbers can share an error."""
+_STRAIGHT = 0.1
+"""Share of what is off that one number may leave, as if all were straight, to be looked at."""
 _DEGREES = ("90", "180", "270", "360")
 """Whole numbers that are none but themselves: near pi in an angle there is always another."""
 
@@ -58,7 +60,12 @@ class Meant:
 
 
 def stand_ins(
-    text: Numbered, at: Mapping[str, Array], target: Array, scale: Array, fits: int = FITS
+    text: Numbered,
+    at: Mapping[str, Array],
+    target: Array,
+    scale: Array,
+    fits: int = FITS,
+    alone: bool = True,
 ) -> Meant | None:
     """Numbers within the digits of those written that give the wanted values at every state.
 
@@ -68,6 +75,7 @@ def stand_ins(
         target: the values wanted, (N,).
         scale: what differences are relative to, (N,).
         fits: sets of numbers that may be tried.
+        alone: whether it is the whole answer: one number then is what it says.
 
     Returns:
         The numbers; None where none will do.
@@ -76,7 +84,8 @@ def stand_ins(
     inexact = [k for k, one in enumerate(literals) if one.half > 0]
     if not inexact or len(inexact) > FREE:
         return None
-    search = _Search(text, literals, at, target, scale, Meanings.at(at), fits)
+    whole = _WHOLE if alone and not np.ptp(target) else _ROUGHLY
+    search = _Search(text, literals, at, target, scale, Meanings.at(at), whole, fits)
     # numbers that are the robot's in full are exact
     rest = [k for k in inexact if search.meanings.parameter(literals[k].value) is None]
     found = search.among(rest)
@@ -89,7 +98,7 @@ def stand_ins(
         found = search.among(alike)
     if found is None and max(literals[k].seen for k in inexact) <= _ROUGHLY:
         rough = tuple(map(roughly, literals))  # 2 beside 35 and 13 may be 1.962
-        search = _Search(text, rough, at, target, scale, search.meanings, fits)
+        search = _Search(text, rough, at, target, scale, search.meanings, whole, fits)
         more = [k for k, one in enumerate(rough) if one.half > 0 and not literals[k].half]
         found = search.among(sorted({*alike, *more}))
         shown = dict(zip(map(id, rough), literals, strict=True))
@@ -146,6 +155,10 @@ def fitted(
     return None
 
 
+_Fit = tuple[Array, list[int] | None]
+"""The numbers of all literals, and a group that the values leave undecided."""
+
+
 @dataclass(eq=False)
 class _Search:
     """Looks for numbers that explain a text's difference."""
@@ -156,6 +169,7 @@ class _Search:
     target: Array
     scale: Array
     meanings: Meanings
+    whole: int
     left: int
 
     def among(self, rest: list[int]) -> Meant | None:
@@ -163,7 +177,7 @@ class _Search:
         groups: dict[str, list[int]] = {}
         for k in rest:
             groups.setdefault(self.literals[k].text, []).append(k)
-        singly = [self.explained([members]) for members in groups.values()]
+        singly = [self.explained([one]) for one in groups.values() if self._may_do(one)]
         found = [way for way in singly if way]
         if found:
             return min(found, key=lambda way: self.oddness(*way.changed[0]))
@@ -179,35 +193,48 @@ class _Search:
 
     def explained(self, ways: list[list[int]]) -> Meant | None:
         """The literals that change, where each group moves as one within its digits, or None."""
-        found = self._settled(ways, {}, False)
-        return found if found is not None else self._settled(ways, {}, True)
+        first = self._fitted(ways, {}) if self.left > 0 else None
+        self.left -= 1
+        if first is None:
+            return None
+        found = self._settled(ways, {}, False, first)
+        return found if found is not None else self._settled(ways, {}, True, first)
+
+    def _may_do(self, members: list[int]) -> bool:
+        """Whether what is off goes with what some literals change together."""
+        numbers = np.array([one.value for one in self.literals])
+        rest = (self.target - self.text.values(self.at, numbers)) / self.scale
+        numbers[members] += _step(self.literals[members[0]])
+        slope = (self.target - self.text.values(self.at, numbers)) / self.scale - rest
+        length = float(slope @ slope)
+        if not np.isfinite(length) or not length:
+            return False
+        left = rest - (slope @ rest) / length * slope
+        return bool(left @ left <= _STRAIGHT * (rest @ rest))
 
     def _settled(
-        self, ways: list[list[int]], fixed: Mapping[int, float], own: bool
+        self, ways: list[list[int]], fixed: Mapping[int, float], own: bool, fitted: _Fit
     ) -> Meant | None:
         """The same with the values of some groups settled, by their first member.
 
         An error that could lie in either of two numbers is laid into neither unless all of them
         mean something, or the one is the robot's ``own`` number and the other its coefficient.
         """
-        fitted = self._fitted(ways, fixed) if self.left > 0 else None
-        self.left -= 1
-        if fitted is None:
-            return None
         numbers, loose = fitted
         if loose is None:
             return self._sound(ways, numbers, own or not fixed)
         one = self.literals[loose[0]]
         for value in (one.value, *self.meanings.around(one)):
             if not own or value == one.value or self.meanings.parameter(value) is not None:
-                found = self._settled(ways, {**fixed, loose[0]: value}, own)
+                more = {**fixed, loose[0]: value}
+                again = self._fitted(ways, more) if self.left > 0 else None
+                self.left -= 1
+                found = self._settled(ways, more, own, again) if again is not None else None
                 if found is not None:
                     return found
         return None
 
-    def _fitted(
-        self, ways: list[list[int]], fixed: Mapping[int, float]
-    ) -> tuple[Array, list[int] | None] | None:
+    def _fitted(self, ways: list[list[int]], fixed: Mapping[int, float]) -> _Fit | None:
         """All literals' numbers, and a group that the values leave undecided."""
         literals = self.literals
         start = np.array([one.value for one in literals])
@@ -276,13 +303,8 @@ class _Search:
             if abs(numbers[k] - literals[k].value)
             > TOLERANCES.formula_agrees * abs(literals[k].value)
         ]
-        few = max(2, min((one.digits for one, _x in changed if not one.whole), default=_WHOLE))
-        lone = not np.ptp(self.target)  # an answer of one number is what it says
-        near = [not lone and abs(x - one.value) <= CLOSE * abs(x) for one, x in changed]
-        pairs = zip(changed, near, strict=True)
-        if not changed or not all(
-            self.meanings.credible(*pair, 2 if close else few) for pair, close in pairs
-        ):
+        few = min((one.digits for one, _x in changed if not one.whole), default=self.whole)
+        if not changed or not all(self._credible(*pair, max(2, few)) for pair in changed):
             return None
         bare = [
             k
@@ -294,6 +316,14 @@ class _Search:
         if bare and not (alone and told_apart(self.text, self.at, numbers, bare)):
             return None
         return Meant(changed, numbers)
+
+    def _credible(self, one: Literal, value: float, digits: int) -> bool:
+        """Whether a number may be rounded: a whole one nearly, or not to fewer digits than others.
+
+        What is the whole answer is what it says.
+        """
+        near = self.whole < _WHOLE and abs(value - one.value) <= CLOSE * abs(value)
+        return self.meanings.credible(one, value, self.whole if near else digits)
 
     def _felt(self, k: int, numbers: Array) -> bool:
         """Whether a number changes anything: the zero of a potential does not."""
