@@ -45,6 +45,8 @@ _ALONE = 75_000_000
 """What may be done for single edits beside which none stands."""
 _NODE = 30
 """What compiling one node amounts to."""
+_ENDING, _LONGER = ast.While | ast.Break, 6
+"""What ends when it is near enough, and how much longer it runs with an edit in it."""
 _SHARE = 6
 """Of that work, the part of each search beside edits that stand already."""
 _NUMBERS = 4
@@ -181,6 +183,8 @@ class LineSearch:
         self.observed = Observed(self.trial, self.states)
         self.amounts = amounts(self.trial, self.observed, self.states)
         self.nodes = [len(nodes(tree)) for tree in self.trial.trees]
+        ending = (isinstance(one, _ENDING) for tree in self.trial.trees for one in nodes(tree))
+        self.longer = _LONGER if any(ending) else 1
         self.evidence = Grounds(self.trial, self.observed, self.known)
         self._other = other_arm(self.case.robot, self.trial, self.observed)
         self._there: list[LineSearch | None] = []
@@ -368,7 +372,7 @@ class LineSearch:
 
     def cost_of(self, edit: ProgramEdit) -> int:
         """What running and compiling the program amounts to, to try an edit."""
-        run = self.amounts[edit.part] * len(self.first) // len(self.watched)
+        run = self.longer * self.amounts[edit.part] * len(self.first) // len(self.watched)
         return run + (_NODE * self.nodes[edit.part] if edit.part >= 0 else 0)
 
     def _dear(self, edit: ProgramEdit) -> float:

@@ -117,11 +117,11 @@ class TriedTogether:
     def pairs(self) -> list[Chosen]:
         """Any two edits that make the program right, the likeliest first."""
         found: list[Chosen] = []
-        rank = -1
-        for total, one, other in self._blocks() if self.usable else ():
-            if total != rank and (found or self.left <= 0):
+        before = 0
+        for rank, one, other in self._blocks() if self.usable else ():
+            if rank != before and (found or self.left <= 0):
                 break
-            rank = total
+            before = rank
             chosen = self._apart(one, other)
             if not len(chosen):
                 continue
@@ -137,11 +137,12 @@ class TriedTogether:
         return sorted(found, key=self.known.cost)
 
     def _blocks(self) -> Iterator[tuple[int, Any, Any]]:
-        """Some edits and others, the likeliest first."""
+        """Some edits and others, the likeliest first: of two slips one is mostly a likely one."""
         blocks = [self.sound[k : k + _BLOCK] for k in range(0, len(self.sound), _BLOCK)]
         each = range(len(blocks))
-        for total, i, j in sorted((i + j, i, j) for i in each for j in each if i <= j):
-            yield total, blocks[i], blocks[j]
+        ranked = sorted(((i + 1) * (j + 1), i, j) for i in each for j in each if i <= j)
+        for rank, i, j in ranked:
+            yield rank, blocks[i], blocks[j]
 
     def _apart(self, one: Any, other: Any) -> Any:
         """Each of some edits with each of others; within one another only the likeliest."""
