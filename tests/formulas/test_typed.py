@@ -449,7 +449,7 @@ def test_sums_and_products_of_matrices(entry, text):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "have no product"),
+        (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "has no product"),
         (r"m_2(\begin{bmatrix}1\\0\end{bmatrix}+\begin{bmatrix}1\\1\end{bmatrix})", "in brackets"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} \times \begin{bmatrix}1\\0\end{bmatrix}", "beside"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} + \begin{bmatrix}1\\0\\1\end{bmatrix}", "no sum"),
