@@ -215,23 +215,22 @@ _COMMENT = re.compile(r"(?<!\\)%.*")
 """What MATLAB and LaTeX leave out."""
 
 
+_GAP = re.compile(r"\s{12,}")
+
+
 def bare(text: str) -> str:
     """A formula without the dollars and environments around it, and what says nothing behind it."""
-    text = _COMMENT.sub("", text.translate(WIDE)).strip()
-    changed = True
-    while changed:
-        changed = False
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text.translate(WIDE))
+    text, before = _COMMENT.sub("", text).strip(), ""
+    while text != before:
+        before = text = without_remarks(text).strip()
         for opening, closing in _OUTSIDE:
             long_enough = len(text) >= len(opening) + len(closing)
             if long_enough and text.startswith(opening) and text.endswith(closing):
-                text, changed = text[len(opening) : -len(closing)].strip(), True
-        for mark in (r"\\", ";", ",", r"\,", "\\"):
-            if text.endswith(mark):
-                text, changed = text.removesuffix(mark).strip(), True
+                text = text[len(opening) : -len(closing)].strip()
+        text = text.rstrip("\\;, \n\t")
         if re.search(r"[\w)}]\s*\.$", text):
-            text, changed = text[:-1].strip(), True
-        cut = without_remarks(text).strip()
-        text, changed = (cut, True) if cut != text else (text, changed)
+            text = text[:-1].strip()
     return text
 
 
@@ -413,11 +412,11 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     return left, f"${right}$" if typeset else right
 
 
-_NAMED_NEXT = r"(?=[\\\w{}]+(?:\(q\))?\s*&?\s*:?=)"
-_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z]))*"
+_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\))?\s*&?\s*:?=)"
+_SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
     rf"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])|\\text\s*\{{\s*(?:and|和|且))"
-    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES})*{_NAMED_NEXT})"
+    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
 )
 """What ends an equation: the end of a line, a semicolon, a comma before the next name."""
 _WHERE = re.compile(r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*")
@@ -493,6 +492,9 @@ _BY_DEFINITION = re.compile(
 """A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f."""
 
 
+_LONGEST_CHAIN = 8
+
+
 def readings(text: str, entry: str) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
@@ -500,7 +502,7 @@ def readings(text: str, entry: str) -> list[str]:
     \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out.
     """
     parts = [part.strip() for part in bare(text).split("=")]
-    if len(parts) < 2 or not all(parts) or any(part[-1] in "<>!" for part in parts):
+    if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
     names = [part for part in parts if _is_name(part)]
     formulas = [part for part in parts if part not in names] or parts[-1:]
