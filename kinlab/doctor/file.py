@@ -22,9 +22,10 @@ from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
 from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
+from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import FormulaFile, formula_file
 from kinlab.host.files import read_text
-from kinlab.host.language import _
+from kinlab.host.language import N_, _
 from kinlab.model.library import load
 from kinlab.model.robot import Robot
 
@@ -220,7 +221,7 @@ def _claims(
         except KinlabError as problem:
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None
         if any(isinstance(k, slice) for k in index):
-            raise ExpressionError(f"{file.path}: {entry}: name one entry, not a range")
+            raise refused(f"{file.path}: {entry}", N_("name one entry, not a range"))
         label = label_of(plain, index)
         if label in titles:
             raise ExpressionError(f"{file.path}: {twice(entry, titles[label])}")
@@ -252,8 +253,12 @@ def _answers(
     labels = [label_of(plain, k) for k in np.ndindex(shape)]
     for label in formulas:
         if label not in labels:
-            raise ExpressionError(
-                f"{file.path}: {titles[label]}: {label} does not exist; {plain} has shape {shape}"
+            raise refused(
+                f"{file.path}: {titles[label]}",
+                N_("{label} does not exist; {plain} has shape {shape}"),
+                label=label,
+                plain=plain,
+                shape=shape,
             )
     if plain in _MIRRORED:
         turned = {label_of(plain, k): label_of(plain, k[::-1]) for k in np.ndindex(shape)}
@@ -339,8 +344,11 @@ def _values(text: Written, case: Case, file: FormulaFile, entry: str) -> Array:
     at = numbers_at(case)
     foreign = sorted(tree.names(text.node) - set(at)) or text.foreign(set(at))
     if foreign:
-        raise ExpressionError(
-            f"{file.path}: {entry}: {foreign[0]} does not belong into "
-            f"{case.quantity.name}, which depends on {', '.join(case.quantity.arguments)}"
+        raise refused(
+            f"{file.path}: {entry}",
+            N_("{text} does not belong into {name}, which depends on {value}"),
+            text=foreign[0],
+            name=case.quantity.name,
+            value=", ".join(case.quantity.arguments),
         )
     return text.values(at)

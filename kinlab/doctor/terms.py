@@ -142,7 +142,7 @@ def in_text(
     if not numbers:
         return []
     apart = [
-        (at, np.array(np.broadcast_to(tree.evaluate(right, at), (_POINTS,))))
+        (at, np.array(np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))))
         for at in parts(right, own)
     ]
     written, found = beside_rounded(plain[-1], apart)

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterator, Mapping
 from itertools import product
 
-from kinlab.errors import ExpressionError
+from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.typed import (
     LONG,
     TWO,
@@ -26,6 +26,7 @@ from kinlab.formulas.typed import (
     sides,
     turned,
 )
+from kinlab.host.language import N_
 
 Grid = list[list[str]]
 
@@ -71,7 +72,7 @@ def _one(text: str, place: str, writing: Hand) -> Grid | None:
     """The entries of a matrix that stands alone."""
     found = _MATRIX.fullmatch(text) or _WRAPPED.fullmatch(text)
     if found and found[1] == "vmatrix":
-        raise ExpressionError(f"{place}: vmatrix is a determinant; write bmatrix for a matrix")
+        raise refused(place, N_("vmatrix is a determinant; write bmatrix for a matrix"))
     if found:
         lines = [row for row in re.split(r"\\\\(?:\[[^\]]*\])?|\\cr\b", found[2]) if row.strip()]
         rows = [[f"${cell.strip()}$" for cell in line.split("&")] for line in lines]
@@ -91,9 +92,9 @@ def _one(text: str, place: str, writing: Hand) -> Grid | None:
     if len({len(row) for row in rows}) > 1 or not all(
         cell.strip("$") for row in rows for cell in row
     ):
-        raise ExpressionError(f"{place}: the rows of the matrix have different lengths, or gaps")
+        raise refused(place, N_("the rows of the matrix have different lengths, or gaps"))
     if len(rows) * len(rows[0]) > _MOST:
-        raise ExpressionError(f"{place}: a matrix of more than {_MOST} entries")
+        raise refused(place, N_("a matrix of more than {most} entries"), most=_MOST)
     return [list(column) for column in zip(*rows, strict=True)] if over else rows
 
 
@@ -215,7 +216,7 @@ def _terms(held: str, place: str) -> Iterator[tuple[str, str]]:
     for character in held:
         depth += (character in "([{") - (character in ")]}")
         if character == "\x01" and depth:
-            raise ExpressionError(f"{place}: a sum of matrices in brackets; write it without them")
+            raise refused(place, N_("a sum of matrices in brackets; write it without them"))
         if character in "+-" and depth == 0 and term.rstrip()[-1:] not in ("*", "/", "^", "@"):
             if term.strip():
                 yield sign, term
@@ -232,8 +233,8 @@ _TIMES = r"(?:\s|\*|@|\\cdot(?![A-Za-z])|\\[,;:!]|~|&)*"
 def _factor(piece: str, place: str, dollars: str) -> str:
     """What stands between two matrices, without the signs of multiplication."""
     if r"\times" in piece or ".*" in piece or piece.lstrip()[:1] == "^":
-        raise ExpressionError(
-            f"{place}: {piece.strip()[:20]} beside a matrix; write the entries out"
+        raise refused(
+            place, N_("{text} beside a matrix; write the entries out"), text=piece.strip()[:20]
         )
     piece = re.sub(f"^{_TIMES}|{_TIMES}$", "", piece)
     piece = f"1{piece}" if piece[:1] == "/" else piece
@@ -245,8 +246,9 @@ def _product(left: Grid, right: Grid, place: str) -> Grid:
         if len(one) == len(one[0]) == 1:
             return [[_times(one[0][0], cell, place) for cell in row] for row in other]
     if len(left[0]) != len(right):
-        sizes = f"{len(left)} x {len(left[0])} and {len(right)} x {len(right[0])}"
-        raise ExpressionError(f"{place}: matrices of {sizes} have no product")
+        sizes = (f"{len(one)} x {len(one[0])}" for one in (left, right))
+        said = N_("a matrix of {size} has no product with one of {other}")
+        raise refused(place, said, size=next(sizes), other=next(sizes))
     columns = list(zip(*right, strict=True))
     made: Grid = [[] for _row in left]
     for (i, row), column in product(enumerate(left), columns):
@@ -257,7 +259,7 @@ def _product(left: Grid, right: Grid, place: str) -> Grid:
 
 def _sum(left: Grid, right: Grid, place: str) -> Grid:
     if (len(left), len(left[0])) != (len(right), len(right[0])):
-        raise ExpressionError(f"{place}: matrices of different sizes have no sum")
+        raise refused(place, N_("matrices of different sizes have no sum"))
     return [
         [" + ".join(c for c in (a, b) if c != "0") or "0" for a, b in zip(x, y, strict=True)]
         for x, y in zip(left, right, strict=True)
@@ -273,7 +275,7 @@ def _times(left: str, right: str, place: str) -> str:
     if "1" in (left, right):
         return right if left == "1" else left
     if len(left) + len(right) > LONGEST:
-        raise ExpressionError(f"{place}: a product of matrices too long to be written out")
+        raise refused(place, N_("a product of matrices too long to be written out"))
     left, right = (one if _SINGLE.fullmatch(one) else f"({one})" for one in (left, right))
     return f"{left}*{right}"
 
@@ -320,7 +322,9 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
         if turned(left, right, name):  # ... = tau2
             left, right = "", f"${left}$" if right[:1] == "$" else left
         if left and not of_one_name(entry_name(left, at, writing), name):
-            raise ExpressionError(f"{at}: the formula begins with {left[:40]} =, which is another")
+            raise refused(
+                at, N_("the formula begins with {text} =, which is another"), text=left[:40]
+            )
         whole = not (name[-1:].isdigit() or name.endswith("]"))
         grid = cells(right, at, writing) or (_in_a_row(right) if whole else None)
         if grid and len(grid) == len(grid[0]) == 1:
@@ -329,14 +333,12 @@ def opened(entries: Mapping[str, str], place: str, writing: Hand | None = None) 
             grid = [[cell] for cell in grid[0]]
         in_a_list = right[:1] == "[" and right[:2] != "[[" and ";" not in right
         if grid and name in TWO and len(grid[0]) == 1 and in_a_list:
-            raise ExpressionError(
-                f"{at}: a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"
-            )
+            raise refused(at, N_("a row or a column? write [a, b; c, d] or [[a, b], [c, d]]"))
         if grid is None:
             _put(plain, name, right, at)
             continue
         if not whole:
-            raise ExpressionError(f"{at}: {name} is one entry, and a matrix is given")
+            raise refused(at, N_("{name} is one entry, and a matrix is given"), name=name)
         for i, row in enumerate(grid, 1):
             for j, cell in enumerate(row, 1):
                 long = name in LONG or "_" in name
@@ -359,5 +361,5 @@ def _in_a_row(text: str) -> Grid | None:
 
 def _put(entries: dict[str, str], name: str, formula: str, place: str) -> None:
     if name in entries:
-        raise ExpressionError(f"{place}: {name} is given twice; keep one")
+        raise refused(place, N_("{name} is given twice; keep one"), name=name)
     entries[name] = formula

@@ -14,6 +14,7 @@ from typing import Any
 
 from kinlab.errors import FileError
 from kinlab.host.files import read_toml
+from kinlab.host.language import _
 
 _FULL = {
     ord("“"): '"',
@@ -88,14 +89,14 @@ def _read(text: str, place: str, found: Lines) -> None:
             header = told[1]
             table = found.document.setdefault(header, {})
             if not told[2] or piece.translate(_FULL) != piece:
-                problem = f"{place}: line {number}: write [{header}]"
+                problem = f"{_at(place, number)}: " + _("write [{header}]").format(header=header)
                 found.problems.append(("", FileError(problem)))
             continue
         if _BLANK.fullmatch(piece):
             continue
         key, value, remedy = _entry(piece)
         if remedy:
-            shown = f"{place}: line {number}: " + (f"{key}: " if key else "")
+            shown = f"{_at(place, number)}: " + (f"{key}: " if key else "")
             found.problems.append((key, FileError(shown + remedy)))
             continue
         lines = seen.setdefault((header, key), [])
@@ -106,11 +107,14 @@ def _read(text: str, place: str, found: Lines) -> None:
         if len(lines) > 1:
             table = found.document[header] if header else found.document
             del table[key]
-            numbers = (
-                " and ".join(map(str, lines)) if len(lines) == 2 else ", ".join(map(str, lines))
-            )
-            problem = f"{place}: {key} is given twice, in lines {numbers}; keep one"
+            numbers = (_(" and ") if len(lines) == 2 else _(", ")).join(map(str, lines))
+            twice = _("{name} is given twice, in lines {numbers}; keep one")
+            problem = f"{place}: {twice.format(name=key, numbers=numbers)}"
             found.problems.append((key, FileError(problem)))
+
+
+def _at(place: str, number: int) -> str:
+    return _("{place}: line {number}").format(place=place, number=number)
 
 
 def _pieces(text: str) -> list[tuple[int, str]]:
@@ -148,16 +152,20 @@ def _entry(piece: str) -> tuple[str, Any, str]:
         changed = _ENTRY.fullmatch(plain)
         name = changed[1].strip("\"' ") if changed else ""
         if changed and plain != piece:
-            return name, None, 'write the signs = and " of an English keyboard'
-        return "", None, f'{piece.strip()[:40]!r} is no entry; write name = "formula"'
+            return name, None, _('write the signs = and " of an English keyboard')
+        said = _('{text!r} is no entry; write name = "formula"')
+        return "", None, said.format(text=piece.strip()[:40])
     name, value = entry[1].strip("\"' "), entry[2].strip()
     inside = _ON_ONE_LINE.fullmatch(value)
     if inside and not (_BARE_KEY.fullmatch(name) and inside[1] and "\\" in inside[1]):
         return name, inside[1] if inside[1] is not None else inside[2], ""
     if not value:
-        return name, None, f'nothing stands behind =; write {name[:30]} = "formula"'
+        said = _('nothing stands behind =; write {name} = "formula"')
+        return name, None, said.format(name=name[:30])
     if value[0] in "\"'":
-        return name, None, "the quotes are not closed, or more stands behind them"
+        return name, None, _("the quotes are not closed, or more stands behind them")
     if plain != piece and value.translate(_FULL)[0] in "\"'":
-        return name, None, f'write the quotes " of an English keyboard, not {value[0]}'
-    return name, None, f'the formula stands in quotes: {name[:30]} = "{value[:40]}"'
+        said = _('write the quotes " of an English keyboard, not {sign}')
+        return name, None, said.format(sign=value[0])
+    said = _('the formula stands in quotes: {name} = "{formula}"')
+    return name, None, said.format(name=name[:30], formula=value[:40])

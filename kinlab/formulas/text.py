@@ -27,10 +27,12 @@ from fractions import Fraction
 from functools import partial
 from typing import Any
 
-from kinlab.errors import ExpressionError, FileError, near
+from kinlab.errors import ExpressionError, FileError
 from kinlab.formulas import grids, tree, typed
 from kinlab.formulas.arithmetic import Meaning, is_arithmetic, read
+from kinlab.formulas.signs.refusals import near_names, refused
 from kinlab.formulas.tree import Node
+from kinlab.host.language import N_, _
 
 _LENGTH = 20_000
 MOST_NODES = 5_000
@@ -109,7 +111,7 @@ def formula_file(
     document = dict(document)
     robot = document.pop("robot", None)
     if not isinstance(robot, str) or not robot:
-        raise FileError(f'{place}: robot is missing; write robot = "planar2r" or a path')
+        raise FileError(f"{place}: " + _('robot is missing; write robot = "planar2r" or a path'))
     symbols = _table(document.pop("symbols", {}), f"{place}: [symbols]")
     entries = _table(document.pop("formulas", {}), f"{place}: [formulas]")
     typeset = _table(document.pop("latex", {}), f"{place}: [latex]")
@@ -117,13 +119,21 @@ def formula_file(
         if key in _ABOUT:
             continue
         if not isinstance(value, str):
-            raise FileError(f"{place}: {key!r} is no formula; write it as text in [formulas]")
+            raise FileError(
+                f"{place}: "
+                + _("{key!r} is no formula; write it as text in [formulas]").format(key=key)
+            )
         entries[key] = value
     for key in typeset.keys() & entries.keys():
-        raise FileError(f"{place}: {key!r} is given twice, as text and as LaTeX; keep one")
+        raise FileError(
+            f"{place}: "
+            + _("{key!r} is given twice, as text and as LaTeX; keep one").format(key=key)
+        )
     entries |= {key: f"${_text(value, f'{place}: {key}')}$" for key, value in typeset.items()}
     if not entries:
-        raise FileError(f'{place}: no formulas; write [formulas] and lines such as tau1 = "..."')
+        raise FileError(
+            f"{place}: " + _('no formulas; write [formulas] and lines such as tau1 = "..."')
+        )
     for found, what in ((entries, "formulas"), (symbols, "symbols")):
         if len(found) > _FORMULAS:
             raise FileError(f"{place}: {len(found)} {what}; at most {_FORMULAS}")
@@ -139,10 +149,10 @@ def formula_file(
             if name not in used and not _readable(formula):
                 continue  # beside the formula, and not used in it
             if symbols.setdefault(name, formula) != formula:
-                said = (
-                    f"{name} is explained twice; keep one, in front of the formula or in [symbols]"
+                said = N_(
+                    "{name} is explained twice; keep one, in front of the formula or in [symbols]"
                 )
-                raise ExpressionError(f"{place}: {key}: {said}")
+                raise refused(f"{place}: {key}", said, name=name)
     chains = {key: typed.readings(value, key) for key, value in entries.items()}
     entries = {key: parts[0] for key, parts in chains.items()}
     read = partial(_read, place, robot, symbols, writing)
@@ -237,20 +247,26 @@ def parse(text: str, place: str = "expression") -> Node:
         ExpressionError: too long, too deep, a huge power, or anything but arithmetic.
     """
     if len(text) > _LENGTH:
-        raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
+        raise refused(
+            place, N_("{count} characters; at most {length}"), count=len(text), length=_LENGTH
+        )
     given, text = text, tidied(text)
     _refuse_deep(text, place)
     try:
         parsed = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError) as problem:
-        where = f" near column {problem.offset}" if isinstance(problem, SyntaxError) else ""
-        raise ExpressionError(
-            f"{place}: no arithmetic{where}: {_short(given)}{_remedy(text)}"
-        ) from None
+        near = isinstance(problem, SyntaxError)
+        said = (
+            N_("no arithmetic near column {column}: {text}")
+            if near
+            else N_("no arithmetic: {text}")
+        )
+        shown = f"{_short(given)}{_remedy(text)}"
+        raise refused(place, said, column=getattr(problem, "offset", 0), text=shown) from None
     except (RecursionError, MemoryError):
-        raise ExpressionError(f"{place}: nested too deep") from None
+        raise refused(place, N_("nested too deep")) from None
     if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:
-        raise ExpressionError(f"{place}: more than {MOST_NODES} terms and factors")
+        raise refused(place, N_("more than {most_nodes} terms and factors"), most_nodes=MOST_NODES)
     return _Reader(place).read(parsed.body)
 
 
@@ -258,10 +274,10 @@ def _remedy(text: str) -> str:
     """What is likely to be missing in a text that is no arithmetic."""
     opened, closed = text.count("("), text.count(")")
     if opened != closed:
-        more = "a bracket is not closed" if opened > closed else "a bracket is closed too often"
-        return f"; {more}"
+        much = _("a bracket is not closed"), _("a bracket is closed too often")
+        return _("; ") + much[opened < closed]
     if re.search(r"[\w)] +[\w(]", text):
-        return "; write * between factors"
+        return _("; ") + _("write * between factors")
     return ""
 
 
@@ -342,23 +358,27 @@ class _Reader:
 
     def _admit(self, node: ast.expr, depth: int) -> None:
         if depth > _DEPTH + _CHAIN:
-            raise ExpressionError(f"{self.place}: nested deeper than {_DEPTH}")
+            raise refused(self.place, N_("nested deeper than {depth}"), depth=_DEPTH)
         if not is_arithmetic(node):
             kind = type(node).__name__
-            raise ExpressionError(
-                f"{self.place}: {kind} is not arithmetic; write numbers, names, + - * / ** ( ) and "
-                f"functions such as sin, cos, sqrt"
+            raise refused(
+                self.place,
+                N_(
+                    "{kind} is not arithmetic; write numbers, names, + - * / ** ( ) and functions "
+                    "such as sin, cos, sqrt"
+                ),
+                kind=kind,
             )
 
     def _number(self, number: float) -> Fraction:
         if not math.isfinite(number):
-            raise ExpressionError(f"{self.place}: a number is not finite")
+            raise refused(self.place, N_("a number is not finite"))
         value = Fraction(repr(number)) if isinstance(number, float) else Fraction(number)
         return self._bounded(value)
 
     def _bounded(self, value: Fraction) -> Fraction:
         if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
-            raise ExpressionError(f"{self.place}: a number is too large or too small")
+            raise refused(self.place, N_("a number is too large or too small"))
         return value
 
     def _binary(self, op: ast.operator, left: Node, right: Node) -> Node:
@@ -366,7 +386,7 @@ class _Reader:
             return self._power(left, right)
         if isinstance(op, ast.Div):
             if right.op == "num" and right.value == 0:
-                raise ExpressionError(f"{self.place}: division by zero")
+                raise refused(self.place, N_("division by zero"))
             made = tree.mul(left, tree.power(right, Fraction(-1)))
         elif isinstance(op, ast.Mult):
             made = tree.mul(left, right)
@@ -382,16 +402,21 @@ class _Reader:
 
     def _power(self, base: Node, exponent: Node) -> Node:
         if exponent.op != "num":
-            raise ExpressionError(f"{self.place}: the power {exponent} is not a number")
+            raise refused(self.place, N_("the power {exponent} is not a number"), exponent=exponent)
         value = exponent.value
         if abs(value) > _EXPONENT or value.denominator > 2:
-            shown = str(value) if value.numerator.bit_length() < 64 else "huge"
-            raise ExpressionError(
-                f"{self.place}: the power {shown} is beyond what formulas of arms need "
-                f"(up to {_EXPONENT}, and halves)"
+            shown = str(value) if value.numerator.bit_length() < 64 else _("huge")
+            raise refused(
+                self.place,
+                N_(
+                    "the power {shown} is beyond what formulas of arms need (up to {exponent}, and "
+                    "halves)"
+                ),
+                shown=shown,
+                exponent=_EXPONENT,
             )
         if base.op == "num" and base.value == 0 and value < 0:
-            raise ExpressionError(f"{self.place}: division by zero")
+            raise refused(self.place, N_("division by zero"))
         made = tree.power(base, value)
         if made.op == "num":
             self._bounded(made.value)
@@ -400,11 +425,22 @@ class _Reader:
     def _call(self, name: str, args: list[Node]) -> Node:
         plain = tree.SYNONYMS.get(name, name)
         if plain not in tree.FUNCTIONS:
-            choices = near(name, [*tree.FUNCTIONS, *tree.SYNONYMS])
-            raise ExpressionError(f"{self.place}: function {_short(name)!r} is unknown; {choices}")
+            choices = near_names(name, [*tree.FUNCTIONS, *tree.SYNONYMS])
+            raise refused(
+                self.place,
+                N_("function {text!r} is unknown; {choices}"),
+                text=_short(name),
+                choices=choices,
+            )
         wanted = 2 if plain == "atan2" else 1
         if len(args) != wanted:
-            raise ExpressionError(f"{self.place}: {plain} takes {wanted} argument, not {len(args)}")
+            raise refused(
+                self.place,
+                N_("{plain} takes {wanted} argument, not {count}"),
+                plain=plain,
+                wanted=wanted,
+                count=len(args),
+            )
         if plain == "sqrt":
             return tree.power(args[0], Fraction(1, 2))
         return tree.call(plain, *args)
@@ -417,14 +453,19 @@ def _refuse_deep(text: str, place: str) -> None:
         depth += {"(": 1, "[": 1, "{": 1, ")": -1, "]": -1, "}": -1}.get(character, 0)
         deepest = max(deepest, depth)
     if deepest > _NESTING:
-        raise ExpressionError(f"{place}: {deepest} levels of parentheses; at most {_NESTING}")
+        raise refused(
+            place,
+            N_("{deepest} levels of parentheses; at most {nesting}"),
+            deepest=deepest,
+            nesting=_NESTING,
+        )
     signs = sum(text.count(character) for character in "+-*/")
     if signs > _CHAIN * 4:
-        raise ExpressionError(f"{place}: {signs} operators; at most {_CHAIN * 4}")
+        raise refused(place, N_("{signs} operators; at most {most}"), signs=signs, most=_CHAIN * 4)
     if re.search(r"(?:[+-]\s*){8,}", text):
-        raise ExpressionError(f"{place}: a row of signs without numbers")
+        raise refused(place, N_("a row of signs without numbers"))
     if re.search(rf"\d{{{_DIGITS + 1},}}", text):
-        raise ExpressionError(f"{place}: a number of more than {_DIGITS} digits")
+        raise refused(place, N_("a number of more than {digits} digits"), digits=_DIGITS)
 
 
 def _table(value: Any, place: str) -> dict[str, Any]:
@@ -435,11 +476,11 @@ def _table(value: Any, place: str) -> dict[str, Any]:
 
 def _symbol(value: Any, place: str) -> Node:
     if isinstance(value, bool) or not isinstance(value, (int, float, str)):
-        raise ExpressionError(f"{place}: {type(value).__name__}; give a number, or other names")
+        raise refused(place, N_("{kind}; give a number, or other names"), kind=type(value).__name__)
     if isinstance(value, str):
         return parse(value, place)
     if not math.isfinite(value) or abs(value) > 1e30:
-        raise ExpressionError(f"{place}: {value} is not a usable number")
+        raise refused(place, N_("{value} is not a usable number"), value=value)
     return tree.num(Fraction(repr(float(value))))
 
 
@@ -486,9 +527,11 @@ def _text(value: Any, place: str) -> str:
     if isinstance(value, list):  # a matrix as TOML has it
         value = "[" + ", ".join(_text(one, place) for one in value) + "]"
     if not isinstance(value, str):
-        raise ExpressionError(f"{place}: {type(value).__name__}; write the formula as text")
+        raise refused(place, N_("{kind}; write the formula as text"), kind=type(value).__name__)
     if len(value) > _LENGTH:
-        raise ExpressionError(f"{place}: {len(value)} characters; at most {_LENGTH}")
+        raise refused(
+            place, N_("{count} characters; at most {length}"), count=len(value), length=_LENGTH
+        )
     return value.translate(typed.WIDE)
 
 

@@ -16,7 +16,9 @@ from dataclasses import dataclass
 from kinlab.errors import ExpressionError
 from kinlab.formulas.signs import latex
 from kinlab.formulas.signs.beside import with_products
+from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.signs.remarks import without_remarks
+from kinlab.host.language import N_
 
 # -------- Which writing it is
 
@@ -105,7 +107,7 @@ def ascii_text(text: str, place: str = "expression", *, as_latex: bool = False) 
     text = re.sub(r" (?=_\{|[0-9])", "", text) if as_latex else text
     if not text.isascii():
         strange = next(c for c in text if not c.isascii())
-        raise ExpressionError(f"{place}: {strange!r} has no meaning in a formula")
+        raise refused(place, N_("{strange!r} has no meaning in a formula"), strange=strange)
     return text
 
 
@@ -213,23 +215,22 @@ _COMMENT = re.compile(r"(?<!\\)%.*")
 """What MATLAB and LaTeX leave out."""
 
 
+_GAP = re.compile(r"\s{12,}")
+
+
 def bare(text: str) -> str:
     """A formula without the dollars and environments around it, and what says nothing behind it."""
-    text = _COMMENT.sub("", text.translate(WIDE)).strip()
-    changed = True
-    while changed:
-        changed = False
+    text = _GAP.sub(lambda gap: "\n" if "\n" in gap[0] else " ", text.translate(WIDE))
+    text, before = _COMMENT.sub("", text).strip(), ""
+    while text != before:
+        before = text = without_remarks(text).strip()
         for opening, closing in _OUTSIDE:
             long_enough = len(text) >= len(opening) + len(closing)
             if long_enough and text.startswith(opening) and text.endswith(closing):
-                text, changed = text[len(opening) : -len(closing)].strip(), True
-        for mark in (r"\\", ";", ",", r"\,", "\\"):
-            if text.endswith(mark):
-                text, changed = text.removesuffix(mark).strip(), True
+                text = text[len(opening) : -len(closing)].strip()
+        text = text.rstrip("\\;, \n\t")
         if re.search(r"[\w)}]\s*\.$", text):
-            text, changed = text[:-1].strip(), True
-        cut = without_remarks(text).strip()
-        text, changed = (cut, True) if cut != text else (text, changed)
+            text = text[:-1].strip()
     return text
 
 
@@ -242,13 +243,19 @@ def _plain_signs(text: str, place: str) -> str:
     text = _MATHEMATICA.sub(lambda found: found[0].lower(), _PREFIX.sub("", text))
     text = _with_powers(_ELEMENTWISE.sub(r"\1", text))
     if found := _DEGREES.search(text):
-        raise ExpressionError(
-            f"{place}: {found[0]}...) takes degrees, and joints are in radians; write {found[1]}"
+        raise refused(
+            place,
+            N_("{found}...) takes degrees, and joints are in radians; write {found2}"),
+            found=found[0],
+            found2=found[1],
         )
     if _CHAINED.search(text):
-        raise ExpressionError(
-            f"{place}: a power of a power without parentheses: Python reads a^b^c from the right, "
-            "MATLAB from the left; write (a^b)^c"
+        raise refused(
+            place,
+            N_(
+                "a power of a power without parentheses: Python reads a^b^c from the right, "
+                "MATLAB from the left; write (a^b)^c"
+            ),
         )
     return text
 
@@ -270,9 +277,13 @@ def _without_indices(text: str, place: str, writing: Hand) -> str:
     called = _INDEXED.search(text)
     if _BRACKETS.search(text):
         if called and called[1] not in _FUNCTIONS:
-            raise ExpressionError(
-                f"{place}: {called[0]} beside an index in brackets: counted from 1 as in MATLAB, "
-                "or from 0 as in Python? write q1, q2, ... for the joints"
+            raise refused(
+                place,
+                N_(
+                    "{found} beside an index in brackets: counted from 1 as in MATLAB, or from 0 "
+                    "as in Python? write q1, q2, ... for the joints"
+                ),
+                found=called[0],
             )
         text = _BRACKETS.sub(lambda found: _numbered(found, place, writing), text)
     return _INDEXED.sub(lambda found: _matlab(found, place), text)
@@ -281,11 +292,18 @@ def _without_indices(text: str, place: str, writing: Hand) -> str:
 def _numbered(found: re.Match[str], place: str, writing: Hand) -> str:
     name, number = found[1], int(found[2])
     if number < 0:
-        raise ExpressionError(f"{place}: {found[0]} counts from the end; write the joint's number")
+        raise refused(
+            place, N_("{found} counts from the end; write the joint's number"), found=found[0]
+        )
     if writing.from_zero is None:
-        raise ExpressionError(
-            f"{place}: {found[0]}: counted from 0 as in Python, or from 1? nothing else in the "
-            f"formulas says so; write {name}1, {name}2, ... for joints 1, 2, ..."
+        raise refused(
+            place,
+            N_(
+                "{found}: counted from 0 as in Python, or from 1? nothing else in the formulas "
+                "says so; write {name}1, {name}2, ... for joints 1, 2, ..."
+            ),
+            found=found[0],
+            name=name,
         )
     return _joined(name, number + 1, found[0], place)
 
@@ -295,14 +313,16 @@ def _matlab(found: re.Match[str], place: str) -> str:
     if name in _FUNCTIONS:
         return found[0]
     if number == 0:
-        raise ExpressionError(f"{place}: {found[0]}: an index in parentheses counts from 1")
+        raise refused(place, N_("{found}: an index in parentheses counts from 1"), found=found[0])
     return _joined(name, number, found[0], place)
 
 
 def _joined(name: str, number: int, shown: str, place: str) -> str:
     if _FOLLOWING.fullmatch(name) or name in _NO_INDEX:
-        raise ExpressionError(
-            f"{place}: {shown}: an index behind {name!r} has no sure meaning; write * for a product"
+        raise refused(
+            f"{place}: {shown}",
+            N_("an index behind {name!r} has no sure meaning; write * for a product"),
+            name=name,
         )
     return f"{name.rstrip('_')}{number}"
 
@@ -321,9 +341,10 @@ def _capitals(text: str, place: str, writing: Hand) -> str:
         return text
     if not writing.capitals and not any(m[1] == "S" for m in found) and _RATES.search(text):
         name = found[0][0]
-        raise ExpressionError(
-            f"{place}: {name}: a cosine, or an entry of the matrix C? write {name.lower()} or "
-            "cos(...) for the cosine"
+        raise refused(
+            f"{place}: {name}",
+            N_("a cosine, or an entry of the matrix C? write {small} or cos(...) for the cosine"),
+            small=name.lower(),
         )
 
     def small(m: re.Match[str]) -> str:
@@ -341,9 +362,14 @@ def refuse_omega(text: str, place: str, known: Iterable[str]) -> None:
     for found in _OMEGA.finditer(text):
         if found[0] not in known:
             k = found[1]
-            raise ExpressionError(
-                f"{place}: {found[0]}: the rate of joint {k}, or the angular velocity of link {k}? "
-                f"write qd{k} or the sum of rates, or explain it in [symbols]"
+            raise refused(
+                place,
+                N_(
+                    "{found}: the rate of joint {k}, or the angular velocity of link {k}? write "
+                    "qd{k} or the sum of rates, or explain it in [symbols]"
+                ),
+                found=found[0],
+                k=k,
             )
 
 
@@ -369,24 +395,28 @@ def sides(text: str, place: str = "expression") -> tuple[str, str]:
     text = bare(text)
     parts = re.sub(r"&?\s*:?=\s*(?:\{\s*\})?\s*&?", "=", text).split("=")
     if len(parts) > 2 or any(p.rstrip()[-1:] in ("<", ">", "!") for p in parts[:-1]):
-        raise ExpressionError(
-            f"{place}: {len(parts) - 1} signs of equality; write one name = formula, and of "
-            "several each as an entry of [formulas] in a file for kinlab check"
+        raise refused(
+            place,
+            N_(
+                "{count} signs of equality; write one name = formula, and of several each as "
+                "an entry of [formulas] in a file for kinlab check"
+            ),
+            count=len(parts) - 1,
         )
     if len(parts) == 1:
         return "", f"${text}$" if typeset else text
     if not parts[1].strip():
-        raise ExpressionError(f"{place}: nothing stands behind the sign of equality")
+        raise refused(place, N_("nothing stands behind the sign of equality"))
     left, right = (part.strip() for part in parts)
     typeset = typeset and (is_latex(right) or "*" not in right or "$" in text)
     return left, f"${right}$" if typeset else right
 
 
-_NAMED_NEXT = r"(?=[\\\w{}]+(?:\(q\))?\s*&?\s*:?=)"
-_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z]))*"
+_NAMED_NEXT = r"(?=[\\\w{}]{1,40}(?:\(q\))?\s*&?\s*:?=)"
+_SPACES = r"\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])"
 _NEXT = re.compile(
     rf"(\n|(?<!\\);|\\\\(?:\[[^\]]*\])?|(?:(?<!\\),|\\q?quad(?![A-Za-z])|\\text\s*\{{\s*(?:and|和|且))"
-    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES})*{_NAMED_NEXT})"
+    rf"(?:\s*\}}|\\text\s*\{{\s*(?:and|和|且)\s*\}}|{_SPACES}){{0,20}}+{_NAMED_NEXT})"
 )
 """What ends an equation: the end of a line, a semicolon, a comma before the next name."""
 _WHERE = re.compile(r"[,;]?\s*(?:\\q?quad\s*)?(?:\\text\{\s*(?:where|with)\s*\}|\bwhere\b)\s*")
@@ -462,6 +492,9 @@ _BY_DEFINITION = re.compile(
 """A part of a chain of equalities that says what the entry is: a derivative, -y, J^T f."""
 
 
+_LONGEST_CHAIN = 8
+
+
 def readings(text: str, entry: str) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
@@ -469,7 +502,7 @@ def readings(text: str, entry: str) -> list[str]:
     \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out.
     """
     parts = [part.strip() for part in bare(text).split("=")]
-    if len(parts) < 2 or not all(parts) or any(part[-1] in "<>!" for part in parts):
+    if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
     names = [part for part in parts if _is_name(part)]
     formulas = [part for part in parts if part not in names] or parts[-1:]
@@ -584,7 +617,7 @@ def entry_name(text: str, place: str = "expression", writing: Hand | None = None
         ExpressionError: a name that can be read in two ways.
     """
     if len(text) > _LONGEST_NAME:
-        raise ExpressionError(f"{place}: {text[:30]}... is no name of an entry")
+        raise refused(place, N_("{text}... is no name of an entry"), text=text[:30])
     typed = _IN_BASE.sub("", _OF_STATE.sub("", bare(text).strip("& ")).strip())
     named = _NAMED.fullmatch(typed)
     if named and (not named[2] or named[1] == "fk" or "_" in named[1] or named[1] in LONG):

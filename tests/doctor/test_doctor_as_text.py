@@ -173,3 +173,8 @@ def test_a_scaras_torque_has_few_terms():
     assert kl.diagnose(arm, "tau3", "(Ia3 + m3 + m4)*qdd3 - (m3 + m4)*g").agrees
     lost = kl.diagnose(arm, "tau3", "m3*(qdd3 - g) + m4*(qdd3 - g)")
     assert not lost.agrees and "Ia3" in lost.causes[0].sentence
+
+
+def test_few_states_are_enough():
+    found = kl.diagnose("planar2r", "tau2", "1", samples=10)
+    assert not found.agrees

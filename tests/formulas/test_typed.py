@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import time
 
 import numpy as np
 import pytest
@@ -449,7 +450,7 @@ def test_sums_and_products_of_matrices(entry, text):
 @pytest.mark.parametrize(
     ("text", "said"),
     [
-        (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "have no product"),
+        (r"\begin{bmatrix}1&0\end{bmatrix}\begin{bmatrix}1&0\end{bmatrix}", "has no product"),
         (r"m_2(\begin{bmatrix}1\\0\end{bmatrix}+\begin{bmatrix}1\\1\end{bmatrix})", "in brackets"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} \times \begin{bmatrix}1\\0\end{bmatrix}", "beside"),
         (r"\begin{bmatrix}1\\0\end{bmatrix} + \begin{bmatrix}1\\0\\1\end{bmatrix}", "no sum"),
@@ -458,3 +459,27 @@ def test_sums_and_products_of_matrices(entry, text):
 def test_products_that_are_none_are_refused(text, said):
     with pytest.raises(ExpressionError, match=said):
         cells(text)
+
+
+@pytest.mark.parametrize(
+    "piece",
+    [
+        "\\\\",
+        r"\quad ",
+        "N m ",
+        r"\quad\text{a",
+        "= ",
+        "x = y = ",
+        "  ",
+        "\n",
+        "diag(",
+        r"\,",
+        "其中",
+        "; a = 1",
+    ],
+)
+def test_what_is_typed_without_end_is_refused_soon(piece):
+    began = time.process_time()
+    with pytest.raises(ExpressionError):
+        diagnosed("g2", "[" + piece * (15_000 // len(piece)))
+    assert time.process_time() - began < 5.0

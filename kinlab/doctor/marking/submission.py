@@ -120,13 +120,13 @@ def read_submission(path: Path, sheet: Sheet, root: Path | None = None) -> Submi
     stem = path.parent.name if root is not None and path.parent != root else path.stem
     about = path.lstat()
     if stat.S_ISLNK(about.st_mode):
-        raise FileError(f"{shown}: is a link; hand in the file itself")
+        raise FileError(f"{shown}: " + _("is a link; hand in the file itself"))
     try:
         text = read_text(path, limit=LARGEST)
     except FileError as problem:  # a student need not know where the class's folder is
         raise FileError(str(problem).replace(str(path), shown, 1)) from None
     if "\x00" in text:
-        raise FileError(f"{shown}: not text")
+        raise FileError(f"{shown}: " + _("not text"))
     suffix = path.suffix.lower()
     if suffix == ".toml":
         read = read_lines(text, shown)
@@ -270,7 +270,7 @@ _INSIDE = re.compile(r"\\begin\{(\w*matrix|array|aligned|split)\}.*?\\end\{\1\}"
 def _of_latex(text: str) -> list[tuple[str, Any]]:
     text = _COMMENT.sub("", text)
     if text.count(r"\begin") > _MOST or text.count("$") > 4 * _MOST or text.count(r"\[") > _MOST:
-        raise FileError(f"more than {_MOST} formulas in one file")
+        raise FileError(_("more than {most} formulas in one file").format(most=_MOST))
     body = _BODY.search(text)
     text = body[1] if body else text
     shown = [

@@ -16,9 +16,11 @@ from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.text.joints import joint_claimed
-from kinlab.errors import ExpressionError, near
+from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
+from kinlab.formulas.signs.refusals import near_names
 from kinlab.formulas.text import FormulaFile, canonical
+from kinlab.host.language import _
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
@@ -88,8 +90,9 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
         return joint
     if table is not None and len(table.links) == 1 and whole_of(entry, table):
         return alone(whole_of(entry, table))
-    choices = near(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
-    raise ExpressionError(f"{entry!r} names no quantity; {choices}")
+    choices = near_names(entry, ["tau1", "g1", "M11", "C11", "J11", "x", "y", *quantities()])
+    said = _("{entry!r} names no quantity; {choices}")
+    raise ExpressionError(said.format(entry=entry, choices=choices))
 
 
 def whole_of(entry: str, table: DHTable | None) -> str:

@@ -14,9 +14,10 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.inverse import TASKS
 from kinlab.doctor.changes import Case
 from kinlab.doctor.text.written import Written
-from kinlab.errors import ExpressionError
 from kinlab.formulas import tree
 from kinlab.formulas.record import SIDES
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 
@@ -56,13 +57,17 @@ def joint_values(
     labels = [f"{name}[{k}]" for k in range(n)]
     for k, label in enumerate(labels):
         if label not in formulas:
-            raise ExpressionError(
-                f"{path}: q{k + 1} is missing; joint positions are judged together, by where they "
-                "put the tool"
+            raise refused(
+                path,
+                N_(
+                    "q{number} is missing; joint positions are judged together, by where they put "
+                    "the tool"
+                ),
+                number=k + 1,
             )
     if len(formulas) > n:
         odd = next(label for label in formulas if label not in labels)
-        raise ExpressionError(f"{path}: {titles[odd]}: the arm has {n} joints")
+        raise refused(f"{path}: {titles[odd]}", N_("the arm has {n} joints"), n=n)
     used = {word for text in formulas.values() for word in tree.names(text.node)}
     sides = [side for side in SIDES if side in used]
     rows = [_row(case, formulas, labels, dict.fromkeys(sides, sign), path) for sign in (1.0, -1.0)]
@@ -89,9 +94,14 @@ def _row(
             left = next(label for label in labels if label not in found)
             missing = tree.names(formulas[left].node) - set(at)
             odd = min(missing, key=lambda word: (bool(_JOINT.fullmatch(word)), word))
-            raise ExpressionError(
-                f"{path}: {formulas[left].entry}: {odd} has no value from the target; joints that "
-                "stand on each other have none"
+            raise refused(
+                path,
+                N_(
+                    "{entry}: {odd} has no value from the target; joints that stand on each other "
+                    "have none"
+                ),
+                entry=formulas[left].entry,
+                odd=odd,
             )
         for k in ready:
             found[labels[k]] = at[f"q{k + 1}"] = formulas[labels[k]].values(at)

@@ -11,12 +11,12 @@ from kinlab.doctor.derived import LETTERS, WRENCH
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
-from kinlab.errors import ExpressionError, near
 from kinlab.formulas import tree, typed
 from kinlab.formulas.retyped import Typing
+from kinlab.formulas.signs.refusals import near_names, refused
 from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, parse, tidied
 from kinlab.formulas.tree import Node
-from kinlab.host.language import _
+from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
@@ -56,7 +56,7 @@ def _refuse_large(
             continue
         name = node.value
         if name in open_names:
-            raise ExpressionError(f"{place}: symbol {name!r} is explained by itself")
+            raise refused(place, N_("symbol {name!r} is explained by itself"), name=name)
         if name not in sizes:
             way = (*open_names, name)
             sizes[name] = _refuse_large(file.symbols[name], file, place, sizes, way)
@@ -64,8 +64,10 @@ def _refuse_large(
         if total > MOST_NODES:
             break
     if total > MOST_NODES:
-        raise ExpressionError(
-            f"{place}: with its symbols written out it has more than {MOST_NODES} terms and factors"
+        raise refused(
+            place,
+            N_("with its symbols written out it has more than {most_nodes} terms and factors"),
+            most_nodes=MOST_NODES,
         )
     return total
 
@@ -88,13 +90,21 @@ def _resolved(
         if not tree.names(meant) <= known:
             if _OF_LINK.fullmatch(name):
                 joint = f"q{'dd' if name[0] == 'a' else 'd'}{name[-1]}"
-                raise ExpressionError(
-                    f"{place}: {name}: of joint {name[-1]}, or of link {name[-1]}? write {joint} "
-                    "or the sum of the joints', or explain it in [symbols]"
+                raise refused(
+                    f"{place}: {name}",
+                    N_(
+                        "of joint {text}, or of link {text}? write {joint} or the sum of the "
+                        "joints', or explain it in [symbols]"
+                    ),
+                    text=name[-1],
+                    joint=joint,
                 )
-            choices = near(name, [*words, *sorted(known - set(words)), *file.symbols])
-            raise ExpressionError(
-                f"{place}: {name[:40]!r} is unknown; {choices}; or give it a meaning in [symbols]"
+            choices = near_names(name, [*words, *sorted(known - set(words)), *file.symbols])
+            raise refused(
+                place,
+                N_("{text!r} is unknown; {choices}; or give it a meaning in [symbols]"),
+                text=name[:40],
+                choices=choices,
             )
         mapping[name] = meant
     return tree.renamed(text, mapping)
@@ -105,9 +115,15 @@ def _by_value(name: str, given: Node, words: dict[str, float], place: str) -> No
     value = float(given.value)
     if name in words:
         if not may_be(_digits(given), words[name]):
-            raise ExpressionError(
-                f"{place}: {name} is {value:g} in [symbols] and {words[name]:g} in the robot; "
-                "give the robot's number, or another name"
+            raise refused(
+                place,
+                N_(
+                    "{name} is {value:g} in [symbols] and {text:g} in the robot; give the robot's "
+                    "number, or another name"
+                ),
+                name=name,
+                value=value,
+                text=words[name],
             )
         return tree.sym(name)
     alike = [w for w, x in words.items() if abs(x - value) <= TOLERANCES.same_number * abs(x)]

@@ -1,11 +1,13 @@
 """The signs that formulas are typed with, made plain: LaTeX, products without a sign, remarks.
 
-===========  =====================================================================================
-module       what it holds
-===========  =====================================================================================
-``beside``   Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
-``latex``    LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then reads
-``remarks``  What stands beside a formula and says nothing of its value: tags, units, words, old
-             fonts
-===========  =====================================================================================
+============  ====================================================================================
+module        what it holds
+============  ====================================================================================
+``beside``    Factors side by side in plain text, as in a book: ``2 l1 c12``, ``m2(a + b)``
+``latex``     LaTeX of the textbooks as plain arithmetic text, which the whitelist parser then
+              reads
+``refusals``  What is said of a formula that cannot be read, in the language of the reader
+``remarks``   What stands beside a formula and says nothing of its value: tags, units, words, old
+              fonts
+============  ====================================================================================
 """

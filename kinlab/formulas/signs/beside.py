@@ -8,6 +8,8 @@ from __future__ import annotations
 import re
 
 from kinlab.errors import ExpressionError
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_, _
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>\d+\.?\d*(?:[eE][+-]?\d+)?|\.\d+)|(?P<name>[A-Za-z_]\w*)"
@@ -48,7 +50,9 @@ def with_products(text: str, functions: set[str], place: str) -> str:
                 return text
             if below[-1] and not (gap and last == "number"):
                 under = below[-1]
-                raise _unsure(place, f"{token} behind .../{under}", f"a/({under}*b) or (a/b)*c")
+                what = _("{factor} behind .../{under}").format(factor=token, under=under)
+                remedy = _("a/({under}*b) or (a/b)*c").format(under=under)
+                raise _unsure(place, what, remedy)
             _refuse_call(tokens, k, place)
             gap = "*"
         if token in ("+", "-", "*", ",") or before == "/":
@@ -77,7 +81,9 @@ def _tokens(text: str) -> list[_Token] | None:
 
 
 def _unsure(place: str, what: str, remedy: str) -> ExpressionError:
-    return ExpressionError(f"{place}: {what} can be read in two ways; write {remedy}")
+    return refused(
+        place, N_("{what} can be read in two ways; write {remedy}"), what=what, remedy=remedy
+    )
 
 
 def _is_no_product(tokens: list[_Token], k: int, gap: str) -> bool:
@@ -95,7 +101,8 @@ def _refuse_call(tokens: list[_Token], k: int, place: str) -> None:
     inside = [token for _kind, token, _start, _end in tokens[k + 1 : k + 3]]
     if len(inside) == 2 and inside[1] in (")", ",") and _ANGLE.fullmatch(inside[0]):
         name = tokens[k - 1][1]
-        raise _unsure(place, f"{name}({inside[0]}", f"{name}*{inside[0]} for a product")
+        remedy = _("{product} for a product").format(product=f"{name}*{inside[0]}")
+        raise _unsure(place, f"{name}({inside[0]}", remedy)
 
 
 def _wave(tokens: list[_Token], k: int, text: str, place: str) -> tuple[str, int]:
@@ -112,9 +119,11 @@ def _wave(tokens: list[_Token], k: int, text: str, place: str) -> tuple[str, int
     kind, token, start, end = tokens[at]
     if kind == "name" and token not in _WAVES:
         if not _ANGLE.fullmatch(token) or _FOLLOWING.match(text, end):
-            raise _unsure(place, f"{name} {token}", f"{name}({token}), with parentheses")
+            remedy = _("{call}, with parentheses").format(call=f"{name}({token})")
+            raise _unsure(place, f"{name} {token}", remedy)
         if text[end:].lstrip()[:1] in ("^", "/") or text[end:].lstrip()[:2] == "**":
-            raise _unsure(place, f"{name} {token} before a sign", f"{name}({token})")
+            before = _("{function} before a sign").format(function=f"{name} {token}")
+            raise _unsure(place, before, f"{name}({token})")
         return f"{name}({token}){power}", at + 1 - k
     if token == "(" and power:
         depth = 0

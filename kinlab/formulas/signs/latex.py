@@ -10,6 +10,8 @@ import re
 from dataclasses import dataclass
 
 from kinlab.errors import ExpressionError
+from kinlab.formulas.signs.refusals import refused
+from kinlab.host.language import N_, _
 
 _LENGTH = 20_000
 _NESTING = 40
@@ -42,6 +44,8 @@ _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _BRACES = {r"\{": "(", r"\}": ")"}
+_WITHOUT = N_("a function without parentheses before {text}")
+_PRODUCT = N_("write {product} for a product")
 _PAIRS = {"(": ")", "[": "]", "{": "}"}
 
 
@@ -69,7 +73,9 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
             people would read differently (``\\cos^{-1}``, ``c_12``, ``a/b c``).
     """
     if len(text) > _LENGTH:
-        raise ExpressionError(f"{place}: {len(text)} characters; at most {_LENGTH}")
+        raise refused(
+            place, N_("{count} characters; at most {length}"), count=len(text), length=_LENGTH
+        )
     tokens: list[str] = []
     tight: list[bool] = []
     spans: list[tuple[int, int]] = []
@@ -78,7 +84,7 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
     while at < len(text):
         found = _TOKEN.match(text, at)
         if found is None:
-            raise ExpressionError(f"{place}: {text[at]!r} has no meaning in LaTeX of a formula")
+            raise refused(place, N_("{text!r} has no meaning in LaTeX of a formula"), text=text[at])
         token, at = found.group().replace("{,}", "."), found.end()
         token = _BRACES.get(token, token)
         if token in _SPACE or token.isspace():
@@ -86,7 +92,7 @@ def expression(text: str, place: str = "expression", leaves: list[Leaf] | None =
             continue
         depth += (token in _PAIRS) - (token in _PAIRS.values())
         if depth > _NESTING:
-            raise ExpressionError(f"{place}: nested deeper than {_NESTING}")
+            raise refused(place, N_("nested deeper than {nesting}"), nesting=_NESTING)
         tokens.append(token)
         tight.append(glued)
         spans.append(found.span())
@@ -146,16 +152,28 @@ class _Reader:
         return self.leaf(self.take(), self.at - 1)
 
     def unread(self, wanted: str = "") -> ExpressionError:
-        found = repr(self.next) if self.next else "the end"
+        found = repr(self.next) if self.next else _("the end")
         allowed = r"names, numbers, + - / ^ _, \frac, \sqrt, \sin, \cos, \tan, \dot, \ddot, \cdot"
-        remedy = f"{wanted!r} was expected" if wanted else f"write {allowed}"
+        remedy = _("{sign!r} was expected") if wanted else _("write {allowed}")
+        remedy = remedy.format(sign=wanted, allowed=allowed)
         near = "".join(self.tokens[max(0, self.at - 6) : self.at])[-40:]
-        behind = f" after {near}" if near else ""
-        return ExpressionError(f"{self.place}: LaTeX: {found}{behind} cannot be read; {remedy}")
+        behind = _(" after {text}").format(text=near) if near else ""
+        return refused(
+            self.place,
+            N_("LaTeX: {found}{behind} cannot be read; {remedy}"),
+            found=found,
+            behind=behind,
+            remedy=remedy,
+        )
 
     def unsure(self, what: str, remedy: str) -> ExpressionError:
         """Of what two people would read differently."""
-        return ExpressionError(f"{self.place}: LaTeX: {what} can be read in two ways; {remedy}")
+        return refused(
+            self.place,
+            N_("LaTeX: {what} can be read in two ways; {remedy}"),
+            what=what,
+            remedy=remedy,
+        )
 
     def split(self) -> None:
         """Makes one token of each digit of the next: LaTeX takes one sign without braces."""
@@ -173,8 +191,8 @@ class _Reader:
             sign, product = self.single(), self.product()
             if bare and _ANGLE.fullmatch(product):
                 raise self.unsure(
-                    f"a function without parentheses before {sign} {product}",
-                    r"put them around its angle: \cos(q_1 + q_2)",
+                    _(_WITHOUT).format(text=f"{sign} {product}"),
+                    _("put them around its angle: {call}").format(call=r"\cos(q_1 + q_2)"),
                 )
             text += f" {sign} {product}"
         return text
@@ -191,14 +209,11 @@ class _Reader:
                 last = "/"
             else:
                 if _PLAIN.fullmatch(last) and self.next[:1].isdigit():
-                    raise self.unsure(f"{last} {self.next}", r"write \cdot between two numbers")
+                    raise self.unsure(f"{last} {self.next}", _(r"write \cdot between two numbers"))
                 bare = self.bare == self.at
                 last = self.power()
                 if bare and _ANGLE.fullmatch(last):
-                    raise self.unsure(
-                        f"a function without parentheses before {last}",
-                        "put them around its angle",
-                    )
+                    raise self.unsure(_(_WITHOUT).format(text=last), _("put them around its angle"))
                 self.refuse_call(text, last)
                 text += f"*{last}"
         return text
@@ -207,7 +222,8 @@ class _Reader:
         """What stands behind a slash; refuses ``a/b c``, where c may stand above or below."""
         if self.bare == self.at:
             raise self.unsure(
-                r"a slash behind \cos q_1", r"write \frac{\cos q_1}{2} or \cos(q_1/2)"
+                _("a slash behind {text}").format(text=r"\cos q_1"),
+                _("write {one} or {other}").format(one=r"\frac{\cos q_1}{2}", other=r"\cos(q_1/2)"),
             )
         self.take("/")
         under = self.power()
@@ -216,7 +232,10 @@ class _Reader:
         sure = number and (_PLAIN.fullmatch(above) or not self.glued or self.next in _FUNCTIONS)
         if self.next not in ends and not sure:
             raise self.unsure(
-                f"{self.next} behind .../{under}", rf"write \frac{{a}}{{{under}}} or a/({under} b)"
+                _("{factor} behind .../{under}").format(factor=self.next, under=under),
+                _("write {one} or {other}").format(
+                    one=rf"\frac{{a}}{{{under}}}", other=f"a/({under} b)"
+                ),
             )
         return f"/{under}"
 
@@ -225,7 +244,9 @@ class _Reader:
         inside = last[1:-1]
         name = name.rpartition("*")[2]
         if last[:1] == "(" and _ANGLE.fullmatch(inside) and _NAME.fullmatch(name):
-            raise self.unsure(f"{name}({inside})", rf"write {name} \cdot {inside} for a product")
+            raise self.unsure(
+                f"{name}({inside})", _(_PRODUCT).format(product=rf"{name} \cdot {inside}")
+            )
 
     def power(self) -> str:
         text = self.atom()
@@ -255,7 +276,7 @@ class _Reader:
     def atom(self) -> str:
         self.depth += 1  # \sqrt\sqrt\sqrt nests without braces
         if self.depth > _NESTING:
-            raise ExpressionError(f"{self.place}: nested deeper than {_NESTING}")
+            raise refused(self.place, N_("nested deeper than {nesting}"), nesting=_NESTING)
         text = self._atom()
         self.depth -= 1
         return text
@@ -277,7 +298,7 @@ class _Reader:
             self.take()
             self.leaf("sqrt", self.at - 1)
             if self.next == "[":
-                raise ExpressionError(f"{self.place}: LaTeX: only square roots can be read")
+                raise refused(self.place, N_("LaTeX: only square roots can be read"))
             return f"sqrt({self.argument()})"
         if self.called():
             return self.function()
@@ -300,7 +321,8 @@ class _Reader:
         exponent = self.argument() if self.raised() else ""
         if exponent and (name not in _RAISED or exponent.lstrip("(").startswith("-")):
             raise self.unsure(
-                rf"\{name}^{{{exponent}}}", rf"write \arc{name} for the angle, or 1/\{name}"
+                rf"\{name}^{{{exponent}}}",
+                _(r"write \arc{name} for the angle, or 1/\{name}").format(name=name),
             )
         inside = self.arguments() if self.next in _PAIRS else self.bare_argument(name)
         text = f"{name}({inside})"
@@ -323,8 +345,8 @@ class _Reader:
             inside = number + self.name()
         if "**" in inside or self.next == "^":
             raise self.unsure(
-                rf"a power behind \{name} {inside.partition('*')[0]}",
-                rf"write \{name}^2(...), or parentheses around the angle",
+                _("a power behind {text}").format(text=rf"\{name} {inside.partition('*')[0]}"),
+                _(r"write \{name}^2(...), or parentheses around the angle").format(name=name),
             )
         self.bare = self.at
         return inside
@@ -345,8 +367,10 @@ class _Reader:
         else:
             head, below = self.letter(), self.subscript()
         if dots and head not in ("q", "theta", "d"):
-            raise ExpressionError(
-                f"{self.place}: LaTeX: a dot over {head}; only over q, theta and a slide's d"
+            raise refused(
+                self.place,
+                N_("LaTeX: a dot over {head}; only over q, theta and a slide's d"),
+                head=head,
             )
         if self.next == "^" and not below and not power:  # l^2_1 is l_1^2
             mark, noted = self.at, len(self.leaves)
@@ -386,11 +410,14 @@ class _Reader:
             if len(token) > 1 and token.isdigit():
                 raise self.unsure(
                     f"_{token}",
-                    rf"write _{{{token}}} for one index, _{token[0]} \cdot for a product",
+                    _(r"write {index} for one index, {product} for a product").format(
+                        index=f"_{{{token}}}", product=rf"_{token[0]} \cdot"
+                    ),
                 )
             if self.next.isdigit() and self.glued:
                 raise self.unsure(
-                    f"_{token}{self.next}", rf"write _{{{token}{self.next}}} for one index"
+                    f"_{token}{self.next}",
+                    _("write {index} for one index").format(index=f"_{{{token}{self.next}}}"),
                 )
             return self.plain(token)
         first = self.at
@@ -424,7 +451,9 @@ class _Reader:
         token = _word(token) or token
         if token.isalnum():
             return token
-        raise ExpressionError(f"{self.place}: LaTeX: {token!r} in a subscript; letters and digits")
+        raise refused(
+            self.place, N_("LaTeX: {token!r} in a subscript; letters and digits"), token=token
+        )
 
 
 def _word(token: str) -> str:

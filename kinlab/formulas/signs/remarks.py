@@ -8,16 +8,17 @@ that may be a name (``\mathrm{m}``) stays.
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 _CHINESE = "\u4e00-\u9fff\u3001"
-_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z]))*"
+_SPACES = r"(?:\s|~|\\[,;:! ]|\\q?quad(?![A-Za-z])){0,20}+"
 _BEHIND = rf"(?:(?<!\\)[,;]|\\q?quad(?![A-Za-z])){_SPACES}"
 _WORDS = r"\\(?:text|textrm|textit|textbf|mbox)"
 _FONT = r"\\(?:mathrm|mathsf|text|textrm|textit|textbf|operatorname|mbox|unit|si)"
 _UNIT = r"(?:N|kg|rad|deg|mm|cm|m|s|J|W)"
-_BETWEEN = r"(?:\s|~|\\[,;:! ]|\\cdot|[.*·⋅/]|\^\{?-?\d\}?|[²³])*"
-_UNITS = rf"{_UNIT}{_BETWEEN}(?:{_UNIT}{_BETWEEN})*"
-_MORE = rf"(?:N|kg|{_UNIT}(?:{_BETWEEN}{_UNIT})+){_BETWEEN}"
+_BETWEEN = r"(?:\s|~|\\[,;:! ]|\\cdot|[.*·⋅/]|\^\{?-?\d\}?|[²³]){0,9}+"
+_UNITS = rf"{_UNIT}{_BETWEEN}(?:{_UNIT}{_BETWEEN}){{0,9}}"
+_MORE = rf"(?:N|kg|{_UNIT}(?:{_BETWEEN}{_UNIT}){{1,9}}){_BETWEEN}"
 """Units that are no name of a length, a mass or an inertia: N, Nm, not m or J."""
 
 _EVERYWHERE = (
@@ -48,6 +49,7 @@ _EXPLAINED = re.compile(
 r"""``\quad (r = a_2 c_2)``, a name in parentheses."""
 
 
+@lru_cache(maxsize=1024)
 def without_remarks(text: str) -> str:
     """The text without what says nothing of the formula's value."""
     for pattern, instead in _EVERYWHERE:
