@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -69,13 +68,31 @@ def excused(case: Case, engine: Array, written: dict[str, Written]) -> tuple[Cas
 
 
 def _unusual_and_rounded(case: Case, engine: Array, written: dict[str, Written]) -> Excuse | None:
-    """A potential's other zero, or another valid C, with rounded numbers in it."""
+    """A potential's other zero, or another valid C, row by row, with rounded numbers in it."""
     every = entries(replace(case, hand=engine), engine)
-    texts = tuple(written[entry.label] for entry in every if entry.label in written)
-    shape = engine.shape[1:]
-    if not verdicts.any_other(case) or len(texts) != math.prod(shape):
+    texts = {entry.local: written.get(entry.label) for entry in every}
+    if not verdicts.any_other(case):
         return None
-    whole = Together(texts, shape, lambda x: verdicts.essential(case, x))
+    if case.quantity.name in verdicts.ENERGIES or case.index:
+        return _by_digits(case, engine, [*texts.values()])
+    remarks: list[str] = []
+    for i in range(engine.shape[1]):
+        row = replace(case, index=(i,), hand=case.hand[:, i])
+        if verdicts.largest_share(row, engine[:, i]) > TOLERANCES.formula_agrees:
+            found = _by_digits(row, engine[:, i], [x for at, x in texts.items() if at[0] == i])
+            if found is None:
+                return None
+            remarks += found.remarks
+    said = verdicts.other_form(replace(case, index=(0,)), engine, 0.0)
+    return Excuse("unusual", tuple(dict.fromkeys((said, *remarks))))
+
+
+def _by_digits(case: Case, engine: Array, texts: list[Written | None]) -> Excuse | None:
+    """The same of the texts of one answer, or of one row, together."""
+    known = tuple(text for text in texts if text is not None)
+    if len(known) < len(texts):
+        return None
+    whole = Together(known, engine.shape[1:], lambda x: verdicts.essential(case, x))
     return verdicts.by_digits(whole, case, engine)
 
 

@@ -174,3 +174,21 @@ def f(q):
     return np.array([14.09697*np.cos(q[0]) + g2, g2])
 """
     assert judged("gravity_torques", text).form != "rounded"
+
+
+def test_another_c_is_rounded_row_by_row() -> None:
+    """0.063 and 0.031 stand for one number and its half, each in a row that is looked at alone."""
+    rows = (
+        "[-0.8*s2*qd2 - 0.13*s23*(qd2 + qd3) - 0.1*s3*qd3,"
+        " -0.4*s2*qd2 - 0.1*s3*qd3 - 0.063*s23*(qd2 + qd3), -0.063*s23*(qd2 + qd3) - 0.05*s3*qd3]",
+        "[-0.2*s2*qd2 - 0.1*s3*qd3 - 0.031*s23*(qd2 + qd3) + 0.063*s23*qd1 + 0.4*s2*qd1,"
+        " -0.1*s3*qd3 + 0.2*s2*qd1 + 0.031*s23*qd1, -0.05*s3*qd3 + 0.031*s23*qd1]",
+        "[-0.031*s23*(qd2 + qd3) - 0.025*s3*qd3 + 0.063*s23*qd1 + 0.05*s3*(qd1 + qd2),"
+        " -0.025*s3*qd3 + 0.05*s3*(qd1 + qd2) + 0.031*s23*qd1,"
+        " 0.031*s23*qd1 + 0.025*s3*(qd1 + qd2)]",
+    )
+    found = kl.diagnose("planar3r", "C", f"[{', '.join(rows)}]", samples=40)
+    assert found.form == "unusual"
+    assert found.remarks[0] == "C*qd is right, but C is not Christoffel's"
+    off = kl.diagnose("planar3r", "C", f"[{', '.join(rows)}]".replace("0.8*", "0.82*"), samples=40)
+    assert not off.agrees
