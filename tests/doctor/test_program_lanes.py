@@ -231,3 +231,27 @@ def test_slips_that_act_on_one_another(name, slips) -> None:
     found, good = asked(name, slips)
     assert good, found.sentence
     assert len({*lines_named(found.sentence)}) == len(slips)
+
+
+def test_types_of_numbers_stay_types() -> None:
+    """``dtype=float``, ``isinstance``, ``float(x)``: a number with lanes is one already."""
+    text = """
+import numpy as np
+
+def f(q):
+    q = np.asarray(q, float)
+    g = np.zeros(2, dtype=float)
+    assert isinstance(float(q[0]), float) or q is not None
+    g[1] = 1.5*9.81*0.4*float(np.cos(q[0] + q[1]))
+    g[0] = (2.0 + 1.5)*9.81*0.5*np.cos(q[0]) + g[1]
+    return np.array(g, dtype=float)
+"""
+    search = searched("planar2r", "gravity_torques", text)
+    tried = search.tried
+    with quietly():
+        lanes = in_lanes(search, [edit for edit, _values in tried])
+        single = lanes.answers(np.arange(-1, len(tried))[:, None])
+    assert single is not None
+    alone = np.array([values.reshape(single.shape[1:]) for _edit, values in tried])
+    close = np.isclose(single[1:], alone, rtol=1e-9, atol=1e-9).all(axis=(1, 2))
+    assert close.sum() > 0.8 * len(tried)

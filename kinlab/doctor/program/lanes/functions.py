@@ -45,7 +45,29 @@ def with_lanes(space: dict[str, Any], quick: ModuleType) -> dict[str, Any]:
         known |= {id(getattr(module, name)): new for name, new in own.items()}
     known |= {id(getattr(math, name)): new for name, new in _OF_MATH.items() if hasattr(math, name)}
     new = {name: known[id(value)] for name, value in space.items() if id(value) in known}
-    return {"float": _as_number(float), "complex": _as_number(complex), **new}
+    return {"float": _Float, "complex": _Complex, **new}
+
+
+class _Number(type):
+    """What stands for a type of numbers: one with lanes is of it already."""
+
+    plain: type
+
+    def __call__(cls, *given: Any) -> Any:
+        if any(isinstance(one, Laned) for one in given):
+            return given[0] if len(given) == 1 else given[0] + 1j * given[1]
+        return cls.plain(*given)
+
+    def __instancecheck__(cls, value: object) -> bool:
+        return isinstance(value, cls.plain)
+
+
+class _Float(metaclass=_Number):
+    plain = float
+
+
+class _Complex(metaclass=_Number):
+    plain = complex
 
 
 def _module(old: ModuleType, own: dict[str, Any]) -> Any:
@@ -101,11 +123,16 @@ def _of_two(function: Callable[[Any, Any], Any], plain: Callable[..., Any]) -> A
     return asked
 
 
+def _type(value: Any) -> Any:
+    return value.plain if isinstance(value, _Number) else value
+
+
 def _object(plain: Callable[..., Any]) -> Any:
     """A new array that takes numbers with lanes."""
 
     def asked(*given: Any, **named: Any) -> Any:
-        found = plain(*given, **named)
+        given = tuple(map(_type, given))
+        found = plain(*given, **{name: _type(value) for name, value in named.items()})
         return found.astype(object) if found.dtype.kind in "fc" else found
 
     return asked
@@ -115,21 +142,14 @@ def _array(plain: Callable[..., Any]) -> Any:
     """An array of what may have lanes."""
 
     def asked(value: Any, *rest: Any, **named: Any) -> Any:
+        rest = tuple(map(_type, rest))
+        named = {name: _type(one) for name, one in named.items()}
         if not _laned(value):
             return plain(value, *rest, **named)
         kind = rest[0] if rest else named.pop("dtype", float)
         if kind is not None and kind is not object and kind not in _AS_FLOAT:
             raise TypeError("numbers with lanes are of no other type")
         return np.array(value, dtype=object, **named)
-
-    return asked
-
-
-def _as_number(plain: Callable[..., Any]) -> Any:
-    def asked(*given: Any) -> Any:
-        if any(isinstance(one, Laned) for one in given):
-            return given[0] if len(given) == 1 else given[0] + 1j * given[1]
-        return plain(*given)
 
     return asked
 

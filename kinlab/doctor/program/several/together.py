@@ -67,7 +67,7 @@ class TriedTogether:
                 self.lanes = InLanes(search.trial, search.observed, edits, states, counts)
             except NoProgramError:
                 return
-            self.usable = self._follows(len(edits))
+            self.usable = self._follows(len(edits)) and self.left > 0
             if self.usable or not self.lanes.counts:
                 break
         size = known.rows.shape[1] * self.count // len(search.first)
