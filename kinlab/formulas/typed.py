@@ -575,9 +575,10 @@ def _begins_with(line: str, entry: str) -> bool:
     if not sign or not entry:
         return False
     try:
-        return _head_and_places(entry_name(left)) == _head_and_places(entry_name(entry))
+        own, asked = _head_and_places(entry_name(left)), _head_and_places(entry_name(entry))
     except ExpressionError:
         return False
+    return own == asked or (asked[0] in _POSES and _POINT.get("".join(own)) == asked[1])
 
 
 def _equations(text: str) -> list[str]:
@@ -649,6 +650,9 @@ _IN_BOOKS = (
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
+_POSES = {"t", "a", "h", "fk"}
+_POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
+"""Which entries of a pose the coordinates of its point are."""
 _VECTORS = "gravity_torques inverse_dynamics coriolis_torques momentum statics statics_tool"
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
 LONG = {*_MATRICES.split(), *_VECTORS.split()}

@@ -337,6 +337,15 @@ def test_of_several_equations_the_one_of_the_entry(entry):
     assert explained(text, entry)[1] == ("$x = l_1 c_1$" if entry == "x" else "$y = l_1 s_1$")
 
 
+@pytest.mark.parametrize(
+    ("entry", "formula"), [("fk14", "c1*a2"), ("T24", "s1*a2"), ("fk[2,3]", "d1 + a2")]
+)
+@pytest.mark.parametrize("between", ["; ", ", ", ",\\; "])
+def test_of_the_coordinates_of_a_point_the_one_of_the_entry(entry, formula, between):
+    text = between.join(("p_x = c1*a2", "y = s1*a2", "z = d1 + a2"))
+    assert explained(text, entry)[1].strip("$").partition("=")[2].strip() == formula
+
+
 def test_an_equation_the_other_way_round():
     assert opened({"g2": "m2*g*l2*c12 = g2"}, "f.toml") == {"g2": "m2*g*l2*c12"}
 
