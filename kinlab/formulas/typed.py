@@ -578,7 +578,9 @@ def _begins_with(line: str, entry: str) -> bool:
         own, asked = _head_and_places(entry_name(left)), _head_and_places(entry_name(entry))
     except ExpressionError:
         return False
-    return own == asked or (asked[0] in _POSES and _POINT.get("".join(own)) == asked[1])
+    return own == asked or (
+        asked[0] in _POSES and _POINT.get("".join(own).replace("_", "")) == asked[1]
+    )
 
 
 def _equations(text: str) -> list[str]:
