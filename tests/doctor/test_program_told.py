@@ -218,3 +218,68 @@ def test_a_programs_own_error_is_told_from_ours() -> None:
 def test_a_name_that_a_slip_has_left_unused_is_moved_with_the_other_arm(said) -> None:
     """l2 is used once; without it nothing else of the program says that it is the arm's."""
     assert "`g2 = m2*g*l2*np.cos(q[0] + q[1])`" in said(CLOSED, "g*l2", "g*l1", "planar2r")
+
+
+def test_a_program_that_gives_a_matrix_of_numpys_own() -> None:
+    """``np.matrix`` has rules of its own, which nothing of the doctor may trip over."""
+    text = """
+import numpy as np
+
+def f(q):
+    b = 1.5*0.5*0.4*np.cos(q[1])
+    d = 2.0*0.4**2
+    return np.matrix([[(2.0 + 1.5)*0.5**2 + 1.5*0.4**2 + 2*b, 1.5*0.4**2 + b],
+                      [1.5*0.4**2 + b, d]])
+"""
+    space: dict = {}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
+    found = kl.diagnose("planar2r", "mass_matrix", space["f"], samples=20)
+    assert not found.agrees
+    assert "line 6" in found.sentence
+
+
+def test_one_number_for_a_twist_and_for_an_angle() -> None:
+    """``H`` is the arm's twist, its opposite, and the angle of its slide: signs are told all the
+    same, though another arm's would need two numbers."""
+    text = """
+import numpy as np
+
+def A(th, d, a, al):
+    return np.array([
+        [np.cos(th), -np.sin(th)*np.cos(al), np.sin(th)*np.sin(al), a*np.cos(th)],
+        [np.sin(th), np.cos(th)*np.cos(al), -np.cos(th)*np.sin(al), a*np.sin(th)],
+        [0, np.sin(al), np.cos(al), d],
+        [0, 0, 0, 1]])
+
+def f(q):
+    H = np.pi/2
+    first = A(q[0], 0.412, 0, -H) @ A(q[1], 0.154, 0, -H) @ A(-H, q[2], 0.0203, 0)
+    return first @ A(q[3], 0, 0, -H) @ A(q[4], 0, 0, -H) @ A(q[5], 0.263, 0, 0)
+"""
+    space: dict = {}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
+    found = kl.diagnose("stanford", "fk", space["f"], samples=20)
+    assert found.causes and {"line 13", "line 14"} <= {*found.causes[0].places}, str(found)
+
+
+def test_degrees_of_a_name_are_told_as_they_are_mended() -> None:
+    text = """
+import numpy as np
+
+L = [0.5, 0.4, 0.25]
+
+def f(q):
+    J = np.zeros((3, 3))
+    for j in range(3):
+        for k in range(j, 3):
+            th = np.degrees(np.sum(q[:k + 1]))
+            J[0, j] -= L[k]*np.sin(th)
+            J[1, j] += L[k]*np.cos(th)
+        J[2, j] = 1.0
+    return J
+"""
+    space: dict = {}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
+    found = kl.diagnose("planar3r", "planar_jacobian", space["f"], samples=20)
+    assert "line 10" in found.sentence
+    assert "if True" not in found.sentence

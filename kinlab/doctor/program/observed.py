@@ -160,7 +160,7 @@ def _numbers(value: Any) -> Array | None:
         except ValueError:
             return None
     if isinstance(value, np.ndarray) and value.dtype.kind in "fiuc":
-        return value
+        return np.asarray(value)  # of a matrix, which has rules of its own, its numbers
     return None
 
 

@@ -390,6 +390,8 @@ def _after(edit: ProgramEdit) -> str:
 
 def _text(node: ast.AST) -> str:
     """A piece of a program as it is usually typed."""
+    if isinstance(node, ast.If) and getattr(node.test, "value", None) is True:  # a line and another
+        return "; ".join(map(_text, node.body))
     text = ast.unparse(node).replace("_turn() and ", "")  # what ends loops is not the user's
     return _typed(text.partition("\n")[0].rstrip(":"))
 

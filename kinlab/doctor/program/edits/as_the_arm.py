@@ -119,7 +119,7 @@ def _typed(value: float) -> ast.expr:
     """A number as it is typed: parts of pi as such."""
     part = Fraction(value / np.pi).limit_denominator(_PARTS)
     if not value or abs(value - float(part) * np.pi) > TOLERANCES.same_number * abs(value):
-        return number(int(value) if value == int(value) else value)
+        return number(int(value) if value == int(value) else float(f"{value:.12g}"))
     pi: ast.expr = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
     top = abs(part.numerator)
     pi = ast.BinOp(number(top), ast.Mult(), pi) if top > 1 else pi

@@ -146,15 +146,28 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         if node.orelse:
             yield here.within(node, "test", negated(node.test), "condition", 1.2)
         yield from _comparison_of(here, node.test)
-    if isinstance(node, ast.Assign) and isinstance(here.holder, list):
-        for name in dict.fromkeys(name for one in node.targets for name in names(one)):
-            if scope.shapes.get(name) == () and name in scope.turned:
-                load = ast.BinOp(ast.Name(name, ast.Load()), ast.Mult(), number(pi / 180))
-                after = ast.Assign([ast.Name(name, ast.Store())], load)
-                both = ast.If(ast.Constant(True), [node, after], [])
-                yield here.instead(both, "degrees", 1.1)
+    if isinstance(node, ast.Assign):
+        yield from _in_degrees(here, scope)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
+
+
+def _in_degrees(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """What is set was in degrees, though sines and cosines are taken of it."""
+    node = here.node
+    alone = isinstance(node.targets[0], ast.Name) and len(node.targets) == 1
+    for name in dict.fromkeys(name for one in node.targets for name in names(one)):
+        if scope.shapes.get(name) != () or name not in scope.turned:
+            continue
+        if alone and scope.has_numpy:
+            radians = ast.Attribute(ast.Name("np", ast.Load()), "radians", ast.Load())
+            new = ast.Call(radians, [node.value], [])
+            yield here.within(node, "value", new, "degrees", 1.1)
+        elif isinstance(here.holder, list):
+            load = ast.BinOp(ast.Name(name, ast.Load()), ast.Mult(), number(pi / 180))
+            after = ast.Assign([ast.Name(name, ast.Store())], load)
+            both = ast.If(ast.Constant(True), [node, after], [])
+            yield here.instead(both, "degrees", 1.1)
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

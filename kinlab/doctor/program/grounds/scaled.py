@@ -98,7 +98,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     found = [*_numbers(trial, observed)]
     twists = [link.alpha for link in table.links if link.alpha]
     held = np.array([one.value for one in found if one.alone])
-    turned = bool(twists) and all(_among(x, held) for x in twists)
+    turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
     twisted = _TWISTED if turned else 1.0
     kinds = _kinds(robot, table, twisted)
     meant = _alike(found, [_meant(kinds, one.value) for one in found])
@@ -128,6 +128,17 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if not ways:
         return None
     return OtherArm(table, twisted, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
+
+
+def _shared(table: DHTable, held: Array) -> bool:
+    """Whether one number of a program may be a twist and a joint's angle at once: ``H = pi/2``."""
+    twists = np.abs([link.alpha for link in table.links])
+    for angle in {abs(link.theta) for link in table.links if link.theta}:
+        alike = np.isclose(twists, angle)
+        cells = alike.sum() + np.isclose(np.abs([link.theta for link in table.links]), angle).sum()
+        if alike.any() and np.isclose(np.abs(held), angle).sum() < cells:
+            return True
+    return False
 
 
 def own_numbers(robot: Robot) -> Array:

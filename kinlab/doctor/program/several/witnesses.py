@@ -147,7 +147,7 @@ class Witnesses:
                 value = np.array(value, dtype=float)
             except (ValueError, TypeError):
                 return None
-        array = value if isinstance(value, np.ndarray) else np.asarray(value)
+        array = np.asarray(value)
         if array.dtype != float or not array.size:
             return None
         key = (array.shape, array.tobytes())
