@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 from dataclasses import replace
 
 import numpy as np
@@ -283,3 +284,69 @@ def f(q):
     found = kl.diagnose("planar3r", "planar_jacobian", space["f"], samples=20)
     assert "line 10" in found.sentence
     assert "if True" not in found.sentence
+
+
+def test_a_field_that_is_used_nowhere_else(tmp_path) -> None:
+    two = kl.DHTable(
+        "two",
+        "standard",
+        [kl.DHLink("revolute", a=0.41, mass=3.8, com=(-0.22, 0, 0)),
+         kl.DHLink("revolute", a=0.37, mass=1.6, com=(-0.23, 0, 0))],
+        gravity=(0, -9.81, 0),
+    )  # fmt: skip
+    text = """
+import numpy as np
+
+class Arm:
+    g = 9.81
+
+    def __init__(self, l1, c1, c2, m1, m2):
+        self.l1, self.c1, self.c2, self.m1, self.m2 = l1, c1, c2, m1, m2
+
+    def first(self, q):
+        return (self.m1*self.c1 + self.m2*self.c1)*self.g*np.cos(q[0]) + self.second(q)
+
+    def second(self, q):
+        return self.m2*self.g*self.c2*np.cos(q[0] + q[1])
+
+arm = Arm(0.41, 0.19, 0.14, 3.8, 1.6)
+
+def f(q):
+    return np.array([arm.first(q), arm.second(q)])
+"""
+    (tmp_path / "weights.py").write_text(text)
+    spec = importlib.util.spec_from_file_location("weights", tmp_path / "weights.py")
+    assert spec and spec.loader
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found = kl.diagnose(two, "gravity_torques", module.f, samples=20)
+    assert "self.m1*self.c1 + self.m2*self.l1" in found.sentence
+
+
+def test_numbers_that_stand_as_the_arm_has_them_are_not_exchanged() -> None:
+    """`Ixx` and `Izz` change places in the line: the tensor above is the arm's."""
+    tensor = (0.026, 0.017, 0.033)
+    arm = kl.DHTable(
+        "arm",
+        "standard",
+        [kl.DHLink("revolute", alpha=np.pi / 2, mass=2.0, inertia=np.diag([0.03, 0.04, 0.03])),
+         kl.DHLink("revolute", a=0.4, mass=1.5, com=(-0.15, 0, 0), inertia=np.diag(tensor))],
+        gravity=(0, 0, -9.81),
+    )  # fmt: skip
+    text = """
+import numpy as np
+
+def f(q):
+    J2 = [0.026, 0.017, 0.033]
+    c, s = np.cos(q[1]), np.sin(q[1])
+    return np.array([[0.04 + J2[{0}]*s**2 + J2[{1}]*c**2 + 1.5*(0.25*c)**2, 0.0],
+                     [0.0, J2[2] + {2}]])
+"""
+    right: dict = {}
+    exec(compile(text.format(0, 1, "1.5*0.25**2"), "<no file>", "exec"), right)  # noqa: S102  a text of this file
+    assert kl.diagnose(arm, "mass_matrix", right["f"], samples=20).agrees
+    wrong: dict = {}
+    exec(compile(text.format(1, 0, "1.5*0.25"), "<no file>", "exec"), wrong)  # noqa: S102  a text of this file
+    found = kl.diagnose(arm, "mass_matrix", wrong["f"], samples=20)
+    assert found.causes
+    assert "line 5" not in found.causes[0].places, found.sentence

@@ -28,7 +28,7 @@ from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.grounds.evidence import Grounds
-from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers
+from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
@@ -91,6 +91,8 @@ _STANDING = 2
 """Edits beside which some number would do too easily."""
 _TURNS = 8
 """Steps in which a wrong number is solved for."""
+_ROW = 3
+"""Numbers of a row that tell whose it is."""
 _DIGITS = 6
 """Digits of a number that somebody may have typed."""
 _WHOLE = 3
@@ -248,6 +250,7 @@ class LineSearch:
             every = [edit for edit in every if edit.part != DATA or not sure(edit)]
             named = _named_numbers(self.trial)
             every = [edit for edit in every if not self._mirrors(edit, named)]
+            every = [edit for edit in every if not self._moves_own(edit)]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
@@ -438,6 +441,20 @@ class LineSearch:
         else:
             return False
         return isinstance(old, int | float) and self.is_own(old) and not self.is_own(-old)
+
+    def _moves_own(self, edit: ProgramEdit) -> bool:
+        """Whether numbers that stand as the robot has them would be exchanged in their row."""
+        row = edit.node
+        if edit.kind != "entries swapped" or not isinstance(row, ast.List | ast.Tuple):
+            return False
+        values = [getattr(one, "value", None) for one in row.elts]
+        if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
+            return False
+        written = np.array(values, dtype=float)
+        return any(
+            own.shape == written.shape and np.allclose(own, written)
+            for own in own_rows(self.case.robot)
+        )
 
     def _is_strange(self, place: NumberPlace) -> bool:
         """Whether a number of the data is none of the robot's, and none that anything may have."""

@@ -72,7 +72,8 @@ class Scope:
         for one in trial.trees:
             for node in nodes(one):
                 self._of_member(node, observed)
-        for held in (*trial.bound, *(trial.space[name] for name in trial.program.data)):
+        kept = [*trial.program.data, *sorted(trial.program.held)]
+        for held in (*trial.bound, *(trial.space[name] for name in kept)):
             self._of_object(held)
         for kind in trial.classes.values():
             for name, told in getattr(kind, "__annotations__", {}).items():

@@ -130,6 +130,18 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     return OtherArm(table, twisted, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
 
 
+def own_rows(robot: Robot) -> list[Array]:
+    """The arm's own numbers as they stand in rows: centres of mass, moments of inertia, columns."""
+    table = table_of(robot)
+    if table is None:
+        return []
+    rows = [np.array(link.com, dtype=float) for link in table.links]
+    rows += [np.diag(np.array(link.inertia, dtype=float)) for link in table.links]
+    for name in ("a", "d", "mass"):
+        rows.append(np.array([getattr(link, name) for link in table.links], dtype=float))
+    return [row for row in rows if row.any()]
+
+
 def _shared(table: DHTable, held: Array) -> bool:
     """Whether one number of a program may be a twist and a joint's angle at once: ``H = pi/2``."""
     twists = np.abs([link.alpha for link in table.links])
