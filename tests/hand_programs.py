@@ -16,6 +16,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+import kinlab as kl
+from kinlab.doctor.examine import prepare
+
 
 @dataclass(frozen=True)
 class OwnProgram:
@@ -477,7 +480,7 @@ def repaired(text: str, sentence: str):
         trees = [after for tree in trees for after in _with(tree, found)]
     for tree in trees:
         space = {"__name__": "repaired"}
-        exec(compile(ast.fix_missing_locations(tree), "<repaired>", "exec"), space)  # noqa: S102  texts of this file
+        exec(compile(ast.fix_missing_locations(tree), "<repaired>", "exec"), space)  # noqa: S102  texts of the tests
         for found in _OF_DATA.finditer(sentence):
             _data(space, found, float(found["new"]))
         for found in _OF_ARRAY.finditer(sentence):
@@ -578,3 +581,18 @@ def _changed(value, keys, found, new):
     old = float(found["old"])  # of 1.5708 told, the digits that are not told stay
     assert abs(value - old) <= 1e-5 * abs(old)
     return value * (new / old) if old else new
+
+
+def asked(text, robot, quantity):
+    """What is said of a text, and whether it is right once that stands in it."""
+    space = {"__name__": "hand"}
+    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of the tests
+    found = kl.diagnose(robot, quantity, space["f"], samples=20)
+    assert not found.agrees
+    case, engine = prepare(robot, quantity, (), 10, 3)
+    states = [*zip(*case.arguments.values(), strict=True)]
+    good = False
+    for after in repaired(text, found.sentence):
+        values = np.array([after["f"](*map(np.copy, state)) for state in states])
+        good |= bool(np.allclose(values, engine, rtol=1e-9, atol=1e-9))
+    return found, good

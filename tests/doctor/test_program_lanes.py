@@ -3,9 +3,8 @@ edits does, run alone."""
 
 import numpy as np
 import pytest
-from hand_programs import PROGRAMS, lines_named, repaired
+from hand_programs import PROGRAMS, asked, lines_named
 
-import kinlab as kl
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import prepare
@@ -186,25 +185,6 @@ def test_lanes_that_would_go_another_way_are_lost() -> None:
     np.testing.assert_array_equal(lanes.lost, [True, False, False, False])
 
 
-def asked(name, slips):
-    """What is said of a program with slips in it, and whether what is said mends it."""
-    robot, quantity, text = TEXTS[name]
-    for right, wrong in slips:
-        assert text.count(right) == 1, right
-        text = text.replace(right, wrong)
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    found = kl.diagnose(robot, quantity, space["f"], samples=20)
-    assert not found.agrees
-    case, engine = prepare(robot, quantity, (), 10, 3)
-    states = [*zip(*case.arguments.values(), strict=True)]
-    good = False
-    for after in repaired(text, found.sentence):
-        values = np.array([after["f"](*map(np.copy, state)) for state in states])
-        good |= bool(np.allclose(values, engine, rtol=1e-9, atol=1e-9))
-    return found, good
-
-
 @pytest.mark.parametrize(
     ("name", "slips"),
     [
@@ -228,7 +208,11 @@ def asked(name, slips):
     ],
 )  # fmt: skip
 def test_slips_that_act_on_one_another(name, slips) -> None:
-    found, good = asked(name, slips)
+    robot, quantity, text = TEXTS[name]
+    for right, wrong in slips:
+        assert text.count(right) == 1, right
+        text = text.replace(right, wrong)
+    found, good = asked(text, robot, quantity)
     assert good, found.sentence
     assert len({*lines_named(found.sentence)}) == len(slips)
 

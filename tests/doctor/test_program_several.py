@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from hand_programs import PROGRAMS, lines_named, names_a_line, repaired, slipped
+from hand_programs import PROGRAMS, asked, lines_named, names_a_line, slipped
 
-import kinlab as kl
-from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.several.effects import Effects
 
 FK, NE = PROGRAMS["dh fk"], PROGRAMS["newton-euler"]
@@ -36,21 +34,6 @@ def f(q, target):
         out[j] = e[0] * s[j:].sum() - e[1] * c[j:].sum() - e[2]
     return out
 """
-
-
-def asked(text, robot, quantity):
-    """What is said of a text, and whether it is right once that stands in it."""
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    found = kl.diagnose(robot, quantity, space["f"], samples=20)
-    assert not found.agrees
-    case, engine = prepare(robot, quantity, (), 10, 3)
-    states = [*zip(*case.arguments.values(), strict=True)]
-    good = False
-    for after in repaired(text, found.sentence):
-        values = np.array([after["f"](*map(np.copy, state)) for state in states])
-        good |= bool(np.allclose(values, engine, rtol=1e-9, atol=1e-9))
-    return found, good
 
 
 @pytest.mark.parametrize(

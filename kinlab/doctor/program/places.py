@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.trial import FieldChange
 
 DATA = -1
@@ -70,6 +71,38 @@ def places(part: int, tree: ast.AST, above: tuple[ast.AST, ...] = ()) -> Iterato
         elif isinstance(value, ast.AST):
             yield Here(part, value, tree, tree, name, inside)
             yield from places(part, value, inside)
+
+
+Spot = tuple[ast.AST, str, int | None]
+"""Where a node hangs: in which, in which field, at which place of a list there."""
+
+
+def hanging(tree: ast.AST) -> tuple[dict[int, Spot], dict[int, tuple[ast.AST, str]]]:
+    """Where the nodes of a tree hang, and where its lists do, by what they are."""
+    above: dict[int, Spot] = {}
+    lists: dict[int, tuple[ast.AST, str]] = {}
+    for node in nodes(tree):
+        for name, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                lists[id(value)] = (node, name)
+                for k, one in enumerate(value):
+                    if isinstance(one, ast.AST):
+                        above[id(one)] = (node, name, k)
+            elif isinstance(value, ast.AST):
+                above[id(value)] = (node, name, None)
+    return above, lists
+
+
+def with_other(node: Any, field: str, k: int | None, new: Any) -> Any:
+    """A copy of a node with something else in one field, or at one place of a list there."""
+    if k is not None:
+        entries = [*getattr(node, field)]
+        entries[k] = new
+        new = entries
+    other = type(node)()
+    other.__dict__.update(node.__dict__)
+    setattr(other, field, new)
+    return other
 
 
 def called(node: ast.Call) -> str:

@@ -13,7 +13,7 @@ from types import FunctionType
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit, hanging, with_other
 from kinlab.doctor.program.trial import NoProgramError, Trial, made
 
 _TOGETHER = 64
@@ -94,21 +94,10 @@ class _Part:
     """Where everything in a function hangs."""
 
     def __init__(self, tree: ast.FunctionDef) -> None:
-        self._above: dict[int, tuple[ast.AST, str, int | None]] = {}
-        self._lists: dict[int, tuple[ast.AST, str]] = {}
+        self._above, self._lists = hanging(tree)
         self._sets: dict[int, frozenset[str]] = {}
-        every = nodes(tree)
-        for node in reversed(every):
+        for node in reversed(nodes(tree)):
             self._sets[id(node)] = self._set_in(node)
-        for node in every:
-            for name, value in ast.iter_fields(node):
-                if isinstance(value, list):
-                    self._lists[id(value)] = (node, name)
-                    for k, one in enumerate(value):
-                        if isinstance(one, ast.AST):
-                            self._above[id(one)] = (node, name, k)
-                elif isinstance(value, ast.AST):
-                    self._above[id(value)] = (node, name, None)
 
     def statement(self, edit: ProgramEdit) -> tuple[ast.stmt, ast.stmt] | None:
         """The statement that an edit changes, and what it becomes; None where it is not simple."""
@@ -124,15 +113,15 @@ class _Part:
             old: Any = holder[field]
             holder, name = self._lists[id(holder)]
             if not isinstance(old, ast.stmt):
-                new = _copy(holder, name, field, new)
+                new = with_other(holder, name, field, new)
                 old = holder
         else:
-            new, old = _copy(holder, field, None, new), holder
+            new, old = with_other(holder, field, None, new), holder
         while not isinstance(old, ast.stmt):
             if id(old) not in self._above:
                 return None
             holder, name, k = self._above[id(old)]
-            new, old = _copy(holder, name, k, new), holder
+            new, old = with_other(holder, name, k, new), holder
         return (old, new) if isinstance(old, _SIMPLE) and isinstance(new, ast.stmt) else None
 
     def _set_in(self, piece: Any) -> frozenset[str]:
@@ -150,18 +139,6 @@ class _Part:
             return _NONE if isinstance(piece.ctx, ast.Load) else frozenset([piece.id])
         inside = [self._set_in(getattr(piece, name, None)) for name in piece._fields]
         return _NONE.union(*inside)
-
-
-def _copy(node: Any, field: str, k: int | None, new: Any) -> Any:
-    """A node with something else in one field."""
-    if k is not None:
-        entries = [*getattr(node, field)]
-        entries[k] = new
-        new = entries
-    other = type(node)()
-    other.__dict__.update(node.__dict__)
-    setattr(other, field, new)
-    return other
 
 
 def _with_instead(tree: Any, instead: dict[int, ast.stmt]) -> Any:

@@ -17,7 +17,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, called
+from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, is_data
 
 _SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
@@ -31,8 +31,6 @@ _WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setd
 _EDIT = "_edit"
 _LISTS = ast.ListComp | ast.SetComp | ast.GeneratorExp
 
-Spot = tuple[ast.AST, str, int | None]
-"""Where a node hangs: in which, in which field, at which place of a list there."""
 Key = tuple[int, str, int | None]
 Edits = Sequence[Sequence[ProgramEdit]]
 
@@ -55,7 +53,9 @@ class Woven:
         self._above: dict[int, Spot] = {}
         self._lists: dict[int, tuple[ast.AST, str]] = {}
         for tree in trial.trees:
-            self._hang(tree)
+            above, lists = hanging(tree)
+            self._above |= above
+            self._lists |= lists
         self._sites: dict[Key, list[tuple[int, ast.expr]]] = defaultdict(list)
         self._same: dict[int, ast.AST] = {}
         self._new: dict[int, tuple[ast.AST, str, int | None]] = {}
@@ -86,17 +86,6 @@ class Woven:
             self._mark(parent)
             self._at.append((number, self._path((parent, name, k))))
         return True
-
-    def _hang(self, tree: ast.AST) -> None:
-        for node in nodes(tree):
-            for name, value in ast.iter_fields(node):
-                if isinstance(value, list):
-                    self._lists[id(value)] = (node, name)
-                    for k, one in enumerate(value):
-                        if isinstance(one, ast.AST):
-                            self._above[id(one)] = (node, name, k)
-                elif isinstance(value, ast.AST):
-                    self._above[id(value)] = (node, name, None)
 
     def _mark(self, node: ast.AST) -> None:
         while id(node) not in self._holding:
@@ -164,13 +153,7 @@ class Woven:
     def _outside(self, spot: Spot, new: Any) -> tuple[ast.AST, ast.AST, Spot]:
         """The node in which a place is, with something else there."""
         parent, name, k = spot
-        other = type(parent)()
-        other.__dict__.update(parent.__dict__)
-        if k is not None:
-            entries = [*getattr(parent, name)]
-            entries[k] = new
-            new = entries
-        setattr(other, name, new)
+        other: ast.AST = with_other(parent, name, k, new)
         self._same[id(other)] = parent
         self._new[id(other)] = (other, name, k)
         return parent, other, self._above[id(parent)]
