@@ -109,6 +109,16 @@ def in_lanes(search, some):
     return InLanes(search.trial, search.observed, [[edit] for edit in some], states, counts=False)
 
 
+def singly(search, tried):
+    """Edits that were tried, each in a lane: which answer as they did alone, and which are lost."""
+    lanes = in_lanes(search, [edit for edit, _values in tried])
+    single = lanes.answers(np.arange(-1, len(tried))[:, None])
+    assert single is not None
+    alone = np.array([values.reshape(single.shape[1:]) for _edit, values in tried])
+    close = np.isclose(single[1:], alone, rtol=1e-9, atol=1e-9).all(axis=(1, 2))
+    return lanes, close, np.isnan(single[1:]).any(axis=(1, 2))
+
+
 TEXTS = {
     **{name: (one.robot, one.quantity, one.text) for name, one in PROGRAMS.items()},
     **OTHERS,
@@ -121,12 +131,7 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
     dice = np.random.default_rng(7)
     tried = [search.tried[k] for k in dice.permutation(len(search.tried))[:250]]
     with quietly():
-        lanes = in_lanes(search, [edit for edit, _values in tried])
-        single = lanes.answers(np.arange(-1, len(tried))[:, None])
-        assert single is not None
-        alone = np.array([values.reshape(single.shape[1:]) for _edit, values in tried])
-        close = np.isclose(single[1:], alone, rtol=1e-9, atol=1e-9).all(axis=(1, 2))
-        lost = np.isnan(single[1:]).any(axis=(1, 2))
+        lanes, close, lost = singly(search, tried)
         placed = sorted(lanes.placed)
         followed = [k for k in placed if close[k]]
         assert len(placed) > 0.85 * len(tried)
@@ -233,9 +238,5 @@ def f(q):
     search = searched("planar2r", "gravity_torques", text)
     tried = search.tried
     with quietly():
-        lanes = in_lanes(search, [edit for edit, _values in tried])
-        single = lanes.answers(np.arange(-1, len(tried))[:, None])
-    assert single is not None
-    alone = np.array([values.reshape(single.shape[1:]) for _edit, values in tried])
-    close = np.isclose(single[1:], alone, rtol=1e-9, atol=1e-9).all(axis=(1, 2))
+        _lanes, close, _lost = singly(search, tried)
     assert close.sum() > 0.8 * len(tried)

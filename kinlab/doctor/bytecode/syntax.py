@@ -40,6 +40,13 @@ def copied(tree: Tree) -> Tree:
     return other
 
 
+def shallow(node: Tree) -> Tree:
+    """A copy of a node that holds the same pieces."""
+    other = type(node)()
+    other.__dict__.update(node.__dict__)
+    return other
+
+
 def text_of(node: ast.AST) -> str:
     """What :func:`ast.unparse` gives; of names, entries and indices without its machinery."""
     if isinstance(node, ast.Name):

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.trial import FieldChange
 
 DATA = -1
@@ -99,8 +99,7 @@ def with_other(node: Any, field: str, k: int | None, new: Any) -> Any:
         entries = [*getattr(node, field)]
         entries[k] = new
         new = entries
-    other = type(node)()
-    other.__dict__.update(node.__dict__)
+    other = shallow(node)
     setattr(other, field, new)
     return other
 

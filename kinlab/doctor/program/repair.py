@@ -248,9 +248,12 @@ class LineSearch:
             every += of_table(self.trial, self.observed, self.case.robot)
             sure = as_it_is(self.trial, self.observed, self.case.robot)
             every = [edit for edit in every if edit.part != DATA or not sure(edit)]
-            named = _named_numbers(self.trial)
-            every = [edit for edit in every if not self._mirrors(edit, named)]
-            every = [edit for edit in every if not self._moves_own(edit)]
+            named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
+            every = [
+                edit
+                for edit in every
+                if not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
+            ]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:
@@ -442,20 +445,6 @@ class LineSearch:
             return False
         return isinstance(old, int | float) and self.is_own(old) and not self.is_own(-old)
 
-    def _moves_own(self, edit: ProgramEdit) -> bool:
-        """Whether numbers that stand as the robot has them would be exchanged in their row."""
-        row = edit.node
-        if edit.kind != "entries swapped" or not isinstance(row, ast.List | ast.Tuple):
-            return False
-        values = [getattr(one, "value", None) for one in row.elts]
-        if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
-            return False
-        written = np.array(values, dtype=float)
-        return any(
-            own.shape == written.shape and np.allclose(own, written)
-            for own in own_rows(self.case.robot)
-        )
-
     def _is_strange(self, place: NumberPlace) -> bool:
         """Whether a number of the data is none of the robot's, and none that anything may have."""
         value = abs(float(place.value))
@@ -570,15 +559,28 @@ class LineSearch:
         stacks, wanted = self._few if which is self.first else self._at(which)
         try:
             answers = np.asarray(self._asked(None, *stacks))
-            if np.iscomplexobj(answers) and np.any(answers.imag):
-                return None
-            real = answers.real if np.iscomplexobj(answers) else answers
-            values = np.asarray(real, dtype=float)
+            if np.iscomplexobj(answers):
+                if answers.imag.any():
+                    return None
+                answers = answers.real
+            values = np.asarray(answers, dtype=float)
             if quantity.read is not None:
                 values = np.asarray(quantity.read(robot, values, wanted))
         except (KinlabError, TypeError, ValueError):
             return None
         return values if values.shape == wanted.shape else None
+
+
+def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
+    """Whether numbers that stand as the robot has them would be exchanged in their row."""
+    row = edit.node
+    if edit.kind != "entries swapped" or not isinstance(row, ast.List | ast.Tuple):
+        return False
+    values = [getattr(one, "value", None) for one in row.elts]
+    if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
+        return False
+    written = np.array(values, dtype=float)
+    return any(own.shape == written.shape and np.allclose(own, written) for own in rows)
 
 
 def _named_numbers(trial: Trial) -> set[int]:

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from types import FunctionType
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.places import DATA, ProgramEdit, hanging, with_other
 from kinlab.doctor.program.trial import NoProgramError, Trial, made
 
@@ -143,8 +143,7 @@ class _Part:
 
 def _with_instead(tree: Any, instead: dict[int, ast.stmt]) -> Any:
     """A copy of a definition, or of a block's statement, with other statements in it."""
-    other = type(tree)()
-    other.__dict__.update(tree.__dict__)
+    other = shallow(tree)
     for name in ("body", "orelse"):
         block = getattr(tree, name, None)
         if isinstance(block, list):

@@ -214,7 +214,7 @@ def _norm(value: Any, *rest: Any, **named: Any) -> Any:
 def _power(matrix: Any, count: int) -> Any:
     if not _laned(matrix) or count < 1:
         return np.linalg.matrix_power(matrix, count)
-    return functools.reduce(lambda one, other: one @ other, [matrix] * count)
+    return _dot_of_all([matrix] * count)
 
 
 def _dot_of_all(matrices: Any) -> Any:

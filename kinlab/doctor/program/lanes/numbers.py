@@ -21,10 +21,6 @@ _EDIT = 800
 _PLAIN = (float, int, complex, bool)
 
 
-class LaneError(Exception):
-    """A program does something with a number that no lane can follow alone."""
-
-
 class LaneGroup:
     """Some of the lanes: all, or those of an edit.
 
@@ -118,23 +114,19 @@ class Lanes:
             return self._number(value, found)
         if isinstance(value, np.ndarray):
             return self._array(value, found)
-        if isinstance(value, list | tuple) and type(value) in (list, tuple):
-            same = [
-                one for one in found if type(one[1]) is type(value) and len(one[1]) == len(value)
-            ]
-            self._without(found, same)
-            entries = (
-                self.joined(old, [(place, new[k]) for place, new in same])
-                for k, old in enumerate(value)
-            )
-            return type(value)(entries)
-        self._without(found, [one for one in found if one[1] is value])
-        return value
-
-    def _without(self, found: Edited, sound: Edited) -> None:
-        for one in found:
-            if one not in sound:
-                self.lose(one[0])
+        rows = type(value) in (list, tuple)
+        same: Edited = []
+        for place, new in found:
+            if rows and type(new) is type(value) and len(new) == len(value):
+                same.append((place, new))
+            elif new is not value:
+                self.lose(place)
+        if not same:
+            return value
+        return type(value)(
+            self.joined(old, [(place, new[k]) for place, new in same])
+            for k, old in enumerate(value)
+        )
 
     def _number(self, value: Any, found: Edited) -> Any:
         sound = [(place, new) for place, new in found if new is not value]
@@ -312,4 +304,4 @@ class Laned:
         values = self.within(self.lanes.here)
         if len(values) and (values == values[0]).all():
             return float(values[0])
-        raise LaneError("one number of several")
+        raise TypeError("one number of several")

@@ -145,9 +145,7 @@ def _narrow(value: Any) -> bool:
 
 
 def _full(entry: Any, lanes: Lanes) -> Array:
-    values = (
-        entry.within(lanes.all) if isinstance(entry, Laned) else np.asarray(entry).astype(complex)
-    )
+    values = entry.within(lanes.all) if isinstance(entry, Laned) else complex(entry)
     full: Array = np.full(lanes.all.size, np.real(values), dtype=float)
     lanes.lost |= np.imag(values) != 0.0
     return full

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, is_data
@@ -58,7 +58,7 @@ class Woven:
             self._lists |= lists
         self._sites: dict[Key, list[tuple[int, ast.expr]]] = defaultdict(list)
         self._same: dict[int, ast.AST] = {}
-        self._new: dict[int, tuple[ast.AST, str, int | None]] = {}
+        self._new: dict[int, Spot] = {}
         self._holding: set[int] = set()
         self.data: list[tuple[int, FieldChange]] = []
         self.placed: set[int] = set()
@@ -216,7 +216,7 @@ class Woven:
             target = now.targets[0]
             if not isinstance(target, ast.Name | ast.Subscript):
                 return None
-            old = _copy(target)
+            old = shallow(target)
             old.ctx = ast.Load()
             if isinstance(new, ast.Pass):
                 return (now, "value", None), old
@@ -228,7 +228,7 @@ class Woven:
 
     def tree(self, old: Any) -> Any:
         """A function's definition, or the lines of a module, with the edits in it."""
-        found = _copy(old)
+        found = shallow(old)
         found.body = self._body(old.body)
         return ast.fix_missing_locations(found)
 
@@ -240,7 +240,7 @@ class Woven:
             elif isinstance(statement, _SIMPLE):
                 found += self._statement(statement)
             else:
-                other = _copy(statement)
+                other: Any = shallow(statement)
                 if isinstance(statement, ast.For):
                     asked: dict[Key, Any] = {}
                     other.iter = self._expression((statement, "iter", None), (), asked)
@@ -259,7 +259,7 @@ class Woven:
         if any(isinstance(node, ast.Name) and node.id == "super" for node in inside):
             return [statement]
         asked: dict[Key, tuple[ast.stmt | None, str, tuple[str, ...]]] = {}
-        other = _copy(statement)
+        other = shallow(statement)
         other.value = self._expression((statement, "value", None), (), asked)
         return [*(one for one, _name, _given in asked.values() if one is not None), other]
 
@@ -302,7 +302,7 @@ class Woven:
             targets = [one for part in node.generators for one in nodes(part.target)]
             scope = (*scope, *(one.id for one in targets if isinstance(one, ast.Name)))
             scope = tuple(dict.fromkeys(scope))
-        other = _copy(node)
+        other = shallow(node)
         own = id(self._same.get(id(node), node))
         for name, value in ast.iter_fields(node):
             if name in ("slice", "generators", "ctx", "func") and not (
@@ -366,12 +366,6 @@ def _at(spot: Spot) -> Any:
     parent, name, k = spot
     value = getattr(parent, name)
     return value if k is None else value[k]
-
-
-def _copy(node: Any) -> Any:
-    other = type(node)()
-    other.__dict__.update(node.__dict__)
-    return other
 
 
 def _lambda(body: ast.expr, names: tuple[str, ...] = ()) -> ast.Lambda:

@@ -68,7 +68,7 @@ class TriedTogether:
             except NoProgramError:
                 return
             self.usable = self._follows(len(edits)) and self.left > 0
-            if self.usable or not self.lanes.counts:
+            if self.usable or not self.lanes.counts or self.left <= 0:
                 break
         size = known.rows.shape[1] * self.count // len(search.first)
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
