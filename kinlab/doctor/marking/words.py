@@ -96,6 +96,7 @@ KINDS: dict[str, str] = {
     N_("entries swapped"): N_("two entries are exchanged"),
     N_("names exchanged"): N_("two names are exchanged"),
     N_("columns swapped"): N_("two columns are exchanged"),
+    N_("reversed"): N_("numbers stand in the reverse order"),
     N_("whole division"): N_("a division leaves the remainder out"),
     N_("missing statement"): N_("a line is missing"),
     N_("missing argument"): N_("an argument is missing"),

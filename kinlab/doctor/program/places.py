@@ -28,6 +28,7 @@ class ProgramEdit:
         numbers: that number, and what it should be.
         exchanged: of an exchange in the data, what stands there and what should; of whole rows
             and columns, which two.
+        of_the_arm: whether a number of the arm's own is put in.
     """
 
     part: int
@@ -38,6 +39,7 @@ class ProgramEdit:
     place: tuple[Any, ...] = ()
     numbers: tuple[float, float] | None = None
     exchanged: tuple[str, str] | None = None
+    of_the_arm: bool = False
 
 
 @dataclass(frozen=True, eq=False)

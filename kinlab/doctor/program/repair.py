@@ -27,6 +27,7 @@ from kinlab.doctor.glossary.textbook import Glossary, meanings
 from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
+from kinlab.doctor.program.edits.own_numbers import of_own_numbers
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
@@ -246,6 +247,7 @@ class LineSearch:
         with quietly():
             every = edits(self.trial, self.observed)
             every += of_table(self.trial, self.observed, self.case.robot)
+            every += of_own_numbers(self.trial, self.observed, self.case.robot)
             sure = as_it_is(self.trial, self.observed, self.case.robot)
             every = [edit for edit in every if edit.part != DATA or not sure(edit)]
             named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
@@ -341,7 +343,7 @@ class LineSearch:
 
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
-        if edit.part == DATA:
+        if edit.part == DATA or edit.of_the_arm:
             return True
         return edit.numbers is not None and self.is_own(edit.numbers[1])
 

@@ -68,6 +68,7 @@ _WHAT = {
     "missing term": N_("a term is missing"),
     "missing factor": N_("a factor is missing"),
     "names exchanged": N_("two names are exchanged"),
+    "reversed": N_("the numbers stand in the reverse order"),
     "rows swapped": N_("two rows are exchanged"),
     "columns swapped": N_("two columns are exchanged"),
     "whole division": N_("the division leaves the remainder out"),
@@ -195,7 +196,15 @@ def _same_slip(reading: Cause, edit: str) -> bool:
 
 
 _LEFT_OUT = ("missing term", "missing statement", "sum")
-_NUMBERS = ("number", "sign", "factor", "entries swapped", "rows swapped", "columns swapped")
+_NUMBERS = (
+    "number",
+    "sign",
+    "factor",
+    "entries swapped",
+    "rows swapped",
+    "columns swapped",
+    "reversed",
+)
 _SLIPS = {
     "missing term": _LEFT_OUT,
     "velocity left out": _LEFT_OUT,

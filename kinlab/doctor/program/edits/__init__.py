@@ -7,10 +7,14 @@ module            what it holds
 ``as_the_arm``    The numbers of a program as the arm's table has them
 ``blocks``        Statements in other places: earlier or later, in a loop or behind it, one that is
                   missing
+``composites``    What is missing of several names at once: a cross product, a moment about another
+                  axis
 ``data``          The numbers of a program: those in its text, and those in the data that it uses
 ``every``         What could stand in a place of a program instead
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement
+``own_numbers``   The arm's own numbers: one for another, one for a number of nobody's, one that is
+                  missing
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
                   numbers
 ================  =================================================================================

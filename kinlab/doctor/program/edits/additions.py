@@ -43,6 +43,8 @@ class Scope:
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
+        cross: what gives the product of two vectors, where it is known.
+        whole: names of whole numbers that are given to a function, and counters.
     """
 
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
@@ -60,6 +62,7 @@ class Scope:
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
+        self.cross = _cross(calls, observed, self.has_numpy)
         inner: set[str] = set()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
@@ -99,6 +102,7 @@ class Scope:
             if isinstance(value, ast.Call) and called(value) in ARCS
         }
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
+        self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
         for name, value in trial.program.space.items():
             if name[:1] != "_" and _is_number(value):
                 known = _shape(value)
@@ -123,6 +127,10 @@ class Scope:
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
 
     def _of_member(self, node: ast.AST, observed: Observed) -> None:
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute):
+            given = observed.shape(node.value)  # what is set and used nowhere
+            if given is not None:
+                self.attributes.setdefault(node.targets[0].attr, given)
         shape = observed.shape(node)
         if shape is None:
             return
@@ -182,6 +190,30 @@ class Scope:
         for text, node in self.pieces.get(shape, {}).items():
             if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
                 yield text, node
+
+
+def _cross(calls: list[ast.Call], observed: Observed, has_numpy: bool) -> ast.expr | None:
+    """The function with which a part takes products of vectors; without one numpy's."""
+    for call in calls:
+        seen = [observed.of(one) for one in (*call.args, call)]
+        rows = [one.values[:1] for one in seen if one is not None and one.shape == (3,)]
+        if len(call.args) == 2 and len(rows) == len(seen) and all(rows):
+            (one,), (other,), (found,) = rows
+            if found.any() and np.allclose(found, np.cross(one, other)):
+                return call.func
+    return ast.Attribute(ast.Name("np", ast.Load()), "cross", ast.Load()) if has_numpy else None
+
+
+def _counts(tree: ast.FunctionDef, observed: Observed, known: list[str]) -> list[str]:
+    """Names of whole numbers that a part is given, and that are no counters of its own."""
+    given = {one.arg for one in tree.args.args}
+    found: list[str] = []
+    for node in nodes(tree):
+        if isinstance(node, ast.Name) and node.id in given and node.id not in (*known, *found):
+            seen = observed.of(node)
+            if seen is not None and seen.whole and seen.shape == ():
+                found.append(node.id)
+    return found
 
 
 def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
@@ -355,7 +387,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
         used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
-        if entry and used and not _of_a_kind(piece, node):
+        beside = entry and used and not _of_a_kind(piece, node)
+        if beside and not (isinstance(piece, ast.Name) and piece.id in _entries_beside(here)):
             continue
         dear = scope.dear(piece)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
@@ -370,8 +403,14 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
 
 def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:
     """Whether a name has another number than those of an expression: ``a3`` and ``-a2``."""
-    letters = {name.rstrip("0123456789") for name in names(node)}
-    return isinstance(piece, ast.Name) and piece.id.rstrip("0123456789") in letters
+    letters = {name.rstrip("0123456789").lower() for name in names(node)}
+    return isinstance(piece, ast.Name) and piece.id.rstrip("0123456789").lower() in letters
+
+
+def _entries_beside(here: Here) -> set[str]:
+    """The names in the other entries of a list."""
+    assert isinstance(here.parent, ast.List | ast.Tuple)
+    return {name for one in here.parent.elts if one is not here.node for name in names(one)}
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:

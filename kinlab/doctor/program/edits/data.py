@@ -20,6 +20,8 @@ _TABLE = 60
 """Numbers of an array of which any may be wrong."""
 _ROWS = 8
 """Rows of a table, and numbers of a row, of which any two may have been exchanged."""
+_PAIR = 2
+"""Numbers that are reversed where they are exchanged."""
 _NAMES = 12
 """Names of numbers of which any two may have been exchanged."""
 
@@ -72,6 +74,11 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
                 both = (FieldChange(value, i, value[j]), FieldChange(value, j, value[i]))
                 told = (_row(value), _row(_swapped(value, i, j)))
                 yield _swap(both, "entries swapped", name, place, told)
+        if len(value) > _PAIR:
+            back = [*value][::-1]
+            turned = tuple(FieldChange(value, k, x) for k, x in enumerate(back) if value[k] != x)
+            if len(turned) > _PAIR:
+                yield _swap(turned, "reversed", name, place, (_row(value), _row(back)))
         return
     rows = [one for one in value if isinstance(one, list | tuple | np.ndarray)]
     flat = all(_is_plain(x) for one in rows for x in one)
@@ -148,7 +155,7 @@ def _is_plain(value: Any) -> bool:
 
 def _whole(value: Any) -> Iterator[tuple[Any, str]]:
     """All of a table otherwise."""
-    if isinstance(value, np.ndarray) and value.dtype.kind == "f" and value.size:
+    if isinstance(value, np.ndarray) and value.dtype.kind in "fi" and value.size:
         yield -value, "sign"
         yield np.radians(value), "degrees"
         if value.ndim == 2:

@@ -10,10 +10,13 @@ import ast
 from collections.abc import Iterator
 from math import pi
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import copied, names
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
+from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
 from kinlab.doctor.program.edits.operators import (
     keys_of,
@@ -33,7 +36,7 @@ from kinlab.doctor.program.edits.operators import (
     value_of,
     whole_constant,
 )
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
 
@@ -115,6 +118,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         return
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
+        yield from of_composites(here, scope, shape)
+        yield from exchanges.of_repeated(here, scope, observed)
 
 
 # -------- Statements
@@ -147,17 +152,18 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             yield here.within(node, "test", negated(node.test), "condition", 1.2)
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign):
-        yield from _in_degrees(here, scope)
+        yield from _in_degrees(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
 
 
-def _in_degrees(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+def _in_degrees(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     """What is set was in degrees, though sines and cosines are taken of it."""
     node = here.node
     alone = isinstance(node.targets[0], ast.Name) and len(node.targets) == 1
     for name in dict.fromkeys(name for one in node.targets for name in names(one)):
-        if scope.shapes.get(name) != () or name not in scope.turned:
+        rows = alone and _many_degrees(observed.of(node.value))
+        if not rows and (scope.shapes.get(name) != () or name not in scope.turned):
             continue
         if alone and scope.has_numpy:
             radians = ast.Attribute(ast.Name("np", ast.Load()), "radians", ast.Load())
@@ -168,6 +174,13 @@ def _in_degrees(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             after = ast.Assign([ast.Name(name, ast.Store())], load)
             both = ast.If(ast.Constant(True), [node, after], [])
             yield here.instead(both, "degrees", 1.1)
+
+
+def _many_degrees(seen: Seen | None) -> bool:
+    """Whether a row of numbers is one of angles in degrees."""
+    if seen is None or seen.shape is None or len(seen.shape) != 1 or not seen.values:
+        return False
+    return bool(np.max(np.abs(seen.values[0]), initial=0.0) > 2 * pi)
 
 
 def _counted(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -45,6 +45,27 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         yield here.within(here.node, "value", _Turned().visit(copied(value)), "sin/cos", 1.1)
 
 
+def of_repeated(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """Another name in both places of a call or product: ``outer(p, p)`` for ``outer(c, c)``."""
+    node = here.node
+    if isinstance(node, ast.Call) and len(node.args) == 2:
+        first, last = node.args
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.MatMult):
+        first, last = node.left, node.right
+    else:
+        return
+    shape = observed.shape(first)
+    if shape is None or not isinstance(first, ast.Name | ast.Subscript | ast.Attribute):
+        return
+    if ast.dump(first) == ast.dump(last):
+        for text, other in scope.simple(shape):
+            if text != ast.unparse(first):
+                if isinstance(node, ast.Call):
+                    yield here.within(node, "args", [other, other], "name", 1.16)
+                else:
+                    yield here.instead(ast.BinOp(other, node.op, other), "name", 1.16)
+
+
 def _plain(node: ast.Name | ast.Subscript) -> bool:
     if isinstance(node, ast.Name):
         return isinstance(node.ctx, ast.Load)

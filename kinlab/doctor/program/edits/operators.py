@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from itertools import permutations
+from itertools import combinations, permutations
 from typing import Any
 
 from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
@@ -21,6 +21,10 @@ _FEW = 8
 """Attributes and keys among which a wrong one is looked for early."""
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
+_FLAT = 0.1
+"""What it costs more to take a number for a matrix."""
+_ARGUMENTS, _APART = 4, 0.03
+"""The same of arguments; what it costs more of those that do not stand side by side."""
 
 
 def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[ProgramEdit]:
@@ -40,6 +44,10 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(new, "parentheses", 1.09)
         for new in _multiplied(node):
             yield here.instead(new, "operator", 1.12)
+        for new in _squared(node):
+            yield here.instead(new, "parentheses", 1.13)
+        for new in _crosswise(node):
+            yield here.instead(new, "names exchanged", 1.13)
         for side, inner in (("left", left), ("right", right)):
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
@@ -59,8 +67,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                     opened = ast.BinOp(one, sum_.op, ast.BinOp(last, op, outer))
                 yield here.instead(opened, "parentheses", 1.15)
         matrices = [observed.shape(side) for side in (left, right)]
-        yield here.instead(left, "extra factor", 1.15)
-        yield here.instead(right, "extra factor", 1.17)
+        for kept, left_out, cost in ((left, matrices[1], 1.15), (right, matrices[0], 1.17)):
+            alone = observed.shape(kept) == () and bool(left_out)
+            yield here.instead(kept, "extra factor", cost + _FLAT * alone)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
             yield from _turned(here)
@@ -90,6 +99,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
         yield here.instead(left, "power", 1.1)
+        if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
+            each = [ast.BinOp(one, op, right) for one in (left.left, left.right)]
+            yield here.instead(ast.BinOp(each[0], left.op, each[1]), "parentheses", 1.15)
         if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Mult):
             last = ast.BinOp(left.right, op, right)
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
@@ -131,6 +143,44 @@ def _multiplied(node: ast.BinOp) -> Iterator[ast.expr]:
         whole = _times(ast.BinOp(before, ast.Mult(), factor), rest)
         joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
         yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
+
+
+def _squared(node: ast.BinOp) -> Iterator[ast.expr]:
+    """Two squares of a sum as the square of one: ``(a + b)**2`` for ``a**2 + b**2``."""
+    head, terms = _chain(node, _SUMS)
+    each = [head, *(term for _op, term in terms)]
+    for k, (op, term) in enumerate(terms):
+        one, other = (x if isinstance(x, ast.BinOp) else None for x in (each[k], term))
+        if one and other and isinstance(one.op, ast.Pow) and isinstance(other.op, ast.Pow):
+            whole = ast.BinOp(ast.BinOp(one.left, op, other.left), other.op, other.right)
+            joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
+            yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
+
+
+def _crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
+    """One factor each of two terms for one another: ``a*d + c*b`` for ``a*b + c*d``."""
+    head, terms = _chain(node, _SUMS)
+    op, last = terms[-1]
+    before = terms[-2][1] if len(terms) > 1 else head
+    one, other = _chain(before, _PRODUCTS), _chain(last, _PRODUCTS)
+    if len(one[1]) != len(other[1]) or not one[1]:
+        return
+    for k, (factor, instead) in enumerate(zip(_factors(one), _factors(other), strict=True)):
+        if ast.dump(factor) != ast.dump(instead):
+            first, tail = _with_factor(one, k, instead), _with_factor(other, k, factor)
+            rest = [*terms[:-2], (terms[-2][0], first)] if len(terms) > 1 else []
+            yield _times(head if rest else first, [*rest, (op, tail)])
+
+
+def _factors(chain: tuple[ast.expr, _Factors]) -> list[ast.expr]:
+    return [chain[0], *(factor for _op, factor in chain[1])]
+
+
+def _with_factor(chain: tuple[ast.expr, _Factors], k: int, new: ast.expr) -> ast.expr:
+    first, others = chain
+    if not k:
+        return _times(new, others)
+    return _times(first, [*others[: k - 1], (others[k - 1][0], new), *others[k:]])
 
 
 def _added(node: ast.BinOp) -> Iterator[ast.expr]:
@@ -203,11 +253,13 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         yield here.instead(ast.Call(node.func, [node], []), "function", 1.1)
     plain = [a for a in node.args if not isinstance(a, ast.Starred)]
     if len(plain) == len(node.args):
-        for k in range(len(plain) - 1):
+        for i, j in combinations(range(len(plain)), 2):
+            if j > i + 1 and len(plain) > _ARGUMENTS:
+                continue
             swapped = [*plain]
-            swapped[k], swapped[k + 1] = swapped[k + 1], swapped[k]
+            swapped[i], swapped[j] = swapped[j], swapped[i]
             cost = 1.02 if name == "cross" else 1.05 if name in _ORDERED else 1.15
-            yield here.within(node, "args", swapped, "order", cost)
+            yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
         if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in ANGLES:
             yield here.instead(plain[0], "extra factor", 1.25)
         if name == "inv" and observed.shape(plain[0]) is not None:
@@ -284,6 +336,10 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
         yield from _of_key(here, node.slice, scope)
         return
+    if getattr(node.value, "attr", "") in ("r_", "c_"):  # its entries are no indices
+        if isinstance(node.slice, ast.Tuple) and len(node.slice.elts) <= _LONGEST:
+            yield from _swapped(here, node.slice)
+        return
     keys = keys_of(node)
     yield from of_keys(here, node, 1.1)
     for k, (holder, field, key) in enumerate(keys):
@@ -325,6 +381,13 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
                 yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", cost)
             elif key.upper is None and key.lower is not None:
                 yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
+            ends = (key.lower, key.upper)
+            if ends[0] is None and ends[1] is not None and shifted(ends[1]):
+                above = ast.Slice(plus(ends[1], -1), None, None)
+                yield here.within(holder, field, above, "index", 1.15)
+            elif ends[1] is None and isinstance(ends[0], ast.Name):
+                below = ast.Slice(None, plus(ends[0], 1), None)
+                yield here.within(holder, field, below, "index", 1.15)
     keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else []
     if len(keys) == 2:
         swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
@@ -342,7 +405,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
     if shape is None:
         return
     if index:
-        for other in scope.counters:
+        for other in scope.whole:
             if other != node.id:
                 yield here.instead(ast.Name(other, ast.Load()), "index", 1.12)
         return
@@ -353,6 +416,11 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             near = _alike(other, node.id)
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             yield here.instead(ast.Name(other, ast.Load()), kind, 1.1 if near else 1.25)
+    if isinstance(here.parent, ast.Subscript) and here.field == "value" and shape:
+        for other, entries in scope.lists.items():
+            if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
+                cost = 1.15 if _alike(other, node.id) else 1.2
+                yield here.instead(ast.Name(other, ast.Load()), "name", cost)
 
 
 def _letters(name: str) -> str:
@@ -418,12 +486,16 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
         return
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
-    for i in range(len(elements)):
-        for j in range(i + 1, len(elements)):
-            if ast.dump(elements[i]) != ast.dump(elements[j]):
-                swapped = [*elements]
-                swapped[i], swapped[j] = swapped[j], swapped[i]
-                yield here.within(here.node, "elts", swapped, "entries swapped", 1.12)
+    yield from _swapped(here, here.node)
+
+
+def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:
+    """Two entries for one another."""
+    for i, j in combinations(range(len(row.elts)), 2):
+        if ast.dump(row.elts[i]) != ast.dump(row.elts[j]):
+            swapped = [*row.elts]
+            swapped[i], swapped[j] = swapped[j], swapped[i]
+            yield here.within(row, "elts", swapped, "entries swapped", 1.12)
 
 
 def of_comparison(here: Here) -> Iterator[ProgramEdit]:

@@ -1,0 +1,128 @@
+"""What is missing of several names at once: a cross product, a moment about another axis."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.program.edits.additions import Scope
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import Here, ProgramEdit, number
+
+_RATES = ("w", "o", "W", "O")
+"""How names of angular velocities begin."""
+_MASSES, _MOMENTS, _LENGTHS = ("m", "M"), ("I", "J", "i"), ("l", "L", "r", "R", "a", "c", "d")
+"""How names of masses, of moments of inertia, and of lengths begin."""
+_VECTOR = (3,)
+
+
+def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """What may be missing beside an expression."""
+    parent, node = here.parent, here.node
+    op = parent.op if isinstance(parent, ast.BinOp) else None
+    term = isinstance(op, ast.Add | ast.Sub) or isinstance(
+        parent, ast.Assign | ast.AugAssign | ast.Return
+    )
+    if isinstance(node, ast.Constant | ast.List | ast.Tuple):
+        return
+    if shape == ():
+        if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
+            if _begins(node, _MOMENTS) and (term or isinstance(op, ast.Mult)):
+                yield from _parallel_axes(here, scope)
+            yield from _next_entry(here, scope.observed)
+        return
+    factor = isinstance(op, ast.MatMult)
+    sum_ = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+    if (term or factor) and not sum_:
+        yield from _times_scalars(here, scope)
+    if shape == _VECTOR and (term or (factor and here.field == "right")):
+        yield from _cross_products(here, scope)
+
+
+def _name(node: ast.expr) -> str:
+    """What tells of which kind a number is: ``lc`` of ``self.lc``, ``m`` of ``m[1]``."""
+    while isinstance(node, ast.Subscript):
+        if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
+            return node.slice.value
+        node = node.value
+    return node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+
+
+def _begins(node: ast.expr, letters: tuple[str, ...]) -> bool:
+    return _name(node).startswith(letters)
+
+
+def _parallel_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The moment about another axis: ``I + m*lc**2`` for ``I``."""
+    simple = dict(scope.simple(()))
+    if isinstance(here.node, ast.Attribute):  # and what the object has besides
+        for name, known in scope.attributes.items():
+            if known == ():
+                one = ast.Attribute(here.node.value, name, ast.Load())
+                simple.setdefault(ast.unparse(one), one)
+    masses = [one for one in simple.values() if _begins(one, _MASSES)]
+    lengths = [one for one in simple.values() if _begins(one, _LENGTHS)]
+    for mass in masses:
+        for length in lengths:
+            square = ast.BinOp(length, ast.Pow(), number(2))
+            new = ast.BinOp(here.node, ast.Add(), ast.BinOp(mass, ast.Mult(), square))
+            near = _digits(mass) in ("", _digits(here.node)) and _digits(length) == _digits(mass)
+            yield here.instead(new, "missing term", 1.1 if near else 1.2)
+
+
+def _digits(node: ast.expr) -> str:
+    """The number of a link: ``2`` of ``m2``, and of ``m[1]`` its index."""
+    text = ast.unparse(node)
+    return "".join(letter for letter in text if letter.isdigit())
+
+
+def _next_entry(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """The entry before or behind as well: ``m[1] + m[2]`` for ``m[1]``."""
+    node, parent = here.node, here.parent
+    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
+        return
+    factor = isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Pow)
+    if not (factor or isinstance(parent, ast.Assign | ast.Return)):
+        return
+    k, sizes = node.slice.value, observed.shape(node.value) or ()
+    for other in (k + 1, k - 1) if type(k) is int and len(sizes) == 1 else ():
+        if 0 <= other < sizes[0]:
+            beside = ast.Subscript(node.value, number(other), ast.Load())
+            new = ast.BinOp(node, ast.Add(), beside)
+            yield here.instead(new, "missing term", 1.14)
+
+
+def _times_scalars(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A vector or matrix times a number."""
+    for text, scalar in scope.simple(()):
+        if text not in scope.counters:
+            cost = 1.12 + scope.dear(scalar)
+            new = ast.BinOp(here.node, ast.Mult(), scalar)
+            yield here.instead(new, "missing factor", cost)
+
+
+def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A velocity, or an acceleration, of another point: ``w x r``, ``w x (w x r)``."""
+    if scope.cross is None:
+        return
+    vectors = [one for one in scope.pieces.get(_VECTOR, {}).values() if _plain(one)]
+    rates = [one for one in vectors if isinstance(one, ast.Name | ast.Subscript)]
+    rates = [one for one in rates if _begins(one, _RATES)]
+    own = ast.unparse(here.node)
+    for rate in rates:
+        for vector in vectors:
+            if ast.unparse(vector) in (ast.unparse(rate), own):
+                continue
+            cost = 1.17 + scope.dear(vector) / 2
+            product: ast.expr = vector
+            for turn in range(2):
+                product = ast.Call(scope.cross, [rate, product], [])
+                new = ast.BinOp(here.node, ast.Add(), product)
+                yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _plain(node: ast.expr) -> bool:
+    """A name, an entry, or a number times one."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        return _plain(node.left) and _plain(node.right)
+    return isinstance(node, ast.Name | ast.Subscript | ast.Attribute)

@@ -1,0 +1,95 @@
+"""The arm's own numbers: one for another, one for a number of nobody's, one that is missing."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.additions import ANGLES
+from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA, Here, ProgramEdit, called, number, places
+from kinlab.doctor.program.trial import Trial
+from kinlab.model.dh import DHTable
+from kinlab.tolerances import TOLERANCES
+
+_PLAIN = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
+"""Sizes of numbers that are rather factors."""
+_GRAVITY = (9.7, 9.9)
+"""Between which a number is rather gravity's."""
+_MOST = 12
+"""Numbers of one kind of which any may be meant."""
+
+
+def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
+    """Numbers of a program as others of the arm's of their kind, and lengths that are missing."""
+    table = table_of(robot)
+    if table is None:
+        return
+    kinds = _kinds(table)
+    every = [*numbers(trial, observed)]
+    for place in every:
+        if not isinstance(place.value, float):
+            continue
+        for value, cost in _meant(place, kinds):
+            edit = place.edit(float(np.copysign(value, place.value)), "number", cost)
+            yield replace(edit, of_the_arm=True)
+    lengths = kinds[0][:_MOST]
+    typed = {abs(float(place.value)) for place in every if place.part != DATA}
+    if any(_among(x, lengths) for x in typed):  # lengths are typed where they are used
+        for part, tree in enumerate(trial.trees):
+            for here in places(part, tree):
+                yield from _missing(here, observed, lengths)
+
+
+def _kinds(table: DHTable) -> list[list[float]]:
+    """The sizes of the arm's lengths, masses, and moments of inertia."""
+    lengths = [x for k in table.links for x in (k.a, k.d, *np.ravel(k.com))]
+    for k in table.links:  # from the joint, too
+        lengths += [*np.add((k.a, k.d, k.d), np.ravel(k.com))]
+    lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
+    moments = [x for k in table.links for x in np.ravel(k.inertia)]
+    kinds = (lengths, [k.mass for k in table.links], moments)
+    return [sorted({abs(float(x)) for x in some if x}) for some in kinds]
+
+
+def _meant(place: NumberPlace, kinds: Sequence[list[float]]) -> Iterator[tuple[float, float]]:
+    """Numbers that may be meant, and how far-fetched each is."""
+    size = abs(float(place.value))
+    own = [kind for kind in kinds if _among(size, kind)]
+    if own:
+        if place.part == DATA and not place.place:
+            return  # a name for one of the arm's numbers
+    elif size in _PLAIN or _GRAVITY[0] < size < _GRAVITY[1] or size <= TOLERANCES.may_be_step:
+        return
+    for kind in own or kinds:
+        for value in kind[:_MOST]:
+            if abs(value - size) > TOLERANCES.same_number * value:
+                yield value, 1.12 if own else 1.1
+
+
+def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterator[ProgramEdit]:
+    """A length more or less, in a sum, or in what is set or given on."""
+    node, parent = here.node, here.parent
+    if not isinstance(node, ast.Name | ast.Subscript) or observed.shape(node) != ():
+        return
+    seen = observed.of(node)
+    if seen is None or seen.whole:
+        return
+    op = parent.op if isinstance(parent, ast.BinOp) else None
+    term = isinstance(op, ast.Add | ast.Sub) or isinstance(parent, ast.Assign)
+    given = isinstance(parent, ast.Call) and called(parent) not in ANGLES and here.field != "func"
+    if term or given:
+        for length in lengths:
+            for more in (ast.Add(), ast.Sub()):
+                edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.16)
+                yield replace(edit, of_the_arm=True)
+
+
+def _among(value: float, known: Sequence[float]) -> bool:
+    return any(abs(value - x) <= TOLERANCES.same_number * max(x, value) for x in known)
