@@ -28,6 +28,7 @@ from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.own_numbers import of_own_numbers
+from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
@@ -64,6 +65,14 @@ _SAME = 0.011
 """Costs that are one."""
 _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
+_TORQUES = (
+    "inverse_dynamics",
+    "forward_dynamics",
+    "gravity_torques",
+    "coriolis_torques",
+    "lagrange_torques",
+)
+"""Quantities whose numbers are of one dimension, where all joints turn."""
 ANY_ZERO = ("potential_energy", "lagrangian")
 """Quantities of which a constant more or less is no slip."""
 _MORE = 6
@@ -191,7 +200,12 @@ class LineSearch:
         self.evidence = Grounds(self.trial, self.observed, self.known)
         self._other = other_arm(self.case.robot, self.trial, self.observed)
         self._there: list[LineSearch | None] = []
+        alike = self.case.quantity.name in _TORQUES
+        self.dimensions = Dimensions(
+            self.trial, self.observed, self.case.robot, [*self.case.arguments], self.states, alike
+        )
         self.suspected = suspects(self.trial, self.observed, self.known)
+        self.suspected |= self.dimensions.apart
 
     @property
     def scale(self) -> Array:
@@ -256,6 +270,8 @@ class LineSearch:
                 for edit in every
                 if not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
             ]
+            weigh = self.dimensions.against
+            every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
             tried = self._in_turn(sorted(every, key=self._dear))
             variants = Variants(self.trial, tried)
             for edit in tried:

@@ -31,7 +31,7 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     table = table_of(robot)
     if table is None:
         return
-    kinds = _kinds(table)
+    kinds = sizes_of(table)
     every = [*numbers(trial, observed)]
     for place in every:
         if not isinstance(place.value, float):
@@ -39,36 +39,36 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
         for value, cost in _meant(place, kinds):
             edit = place.edit(float(np.copysign(value, place.value)), "number", cost)
             yield replace(edit, of_the_arm=True)
-    lengths = kinds[0][:_MOST]
+    lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
-    if any(_among(x, lengths) for x in typed):  # lengths are typed where they are used
+    if any(among(x, lengths) for x in typed):  # lengths are typed where they are used
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
 
 
-def _kinds(table: DHTable) -> list[list[float]]:
-    """The sizes of the arm's lengths, masses, and moments of inertia."""
+def sizes_of(table: DHTable) -> dict[str, list[float]]:
+    """The sizes of the arm's lengths, masses, and moments of inertia, each once."""
     lengths = [x for k in table.links for x in (k.a, k.d, *np.ravel(k.com))]
     for k in table.links:  # from the joint, too
         lengths += [*np.add((k.a, k.d, k.d), np.ravel(k.com))]
     lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
     moments = [x for k in table.links for x in np.ravel(k.inertia)]
-    kinds = (lengths, [k.mass for k in table.links], moments)
-    return [sorted({abs(float(x)) for x in some if x}) for some in kinds]
+    kinds = {"length": lengths, "mass": [k.mass for k in table.links], "moment": moments}
+    return {kind: sorted({abs(float(x)) for x in some if x}) for kind, some in kinds.items()}
 
 
-def _meant(place: NumberPlace, kinds: Sequence[list[float]]) -> Iterator[tuple[float, float]]:
+def _meant(place: NumberPlace, kinds: dict[str, list[float]]) -> Iterator[tuple[float, float]]:
     """Numbers that may be meant, and how far-fetched each is."""
     size = abs(float(place.value))
-    own = [kind for kind in kinds if _among(size, kind)]
+    own = [known for known in kinds.values() if among(size, known)]
     if own:
         if place.part == DATA and not place.place:
             return  # a name for one of the arm's numbers
     elif size in _PLAIN or _GRAVITY[0] < size < _GRAVITY[1] or size <= TOLERANCES.may_be_step:
         return
-    for kind in own or kinds:
-        for value in kind[:_MOST]:
+    for known in own or kinds.values():
+        for value in known[:_MOST]:
             if abs(value - size) > TOLERANCES.same_number * value:
                 yield value, 1.12 if own else 1.1
 
@@ -91,5 +91,6 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
                 yield replace(edit, of_the_arm=True)
 
 
-def _among(value: float, known: Sequence[float]) -> bool:
+def among(value: float, known: Sequence[float]) -> bool:
+    """Whether a number is one of those that are known."""
     return any(abs(value - x) <= TOLERANCES.same_number * max(x, value) for x in known)

@@ -3,6 +3,7 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
+``dimensions``    The dimensions of a program's expressions: nobody adds a length to a moment
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``suspects``      Statements that are wrong by what they are made of

@@ -88,8 +88,9 @@ class _Several:
             return self._settled(search, found)
         together = TriedTogether(search, known)
         found = tried.likeliest(known, together.pairs())
-        if not found and together.usable:
+        if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
+            found = found or tried.likeliest(known, together.any_three())
         if found:
             return self._settled(search, found)
         steps = Witnesses(search).steps(known, search.most // _WATCHING)

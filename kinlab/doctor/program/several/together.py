@@ -34,6 +34,10 @@ _TRIED = 2000
 """Threes that are run, of each way to tell them."""
 _ALL, _LEAST = 100_000_000, 20_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
+_LIKELY, _PRODUCT = 300, 150_000
+"""Edits of which any three are run together, the product of whose ranks is no larger."""
+_BITS = 63
+"""Numbers of an answer by which threes are told apart beforehand."""
 _NONE = -1
 """In place of an edit's number."""
 
@@ -174,6 +178,53 @@ class TriedTogether:
         ranked = sorted(found, key=self.known.cost)
         rows = self._rows(np.array(ranked), None) if ranked else None
         return [] if rows is None else [ranked[k] for k in self._fits(rows)]
+
+    def any_three(self) -> list[Chosen]:
+        """Any three of the likeliest edits that nothing speaks against, tried themselves."""
+        if not self.usable:
+            return []
+        three = self._possible()
+        for start in range(0, len(three), _BLOCK**2):
+            if self.left <= 0:
+                break
+            some = three[start : start + _BLOCK**2]
+            rows = self._rows(some, self.count)
+            right = some[self._fits(rows)] if rows is not None else some[:0]
+            whole = self._rows(right, None) if len(right) else None
+            if whole is not None and len(right := right[self._fits(whole)]):
+                return sorted((tuple(map(int, one)) for one in right), key=self.known.cost)
+        return []
+
+    def _possible(self) -> Any:
+        """Threes of which each number that only one of them changes is made right by it.
+
+        None may leave a wrong number as it is; the likeliest first.
+        """
+        few = self.sound[:_LIKELY]
+        bits = 1 << np.arange(min(_BITS, len(self.known.goal)), dtype=np.uint64)
+        size = len(bits)
+        moved, right = (
+            np.where(flags[few][:, :size], bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
+            for flags in (~self.known.still, self.known.right)
+        )
+        wrong = np.where(self.known.wrong[:size], bits, np.uint64(0)).sum(dtype=np.uint64)
+        spoilt, found = moved & ~right, []
+        ranks = np.arange(1, len(few) + 1)
+        first, second = np.triu_indices(len(few), 1)
+        apart = ~self.within[few[first], few[second]]
+        first, second = first[apart], second[apart]
+        either = moved[first] | moved[second]
+        spoilt_alone = (spoilt[first] & ~moved[second]) | (spoilt[second] & ~moved[first])
+        for k in range(2, len(few)):
+            ahead = (second < k) & (ranks[first] * ranks[second] * ranks[k] <= _PRODUCT)
+            fits = ahead & (spoilt_alone & ~moved[k] == 0) & (wrong & ~(either | moved[k]) == 0)
+            fits &= spoilt[k] & ~either == 0
+            at = np.flatnonzero(fits)
+            at = at[~(self.within[few[first[at]], few[k]] | self.within[few[second[at]], few[k]])]
+            found.append(np.stack([first[at], second[at], np.full(len(at), k)], axis=1))
+        every = np.concatenate(found) if found else np.empty((0, 3), dtype=int)
+        order = np.argsort((every + 1).prod(axis=1), kind="stable")
+        return few[every[order]]
 
     def _beside_pairs(self) -> Iterator[Chosen]:
         """A pair, and an edit whose effect adds up with the pair's."""

@@ -1,0 +1,367 @@
+"""The dimensions of a program's expressions: nobody adds a length to a moment.
+
+A program is run a second time with all lengths, masses and times measured in other units, and its
+own numbers changed alike. By how much a value changes tells its dimension; where a number of the
+program may be several things, nothing is told.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
+from kinlab.doctor.program.edits.own_numbers import among, sizes_of
+from kinlab.doctor.program.observed import Observed, Seen
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, with_other
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial
+from kinlab.model.dh import DHTable
+from kinlab.tolerances import TOLERANCES
+
+_LENGTH, _MASS, _RATE = 1.37, 1.73, 1.19
+"""By how much lengths, masses and rates grow; no product of few of them is another."""
+_BY = {
+    "length": _LENGTH,
+    "mass": _MASS,
+    "moment": _MASS * _LENGTH**2,
+    "gravity": _LENGTH * _RATE**2,
+    "none": 1.0,
+}
+_LETTERS = {"l": "length", "a": "length", "d": "length", "r": "length", "c": "length",
+            "m": "mass", "i": "moment", "j": "moment", "g": "gravity"}  # fmt: skip
+"""What a number is whose name begins so."""
+_WORDS = {"len": "length", "mass": "mass", "inertia": "moment", "grav": "gravity", "com": "length"}
+"""The same of longer ones."""
+_SHORT = 3
+_GRAVITY = (9.7, 9.9)
+_PARTS = 12
+"""Denominator of fractions that have no dimension."""
+_FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
+"""Numbers that may be factors wherever they stand."""
+_PLAIN = ("sin", "cos", "tan", "arctan2", "atan2", "arccos", "acos", "arcsin", "asin")
+_SAME = ("abs", "array", "asarray", "float", "sum", "negative", "copy", "ravel", "diag")
+_STATEMENTS = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
+_FAR, _LIKE = 1.2, 0.12
+"""What it costs less to take a name for a far one of the same dimension."""
+_APART, _CHANGED = 0.12, 0.1
+"""What an edit costs more that adds what is of different dimensions, or that changes one."""
+
+
+class Dimensions:
+    """The dimensions of the expressions of a wrong program, as far as they are known.
+
+    Args:
+        trial: the program.
+        observed: its expressions.
+        robot: the arm.
+        names: of the arguments.
+        states: at which it was observed.
+        alike: whether the entries of an answer are of one dimension, of an arm that only turns.
+    """
+
+    def __init__(
+        self,
+        trial: Trial,
+        observed: Observed,
+        robot: Any,
+        names: Sequence[str],
+        states: Sequence[tuple[Any, ...]],
+        alike: bool,
+    ) -> None:
+        self.trial = trial
+        self._known: dict[int, float] = {}
+        table = table_of(robot)
+        turns = table is not None and all(link.joint == "revolute" for link in table.links)
+        self._alike = alike and turns
+        larger = None if table is None else _larger(table, names, states)
+        put = None if table is None else _in_other_units(trial, observed, table)
+        if larger is None or put is None:
+            return
+        parts = {edit.part for edit in put}
+        changes = [change for edit in put for change in edit.changes]
+        try:
+            with trial.changed(parts, changes):
+                there = Observed(trial, larger)
+        except (NoProgramError, FailedError):
+            return
+        for tree in trial.trees:
+            for node in nodes(tree):
+                one, other = observed.of(node), there.of(node)
+                if one is not None and other is not None:
+                    ratio = _ratio(one, other)
+                    if ratio is not None:
+                        self._known[id(node)] = ratio
+
+    def of(self, node: ast.AST) -> float | None:
+        """The dimension of an expression of the program as the logarithm of a factor."""
+        return self._known.get(id(node))
+
+    @cached_property
+    def consistent(self) -> bool:
+        """Whether nothing in the program adds what cannot be added."""
+        return bool(self._known) and not self.apart
+
+    @cached_property
+    def apart(self) -> set[int]:
+        """The nodes of statements that add what cannot be added, by identity."""
+        found: set[int] = set()
+        for tree in self.trial.trees:
+            for statement in nodes(tree):
+                inside = nodes(statement) if isinstance(statement, _STATEMENTS) else []
+                if not all(map(self._sound, inside)):
+                    found |= {id(node) for node in inside}
+        return found
+
+    def _sound(self, node: ast.AST) -> bool:
+        if isinstance(node, ast.Call) and called(node) in _PLAIN[:3] and node.args:
+            return _alike(self.of(node.args[0]), 0.0)
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+            return _alike(self.of(node.left), self.of(node.right))
+        if isinstance(node, ast.Return) and self._alike:
+            value = node.value
+            inner = value.args[0] if isinstance(value, ast.Call) and _is_array(value) else value
+            if isinstance(inner, ast.List | ast.Tuple):
+                told = [x for x in map(self.of, inner.elts) if x is not None]
+                return all(_alike(told[0], x) for x in told)
+        return True
+
+    def against(self, edit: ProgramEdit) -> float:
+        """What an edit costs more for its dimensions."""
+        if not self._known or edit.part == DATA or len(edit.changes) != 1:
+            return 0.0
+        (change,) = edit.changes
+        old, new = change.now, change.new
+        if not isinstance(old, ast.expr) or not isinstance(new, ast.expr):
+            if not isinstance(change.holder, ast.expr) or isinstance(change.field, int):
+                return 0.0
+            old = change.holder
+            new = with_other(old, change.field, None, new)
+        try:
+            found = self._of_new(new)
+        except _ApartError:
+            return _APART
+        was = self.of(old)
+        if found is None or was is None:
+            return 0.0
+        if not _alike(was, found):
+            return _CHANGED if self.consistent else 0.0
+        return -_LIKE if edit.kind == "name" and edit.cost > _FAR and was else 0.0
+
+    def _of_new(self, node: Any) -> float | None:
+        """The dimension of an expression that is put in."""
+        known = self._known.get(id(node))
+        if known is not None:
+            return known
+        if isinstance(node, ast.Constant):
+            return 0.0 if isinstance(node.value, int | float) else None
+        if isinstance(node, ast.UnaryOp):
+            return self._of_new(node.operand)
+        if isinstance(node, ast.BinOp):
+            return self._of_operation(node)
+        if isinstance(node, ast.Call):
+            return self._of_call(node)
+        if isinstance(node, ast.Attribute) and node.attr == "T":
+            return self._of_new(node.value)
+        if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
+            return self._texts.get(ast.unparse(node))
+        return None
+
+    def _of_operation(self, node: ast.BinOp) -> float | None:
+        one, other = self._of_new(node.left), self._of_new(node.right)
+        if isinstance(node.op, ast.Add | ast.Sub):
+            plain = isinstance(node.left, ast.Constant) or isinstance(node.right, ast.Constant)
+            if not plain and not _alike(one, other):
+                raise _ApartError
+            return one if other is None else other
+        if isinstance(node.op, ast.Pow):
+            power = getattr(node.right, "value", None)
+            return power * one if one is not None and isinstance(power, int | float) else None
+        if one is None or other is None:
+            return None
+        if isinstance(node.op, ast.Mult | ast.MatMult):
+            return one + other
+        return one - other if isinstance(node.op, ast.Div) else None
+
+    def _of_call(self, node: ast.Call) -> float | None:
+        name = called(node)
+        given = [self._of_new(one) for one in node.args]
+        if name in _PLAIN:
+            if name in _PLAIN[:3] and given and not _alike(given[0], 0.0):
+                raise _ApartError
+            return 0.0
+        if name in ("cross", "dot", "outer") and len(given) == 2:
+            return None if None in given else sum(x for x in given if x is not None)
+        return given[0] if name in _SAME and len(given) == 1 else None
+
+    @cached_property
+    def _texts(self) -> dict[str, float]:
+        """The dimensions of names and entries by what they are as text."""
+        found: dict[str, float] = {}
+        twice: set[str] = set()
+        for tree in self.trial.trees:
+            for node in nodes(tree):
+                known = self._known.get(id(node))
+                if known is not None and isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
+                    text = ast.unparse(node)
+                    if not _alike(found.setdefault(text, known), known):
+                        twice.add(text)
+        return {text: known for text, known in found.items() if text not in twice}
+
+
+class _ApartError(Exception):
+    """Things of different dimensions are added."""
+
+
+def _alike(one: float | None, other: float | None) -> bool:
+    """Whether two dimensions may be one."""
+    return one is None or other is None or abs(one - other) <= TOLERANCES.tried_further
+
+
+def _is_array(node: ast.AST) -> bool:
+    return isinstance(node, ast.Call) and called(node) in ("array", "asarray") and bool(node.args)
+
+
+def _ratio(one: Seen, other: Seen) -> float | None:
+    """By how much all the values of an expression grow, as a logarithm; None where they differ."""
+    if not one.values or len(one.values) != len(other.values) or one.shape != other.shape:
+        return None
+    before, after = np.concatenate([np.ravel(x) for x in one.values]), other.values
+    later: Array = np.concatenate([np.ravel(x) for x in after])
+    if before.shape != later.shape:
+        return None
+    told = np.abs(before) > TOLERANCES.tried_further
+    if not told.any() or (later[told] / before[told] <= 0.0).any():
+        return None
+    logs = np.log(later[told] / before[told])
+    if float(np.ptp(logs)) > TOLERANCES.tried_further:
+        return None
+    return float(logs[0])
+
+
+def _larger(
+    table: DHTable, names: Sequence[str], states: Sequence[tuple[Any, ...]]
+) -> list[tuple[Any, ...]] | None:
+    """The states in other units; None where an argument is none that has one."""
+    slides = np.array([link.joint == "prismatic" for link in table.links])
+    along = np.where(slides, _LENGTH, 1.0)
+    force = _MASS * _LENGTH**2 * _RATE**2 / along
+    by: Mapping[str, Any] = {
+        "q": along,
+        "v": along * _RATE,
+        "a": along * _RATE**2,
+        "tau": force,
+        "x": _LENGTH,
+        "y": _LENGTH,
+        "z": _LENGTH,
+        "phi": 1.0,
+    }
+    if not all(name in by for name in names):
+        return None
+    return [
+        tuple(value * by[name] for name, value in zip(names, state, strict=True))
+        for state in states
+    ]
+
+
+def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[ProgramEdit] | None:
+    """The program's numbers in other units; None where one of them may be several things."""
+    kinds = sizes_of(table)
+    angles = {abs(x) for link in table.links for x in (link.alpha, link.theta)}
+    put: list[tuple[NumberPlace, float]] = []
+    named = _named(trial)
+    every = [*numbers(trial, observed), *_unused(trial)]
+    for place in every:
+        kind = _kind(place, kinds, angles, named)
+        if kind is None:
+            return None
+        if kind != "none":
+            put.append((place, float(place.value) * _BY[kind]))
+    return together(put)
+
+
+def _unused(trial: Trial) -> Iterator[NumberPlace]:
+    """Numbers of the module that nothing uses: an edit may."""
+    used = {*trial.program.data, *trial.sets}
+    for name, value in trial.program.space.items():
+        if name not in used and type(value) in (int, float):
+            yield from leaves_of(trial, name)
+
+
+def _named(trial: Trial) -> dict[int, str]:
+    """The names that numbers of the text are given, by the number's node."""
+    found: dict[int, str] = {}
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.Assign):
+                for name, value in _given(node.targets[0], node.value):
+                    found |= {id(one): name for one in _alone(value)}
+    return found
+
+
+def _given(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
+    if isinstance(target, ast.Name):
+        yield target.id, value
+    elif isinstance(target, ast.Attribute):
+        yield target.attr, value
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for one, part in zip(target.elts, value.elts, strict=False):
+            yield from _given(one, part)
+
+
+def _alone(value: ast.expr) -> Iterator[ast.expr]:
+    """Numbers that stand for themselves: alone, with a sign, in a list."""
+    if isinstance(value, ast.UnaryOp):
+        yield from _alone(value.operand)
+    elif isinstance(value, ast.List | ast.Tuple):
+        for one in value.elts:
+            yield from _alone(one)
+    elif _is_array(value) and isinstance(value, ast.Call):
+        yield from _alone(value.args[0])
+    elif isinstance(value, ast.Constant):
+        yield value
+
+
+def _kind(
+    place: NumberPlace, kinds: Mapping[str, list[float]], angles: set[float], named: dict[int, str]
+) -> str | None:
+    """What a number is; ``"none"`` of what has no dimension, None where that is not told."""
+    size = abs(float(place.value))
+    may = [kind for kind, known in kinds.items() if among(size, known)]
+    may += ["gravity"] if _GRAVITY[0] < size < _GRAVITY[1] else []
+    name = place.node if place.part == DATA else named.get(id(place.node))
+    keys = [key for key in place.place if isinstance(key, str)]
+    told = _told_by(keys[-1].lstrip(".") if keys else name or "")
+    plain = size in _FACTORS or not size or among(size, sorted(angles)) or _is_simple(size)
+    if not size:
+        return "none"
+    if isinstance(place.value, int) and name is None and not keys:
+        return "none"  # in the middle of a formula
+    if told in may:
+        return told
+    if not may:
+        return "none" if plain else None
+    return may[0] if len(may) == 1 and not plain else None
+
+
+def _told_by(name: str) -> str | None:
+    """What a number is by its name: ``l1``, ``mass``."""
+    short = name.rstrip("0123456789_").lower()
+    if len(short) <= _SHORT:
+        return _LETTERS.get(short[:1])
+    return next((kind for word, kind in _WORDS.items() if short.startswith(word)), None)
+
+
+def _is_simple(value: float) -> bool:
+    """Whether a number is a simple fraction, of pi as well, or a whole number."""
+    return any(
+        math.isclose(x * _PARTS, round(x * _PARTS), rel_tol=TOLERANCES.same_number)
+        for x in (value, value / math.pi)
+    )
