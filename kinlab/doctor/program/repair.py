@@ -45,6 +45,8 @@ _WORK = 45_000_000
 """Operations of numbers, or what amounts to them, of which all searches have their share."""
 _ALONE = 50_000_000
 """What may be done for single edits beside which none stands."""
+_WEIGHED = 9000
+"""Edits that are weighed, and may be tried."""
 _NODE = 30
 """What compiling one node amounts to."""
 _ENDING, _LONGER = ast.While | ast.Break, 6
@@ -254,8 +256,12 @@ class LineSearch:
         self.observed = Observed(self.trial, self.states)
         self.evidence = Grounds(self.trial, self.observed, self.known)
 
-    def singles(self) -> list[ProgramRepair]:
-        """Single edits that make the program right, the likeliest first."""
+    def singles(self, below: float = np.inf) -> list[ProgramRepair]:
+        """Single edits that make the program right, the likeliest first.
+
+        Args:
+            below: what they cost at most.
+        """
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
@@ -270,6 +276,9 @@ class LineSearch:
                 for edit in every
                 if not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
             ]
+            every = [edit for edit in every if edit.cost < below]
+            most = _WEIGHED // 3 if self.stand else _WEIGHED
+            every = sorted(every, key=lambda edit: edit.cost)[:most]
             weigh = self.dimensions.against
             every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
             tried = self._in_turn(sorted(every, key=self._dear))
@@ -296,6 +305,8 @@ class LineSearch:
                     best = min(best, self.likely(edit) + _ROUGH * rough)
                     doubted = doubted or self.evidence.coincident(edit)
             found = self._by_evidence(found)
+            if below < np.inf:
+                return found
             if len(self.stand) < _STANDING and (not found or best > _NUMBER):
                 found = self._numbers() + found
             elif not self.stand and found[0].edits[-1].part != DATA:

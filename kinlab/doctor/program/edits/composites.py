@@ -13,7 +13,11 @@ _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
 _MASSES, _MOMENTS, _LENGTHS = ("m", "M"), ("I", "J", "i"), ("l", "L", "r", "R", "a", "c", "d")
 """How names of masses, of moments of inertia, and of lengths begin."""
+_ARMS = ("p", "P", "r", "c", "C", "l", "d", "s", "o", "v")
+"""How names of what leads from one point to another begin, and of velocities."""
 _VECTOR = (3,)
+_FEW = 8
+"""Angular velocities that are tried; twice as many arms."""
 
 
 def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
@@ -105,12 +109,13 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A velocity, or an acceleration, of another point: ``w x r``, ``w x (w x r)``."""
     if scope.cross is None:
         return
-    vectors = [one for one in scope.pieces.get(_VECTOR, {}).values() if _plain(one)]
-    rates = [one for one in vectors if isinstance(one, ast.Name | ast.Subscript)]
-    rates = [one for one in rates if _begins(one, _RATES)]
+    plain = [one for one in scope.pieces.get(_VECTOR, {}).values() if _plain(one)]
+    names = [one for one in plain if not isinstance(one, ast.BinOp)]
+    rates = [one for one in names if _begins(one, _RATES)][:_FEW]
+    vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
     own = ast.unparse(here.node)
     for rate in rates:
-        for vector in vectors:
+        for vector in vectors[: 2 * _FEW]:
             if ast.unparse(vector) in (ast.unparse(rate), own):
                 continue
             cost = 1.17 + scope.dear(vector) / 2

@@ -21,6 +21,8 @@ _FEW = 8
 """Attributes and keys among which a wrong one is looked for early."""
 _LONGEST = 6
 """Entries of a list of which any two may have been exchanged."""
+_PLACE = 3
+"""Where the 1 stands in what a transform is multiplied with."""
 _FLAT = 0.1
 """What it costs more to take a number for a matrix."""
 _ARGUMENTS, _APART = 4, 0.03
@@ -495,7 +497,9 @@ def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:
         if ast.dump(row.elts[i]) != ast.dump(row.elts[j]):
             swapped = [*row.elts]
             swapped[i], swapped[j] = swapped[j], swapped[i]
-            yield here.within(row, "elts", swapped, "entries swapped", 1.12)
+            moved = j == _PLACE and getattr(row.elts[j], "value", None) == 1
+            cost = 1.12 + _FLAT * moved  # of what is a place, and no direction
+            yield here.within(row, "elts", swapped, "entries swapped", cost)
 
 
 def of_comparison(here: Here) -> Iterator[ProgramEdit]:

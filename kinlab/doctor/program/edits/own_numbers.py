@@ -22,6 +22,8 @@ _PLAIN = (0.0, 0.5, 1.0, 2.0, 3.0, 4.0)
 """Sizes of numbers that are rather factors."""
 _GRAVITY = (9.7, 9.9)
 """Between which a number is rather gravity's."""
+_TURNED = 0.02
+"""What it costs more to put a number in with the other sign."""
 _MOST = 12
 """Numbers of one kind of which any may be meant."""
 
@@ -37,8 +39,7 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
         if not isinstance(place.value, float):
             continue
         for value, cost in _meant(place, kinds):
-            edit = place.edit(float(np.copysign(value, place.value)), "number", cost)
-            yield replace(edit, of_the_arm=True)
+            yield replace(place.edit(value, "number", cost), of_the_arm=True)
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
     if any(among(x, lengths) for x in typed):  # lengths are typed where they are used
@@ -67,10 +68,13 @@ def _meant(place: NumberPlace, kinds: dict[str, list[float]]) -> Iterator[tuple[
             return  # a name for one of the arm's numbers
     elif size in _PLAIN or _GRAVITY[0] < size < _GRAVITY[1] or size <= TOLERANCES.may_be_step:
         return
+    cost = 1.12 if own else 1.1
     for known in own or kinds.values():
         for value in known[:_MOST]:
             if abs(value - size) > TOLERANCES.same_number * value:
-                yield value, 1.12 if own else 1.1
+                same = float(np.copysign(value, place.value))
+                yield same, cost
+                yield -same, cost + _TURNED
 
 
 def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterator[ProgramEdit]:
@@ -87,7 +91,7 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
     if term or given:
         for length in lengths:
             for more in (ast.Add(), ast.Sub()):
-                edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.16)
+                edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.14)
                 yield replace(edit, of_the_arm=True)
 
 

@@ -177,8 +177,9 @@ class Dimensions:
     def _of_operation(self, node: ast.BinOp) -> float | None:
         one, other = self._of_new(node.left), self._of_new(node.right)
         if isinstance(node.op, ast.Add | ast.Sub):
-            plain = isinstance(node.left, ast.Constant) or isinstance(node.right, ast.Constant)
-            if not plain and not _alike(one, other):
+            if isinstance(node.right, ast.Constant):  # of what dimension is not told
+                return one
+            if not isinstance(node.left, ast.Constant) and not _alike(one, other):
                 raise _ApartError
             return one if other is None else other
         if isinstance(node.op, ast.Pow):

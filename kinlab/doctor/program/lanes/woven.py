@@ -18,7 +18,7 @@ import numpy as np
 from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
-from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial, is_data
+from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
 
 _SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
 """Statements whose expressions are asked."""
@@ -73,8 +73,6 @@ class Woven:
     def _put(self, number: int, edit: ProgramEdit) -> bool:
         """Puts an edit where it is asked, if it can be."""
         if edit.part == DATA:
-            if not all(is_data(change.holder) for change in edit.changes):
-                return False
             self.data += [(number, change) for change in edit.changes]
             return True
         spots = [self._spot(change) for change in edit.changes]

@@ -156,8 +156,8 @@ class _Several:
             try:
                 with changed(search.trial, others):
                     here = _beside(search, others)
-                    better = here.singles()[:1]
                     cost = here.likely(edit)
+                    better = here.singles(cost)[:1]
                     better = [one for one in better if here.likely(one.edits[-1]) < cost]
             except NoProgramError:
                 continue
