@@ -153,7 +153,9 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
             except NoProgramError:
                 continue
             if right is not None:
-                np.testing.assert_allclose(values.ravel(), right.ravel(), rtol=1e-8, atol=1e-8)
+                size = max(1.0, float(np.max(np.abs(right))))  # what cancels is as exact as that
+                gap = np.abs(values.ravel() - right.ravel())
+                assert float(np.max(gap)) <= 1e-8 * size
                 seen += 1
     assert seen > 0.7 * len(pairs)
 

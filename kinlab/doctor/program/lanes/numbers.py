@@ -29,13 +29,14 @@ class LaneGroup:
         which: the numbers of the lanes here, ascending; None for all.
     """
 
-    __slots__ = ("_chosen", "_edits", "_inner", "_where", "size", "which")
+    __slots__ = ("_chosen", "_edits", "_inner", "_rest", "_where", "size", "which")
 
     def __init__(self, chosen: Any, which: Any = None) -> None:
         self._chosen, self.which = chosen, which
         self.size = len(chosen) if which is None else len(which)
         self._edits: dict[int, Any] | None = None
         self._inner: dict[int, LaneGroup] = {}
+        self._rest: dict[tuple[int, ...], LaneGroup] = {}
         self._where: dict[LaneGroup, Any] = {}
 
     @property
@@ -57,6 +58,15 @@ class LaneGroup:
         if edit not in self._inner:
             self._inner[edit] = LaneGroup(self._chosen, self.edits[edit])
         return self._inner[edit]
+
+    def without(self, edits: Sequence[int]) -> LaneGroup:
+        """Those of the lanes here that have none of some edits."""
+        key = tuple(edits)
+        if key not in self._rest:
+            which = np.arange(self.size) if self.which is None else self.which
+            rest = ~np.isin(self._chosen[which], key).any(axis=1)
+            self._rest[key] = LaneGroup(self._chosen, which[rest])
+        return self._rest[key]
 
     def where(self, outer: LaneGroup) -> Any:
         """At which places of an outer one these lanes are."""

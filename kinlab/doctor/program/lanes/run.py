@@ -12,6 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.program.lanes.functions import with_lanes
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes
+from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.lanes.woven import Edits, Woven
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.trial import QUICK, FailedError, FieldChange, Trial, made
@@ -67,17 +68,17 @@ class InLanes:
         """
         lanes = Lanes(chosen)
         stacks: list[Any] = []
-        with self._placed(lanes):
-            try:
+        try:
+            with self._placed(lanes):
                 for state in self.states[:count]:
                     answer = self.trial.function(*(x.copy() for x in state))
                     entries = np.array(answer, dtype=object).ravel()
                     stacks.append([_full(entry, lanes) for entry in entries])
                 found = np.array(stacks)
-            except (FailedError, TypeError, ValueError):
-                return None
-            finally:
-                self.work += lanes.work
+        except (FailedError, TypeError, ValueError):
+            return None
+        finally:
+            self.work += lanes.work
         found = found.transpose(2, 0, 1)
         found[lanes.lost] = np.nan
         return found
@@ -95,12 +96,14 @@ class InLanes:
                 for change in self._wide:
                     change.put(change.new)
                 trial.space.update(with_lanes(trial.space, QUICK))
-                trial.space["_pick"] = lanes.pick
+                ways = Ways(lanes)
+                trial.space |= {"_pick": lanes.pick, "_kept": ways.kept}
+                trial.space |= {"_turns": ways.turns, "_sides": ways.sides}
                 for k in every:
                     trial.place(k, self._functions[k])
-                for number, change in self._data:
-                    self._put(lanes, number, change)
                 trial.stale()
+                for number, change in self._loaded():
+                    self._put(lanes, number, change)
                 yield
         finally:
             for change, value in reversed(changes):
@@ -109,6 +112,21 @@ class InLanes:
             trial.space.update(space)
             for k in every:
                 trial.place(k, kept[k])
+
+    def _loaded(self) -> list[tuple[int, FieldChange]]:
+        """The changes in the data, in what the lines of the module have made of it anew."""
+        trial = self.trial
+        if not trial.sets or not self._data:
+            return self._data
+        kept = {id(trial.space): trial.space}
+        before = [trial.space.get(name) for name in trial.sets]
+        trial.load()
+        for name, old in zip(trial.sets, before, strict=True):
+            kept |= _counterparts(old, trial.space.get(name))
+        return [
+            (number, replace(change, holder=kept.get(id(change.holder), change.holder)))
+            for number, change in self._data
+        ]
 
     @staticmethod
     def _put(lanes: Lanes, number: int, change: FieldChange) -> None:
@@ -138,6 +156,22 @@ def _of_objects(
         if not _narrow(holder):
             kept.append((number, replace(change, holder=holder)))
     return wide, kept
+
+
+def _counterparts(old: Any, new: Any) -> dict[int, Any]:
+    """For what holds numbers, by identity, what stands for it where it was made anew."""
+    if type(old) is not type(new) or isinstance(old, int | float | str | type) or callable(old):
+        return {}
+    found = {id(old): new}
+    if isinstance(old, list | tuple):
+        for one, other in zip(old, new, strict=False):
+            found |= _counterparts(one, other)
+    elif isinstance(old, dict):
+        for key in old.keys() & new.keys():
+            found |= _counterparts(old[key], new[key])
+    elif hasattr(old, "__dict__"):
+        found |= _counterparts(vars(old), vars(new))
+    return found
 
 
 def _narrow(value: Any) -> bool:

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
+from kinlab.doctor.program.lanes.ways import apart, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
@@ -57,6 +58,7 @@ class Woven:
             self._above |= above
             self._lists |= lists
         self._sites: dict[Key, list[tuple[int, ast.expr]]] = defaultdict(list)
+        self._ways: dict[int, list[tuple[int, ast.expr]]] = defaultdict(list)
         self._same: dict[int, ast.AST] = {}
         self._new: dict[int, Spot] = {}
         self._holding: set[int] = set()
@@ -78,11 +80,31 @@ class Woven:
         spots = [self._spot(change) for change in edit.changes]
         sound = [spot for spot in spots if spot is not None]
         if len(sound) < len(spots):
-            return False
+            return len(spots) == 1 and self._put_apart(number, edit.changes[0])
         for (parent, name, k), new in sound:
             self._sites[(id(parent), name, k)].append((number, new))
             self._mark(parent)
             self._at.append((number, self._path((parent, name, k))))
+        return True
+
+    def _put_apart(self, number: int, change: FieldChange) -> bool:
+        """Puts an edit of what a loop runs over, or of a condition, where that is asked."""
+        holder, field, new = change.holder, change.field, change.new
+        if isinstance(holder, list):
+            if id(holder) not in self._lists:
+                return False
+            spot: Spot = (*self._lists[id(holder)], field)
+        else:
+            spot = (holder, field, None)
+        while isinstance(spot[0], ast.expr) and id(spot[0]) in self._above:
+            _now, new, spot = self._outside(spot, new)
+        statement, name, _k = spot
+        asked = {ast.For: "iter", ast.If: "test"}.get(type(statement))
+        if name != asked or not isinstance(new, ast.expr) or not may_run_apart(statement):
+            return False
+        self._ways[id(statement)].append((number, new))
+        self._mark(statement)
+        self._at.append((number, [(id(statement), name, None)]))
         return True
 
     def _mark(self, node: ast.AST) -> None:
@@ -171,7 +193,8 @@ class Woven:
                 best = at
             if isinstance(parent, ast.stmt):
                 sound = isinstance(parent, _SIMPLE) and name == "value"
-                return best if sound or (isinstance(parent, ast.For) and name == "iter") else None
+                passed = isinstance(parent, ast.For) and name == "iter" and not _counts(node)
+                return best if sound or passed else None
             if not isinstance(parent, ast.AST) or id(parent) not in self._above:
                 return None
             if isinstance(parent, ast.Lambda | ast.JoinedStr | ast.NamedExpr | ast.arguments):
@@ -230,27 +253,45 @@ class Woven:
         found.body = self._body(old.body)
         return ast.fix_missing_locations(found)
 
-    def _body(self, body: list[ast.stmt]) -> list[ast.stmt]:
+    def _body(self, body: list[ast.stmt], alone: bool = False) -> list[ast.stmt]:
+        """A block; whether it may run for some lanes alone."""
         found: list[ast.stmt] = []
         for statement in body:
-            if id(statement) not in self._holding:
+            if not alone and id(statement) not in self._holding:
                 found.append(statement)
             elif isinstance(statement, _SIMPLE):
-                found += self._statement(statement)
+                found += self._statement(statement, alone)
             else:
-                other: Any = shallow(statement)
-                if isinstance(statement, ast.For):
-                    asked: dict[Key, Any] = {}
-                    other.iter = self._expression((statement, "iter", None), (), asked)
-                    found += [one for one, _name, _given in asked.values()]
-                for name in ("body", "orelse", "finalbody"):
-                    block = getattr(statement, name, None)
-                    if isinstance(block, list):
-                        setattr(other, name, self._body(block))
-                found.append(other)
+                found += self._block(statement, alone)
         return found
 
-    def _statement(self, statement: Any) -> list[ast.stmt]:
+    def _block(self, statement: ast.stmt, alone: bool) -> list[ast.stmt]:
+        """A loop, a condition."""
+        found: list[ast.stmt] = []
+        other: Any = shallow(statement)
+        ways = self._ways.get(id(statement))
+        if isinstance(statement, ast.For):
+            asked: dict[Key, Any] = {}
+            other.iter = self._expression((statement, "iter", None), (), asked)
+            found += [one for one, _name, _given in asked.values()]
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(statement, name, None)
+            if isinstance(block, list):
+                setattr(other, name, self._body(block, alone or bool(ways)))
+        if not ways:
+            return [*found, other]
+        looped = isinstance(statement, ast.For)
+        name = "iter" if looped else "test"
+        numbers: Any = tuple(number for number, _new in ways)
+        given = [ast.Constant(numbers), _lambda(getattr(other, name)),
+                 _lambda(_chosen(ways), (_EDIT,))]  # fmt: skip
+        call = ast.Call(ast.Name("_turns" if looped else "_sides", ast.Load()), given, [])
+        setattr(other, name, call if looped else ast.Name("_yes", ast.Load()))
+        if not looped:
+            other = ast.For(ast.Name("_yes", ast.Store()), call, [other], [])
+        return [*found, other]
+
+    def _statement(self, statement: Any, alone: bool) -> list[ast.stmt]:
         inside = nodes(statement)
         if any(isinstance(node, ast.Yield | ast.YieldFrom | ast.NamedExpr) for node in inside):
             return [statement]
@@ -259,6 +300,8 @@ class Woven:
         asked: dict[Key, tuple[ast.stmt | None, str, tuple[str, ...]]] = {}
         other = shallow(statement)
         other.value = self._expression((statement, "value", None), (), asked)
+        if alone:
+            other.value = apart(statement, other.value)
         return [*(one for one, _name, _given in asked.values() if one is not None), other]
 
     def _expression(self, spot: Spot, scope: tuple[str, ...], asked: dict[Key, Any]) -> Any:
@@ -340,6 +383,11 @@ class Woven:
         if id(node) in self._above:
             return False
         return any(id(one) in self._holding for one in nodes(node))
+
+
+def _counts(node: ast.expr) -> bool:
+    """Whether a loop runs over whole numbers."""
+    return any(isinstance(one, ast.Call) and called(one) == "range" for one in nodes(node))
 
 
 def _permuted(value: ast.expr, names: list[ast.expr], other: list[ast.expr]) -> ast.expr:

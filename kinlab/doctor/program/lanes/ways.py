@@ -1,0 +1,124 @@
+"""Loops that turn more or less often, and conditions that are others, for some lanes.
+
+The body of such a loop runs once for the lanes of each edit, and then for those without. Whatever
+it sets stays, in the other lanes, what it was.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.lanes.numbers import Laned, LaneGroup, Lanes
+
+_BODY = ast.Assign | ast.AugAssign | ast.If | ast.For | ast.Pass
+"""Statements that may run for some lanes alone."""
+_LOST = ast.Yield | ast.YieldFrom | ast.NamedExpr | ast.Lambda
+_WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setdefault", "clear")
+"""Calls that change what they are called on, for all lanes."""
+
+
+def may_run_apart(statement: ast.AST) -> bool:
+    """Whether a loop, or a condition, may run for some lanes alone."""
+    if not isinstance(statement, ast.For | ast.If):
+        return False
+    for node in nodes(statement):
+        if isinstance(node, ast.stmt) and not isinstance(node, _BODY):
+            return False
+        if isinstance(node, ast.AugAssign) and not isinstance(node.op, ast.Add | ast.Sub):
+            return False
+        if isinstance(node, _LOST):
+            return False
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in _WRITES:
+            return False
+    return True
+
+
+def apart(statement: Any, value: ast.expr) -> ast.expr:
+    """What a statement sets, where it may run for some lanes alone."""
+    old: list[ast.expr] = []
+    if isinstance(statement, ast.Assign):
+        target = ast.parse(ast.unparse(statement.targets[0]), mode="eval").body
+        old = [ast.Lambda(_NOTHING, target)]
+    return ast.Call(ast.Name("_kept", ast.Load()), [ast.Lambda(_NOTHING, value), *old], [])
+
+
+_NOTHING = ast.arguments([], [], None, [], [], None, [])
+
+
+class Ways:
+    """The ways that lanes take through a program.
+
+    Args:
+        lanes: all of them.
+    """
+
+    def __init__(self, lanes: Lanes) -> None:
+        self.lanes = lanes
+        self.only: LaneGroup | None = None
+
+    def turns(
+        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]
+    ) -> Iterator[Any]:
+        """What a loop runs over: in the lanes of each edit, and in all others."""
+        for values in self._each(edits, old, new):
+            yield from values
+
+    def sides(
+        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]
+    ) -> Iterator[bool]:
+        """Whether a condition holds: in the lanes of each edit, and in all others."""
+        for value in self._each(edits, old, new):
+            yield bool(value)
+
+    def _each(
+        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]
+    ) -> Iterator[Any]:
+        """What the lanes of each edit have, and those without any, while they run alone."""
+        outer = self.only
+        here = outer or self.lanes.here
+        known = [edit for edit in edits if edit in here.edits]
+        rest = here.without(known) if known else outer
+        try:
+            for edit in known:
+                self.only = here.inner(edit)
+                try:
+                    value = new(edit)
+                except Exception:  # noqa: BLE001  what edited programs may raise
+                    self.lanes.lose(self.only)
+                    continue
+                yield value
+            self.only = rest  # the last one, whose counter may be used behind a loop
+            if rest is None or rest.size:
+                yield old()
+        finally:
+            self.only = outer
+
+    def kept(self, new: Callable[[], Any], old: Callable[[], Any] | None = None) -> Any:
+        """What a statement sets: in lanes that take no part what was there, or nothing more."""
+        lanes, only = self.lanes, self.only
+        if only is None:
+            return new()
+        here, lanes.here, self.only = lanes.here, only, None
+        try:
+            value = new()
+        finally:
+            lanes.here, self.only = here, only
+        try:
+            before = _nothing_of(value) if old is None else old()
+        except (NameError, KeyError, IndexError, AttributeError):
+            before = _nothing_of(value)  # it was nothing before, and is read by nobody
+        return lanes.joined(before, [(only, value)])
+
+
+def _nothing_of(value: Any) -> Any:
+    """Zeros of the form of a value."""
+    if isinstance(value, np.ndarray):
+        return np.zeros(value.shape)
+    if isinstance(value, list | tuple):
+        return type(value)(map(_nothing_of, value))
+    return 0.0 if isinstance(value, Laned | int | float | complex | np.number) else value
