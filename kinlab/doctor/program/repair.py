@@ -383,10 +383,12 @@ class LineSearch:
         if self.case.quantity.read is not None:
             return False
         (before, _), (apart, larger) = self._others, self._arms(several)
-        if apart is not None and apart.whole and self._at_arm(apart) is not None:
-            return not self._holds(apart)
-        if before is not None and apart is not None and before.fitting - apart.fitting:
-            return True  # what has a name would be none of those that are called so
+        if before is not None and apart is not None:
+            odd = apart.odd and len(several) > 1
+            if odd or before.fitting - apart.fitting:
+                return True  # a name has a number that none has of those that are called so
+            if apart.whole and self._at_arm(apart) is not None:
+                return not self._holds(apart)
         if any(map(self._sets_a_number, several)):
             return False
         whole = larger is not None and larger.whole and self._at_arm(larger) is not None

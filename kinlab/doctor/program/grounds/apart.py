@@ -20,7 +20,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import together
-from kinlab.doctor.program.grounds.called import kinds_called, stem
+from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.scaled import (
     Number,
     OtherArm,
@@ -100,7 +100,8 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if not ways:
         return None
     carried = {cells[k].which for _one, k in ways[0]}
-    other = _apart(table, carried, reader.tied, turned)
+    made_anew = any(part.sets for part in trial.program.parts)
+    other = _apart(table, carried, reader.tied, turned, made_anew)
     new = _cells(other, 0.0)
     changed: list[tuple[ProgramEdit, ...]] = []
     for way in ways[:_WAYS]:
@@ -114,7 +115,7 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if not changed:
         return None
     whole = reader.whole and len(ways) <= _WAYS
-    return OtherArm(other, tuple(changed), whole, frozenset(reader.fitting))
+    return OtherArm(other, tuple(changed), whole, frozenset(reader.fitting), reader.odd)
 
 
 class _Reader:
@@ -131,6 +132,7 @@ class _Reader:
         tied: numbers of the arm's that have one name.
         whole: whether no other number of the program can be the arm's.
         fitting: where numbers are that the arm has as they are called.
+        odd: whether one is none of the arm's, while others of its kind are.
     """
 
     def __init__(
@@ -151,13 +153,13 @@ class _Reader:
         self.listed = {name for name, most in last.items() if most + 1 == count}
         self.items: list[_Item] = []
         self.fitting: set[Any] = set()
+        self.odd = False
+        self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
         unknown: dict[Any, list[tuple[Number, list[int]]]] = {}
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
             may = self._alike(one.value) if one.value else []
             own = may_be_of_one_arm(one.value)
-            if one.alone:
-                self._look_at_name(one, label)
             if may and (one.alone or own or one.given):
                 sure, left = self._as_called(may, label)
                 if sure:
@@ -177,17 +179,23 @@ class _Reader:
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
-    def _look_at_name(self, one: Number, label: _Label) -> None:
-        """Whether the arm has a number as it is called; what is called so, and is none, is odd."""
-        kinds, link = kinds_called(label[0]), self._link(label)
-        some = [cell for cell in self.cells if cell.kind in kinds]
-        sizes = np.array([cell.value for cell in some])
-        alike = [some[k] for k in np.flatnonzero(_close(sizes, one.value))]
-        if any(link is None or link in cell.links for cell in alike):
-            place = one.place
-            node = place.node if place.part == DATA else id(place.node)
-            self.fitting.add((node, place.place))
-        self.whole = self.whole and bool(alike or not some)
+    def _look_at_names(self, named: Sequence[tuple[Number, _Label]]) -> None:
+        """Which numbers the arm has as they are called, and whether any is odd among these."""
+        strange: list[_Label] = []
+        alike: set[str] = set()
+        for one, label in named:
+            kinds, link = kinds_called(label[0]), self._link(label)
+            some = [c for c in self.cells if c.kind in kinds and link in (None, *c.links)]
+            every = [cell for cell in self.cells if cell.kind in kinds]
+            if _among(some, one.value):
+                node = one.place.node if one.place.part == DATA else id(one.place.node)
+                self.fitting.add((node, one.place.place))
+                alike.add(label[0])
+            elif some and link is not None and not _among(every, one.value):
+                strange.append(label)
+        for name, *_place in strange:
+            same = alike if len(name) > 1 or name in "lmij" else alike & {name}
+            self.odd = self.odd or any(not unlike(name, other) for other in same)
 
     def _link(self, label: _Label) -> int | None:
         """The link after which a number is called, or at whose place it stands."""
@@ -251,6 +259,10 @@ class _Reader:
                 yield tuple((one, k) for one, k in each if k is not None)
 
 
+def _among(cells: Sequence[_Cell], value: float) -> bool:
+    return bool(_close(np.array([cell.value for cell in cells]), value).any())
+
+
 def _ways(items: Sequence[_Item], used: frozenset[int]) -> Iterator[_Option]:
     """Ways to understand all, those in which nothing has two names where that can be."""
     if not items:
@@ -303,8 +315,18 @@ def _strange(values: Iterable[float]) -> list[float]:
     return [x for x in map(float, values) if not named_at_will(x)]
 
 
-def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned: float) -> DHTable:
-    """The arm with other numbers for those that a program has names for."""
+def _apart(
+    table: DHTable,
+    carried: set[Which],
+    tied: dict[Which, Which],
+    turned: float,
+    made_anew: bool,
+) -> DHTable:
+    """The arm with other numbers for those that a program has names for.
+
+    A rod stays one: its moment of inertia may be made of mass and length; where a program makes
+    numbers anew each time, so may a centre in the middle.
+    """
     every = [(f"{name}{axis}", -1) for name in ("tool", "base") for axis in range(3)]
     every += [(what, k) for what in ("a", "d", "m", "I") for k in range(table.n)]
     every += [(f"com{axis}", k) for axis in range(3) for k in range(table.n)]
@@ -320,15 +342,18 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
     links: list[DHLink] = []
     for k, link in enumerate(table.links):
         com = np.asarray(link.com, dtype=float)
-        longer = _along(table, k, factor)
+        length, longer = _along(table, k, factor)
         a, mass = factor("a", k) * link.a, factor("m", k) * link.mass
-        if "com" in has:
+        reach = com[0] + link.a if standard else com[0]
+        middle = made_anew and bool(_close(np.array(2 * reach), length))
+        if "com" in has and not middle:
             moved = np.array([factor(f"com{axis}", k) * x for axis, x in enumerate(com)])
             if standard and com[0]:
                 moved[0] = factor("com0", k) * (link.a + com[0]) - a
         else:
             moved = longer * com
-        grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
+        rod = _close(np.max(np.asarray(link.inertia)), link.mass * length**2 / 12)
+        grown = factor("I", k) if "I" in has and not rod else factor("m", k) * longer**2
         links.append(
             replace(
                 link,
@@ -348,16 +373,16 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
     return replace(table, links=links, unphysical=True, tool=ends[0], base=ends[1])
 
 
-def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> float:
-    """How much longer a link is."""
+def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> tuple[float, float]:
+    """How long a link is, and how much longer it becomes."""
     link = table.links[k]
     if table.convention is Convention.STANDARD:
-        return factor("a", k) if link.a else factor("d", k)
-    last = k + 1 == table.n
-    reach = float(np.asarray(table.tool)[0, 3]) if last else table.links[k + 1].a
-    if not reach:
-        return factor("d", k)
-    return factor("tool0", -1) if last else factor("a", k + 1)
+        found = (link.a, factor("a", k))
+    elif k + 1 == table.n:
+        found = (float(np.asarray(table.tool)[0, 3]), factor("tool0", -1))
+    else:
+        found = (table.links[k + 1].a, factor("a", k + 1))
+    return found if found[0] else (link.d, factor("d", k))
 
 
 def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:

@@ -53,12 +53,14 @@ class OtherArm:
         whole: whether nothing else of the program can be the first arm's own, so that a program
             that is right is right for this one, too.
         fitting: where numbers of the program are that the first arm has as they are called.
+        odd: whether one is none of the first arm's, while others of its kind are.
     """
 
     table: DHTable
     ways: tuple[tuple[ProgramEdit, ...], ...]
     whole: bool
     fitting: frozenset[Any] = frozenset()
+    odd: bool = False
 
     @cached_property
     def robot(self) -> Robot | None:
