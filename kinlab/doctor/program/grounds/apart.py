@@ -22,8 +22,8 @@ from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import together
 from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.scaled import (
-    Number,
     OtherArm,
+    ProgramNumber,
     may_be_of_one_arm,
     moments,
     named_at_will,
@@ -65,7 +65,7 @@ class _Cell:
 
 _Label = tuple[str, int | None, tuple[int, ...]]
 """The name of a number without its digits, these, and its place in a list."""
-_Option = tuple[tuple[Number, int], ...]
+_Option = tuple[tuple[ProgramNumber, int], ...]
 """What numbers of a program are: which cells, by their numbers."""
 
 
@@ -140,7 +140,7 @@ class _Reader:
         count: int,
         cells: Sequence[_Cell],
         labels: dict[int, tuple[list[str], list[int]]],
-        found: Sequence[Number],
+        found: Sequence[ProgramNumber],
     ) -> None:
         self.cells, self.labels = cells, labels
         self.tied: dict[Which, Which] = {}
@@ -155,7 +155,7 @@ class _Reader:
         self.fitting: set[Any] = set()
         self.odd = False
         self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
-        unknown: dict[Any, list[tuple[Number, list[int]]]] = {}
+        unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
             may = self._alike(one.value) if one.value else []
@@ -179,7 +179,7 @@ class _Reader:
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
-    def _look_at_names(self, named: Sequence[tuple[Number, _Label]]) -> None:
+    def _look_at_names(self, named: Sequence[tuple[ProgramNumber, _Label]]) -> None:
         """Which numbers the arm has as they are called, and whether any is odd among these."""
         strange: list[_Label] = []
         alike: set[str] = set()
@@ -191,7 +191,7 @@ class _Reader:
                 node = one.place.node if one.place.part == DATA else id(one.place.node)
                 self.fitting.add((node, one.place.place))
                 alike.add(label[0])
-            elif some and link is not None and not _among(every, one.value):
+            elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
                 strange.append(label)
         for name, *_place in strange:
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}
@@ -213,7 +213,7 @@ class _Reader:
             size &= same | both
         return [int(k) for k in np.flatnonzero(size)]
 
-    def _label(self, one: Number) -> _Label:
+    def _label(self, one: ProgramNumber) -> _Label:
         """The name of a number without its digits, these, and its place in a list."""
         place = one.place
         if place.part == DATA:
@@ -245,7 +245,7 @@ class _Reader:
         which = self.cells[k].which
         return any(self.cells[j].which == which for j in may if j < k)
 
-    def _kinds(self, group: list[tuple[Number, list[int]]]) -> Iterator[_Option]:
+    def _kinds(self, group: list[tuple[ProgramNumber, list[int]]]) -> Iterator[_Option]:
         """What numbers of one list may be: of one kind, all of them."""
         if len(group) == 1:
             yield from (((group[0][0], k),) for k in group[0][1])

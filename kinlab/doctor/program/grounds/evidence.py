@@ -29,7 +29,7 @@ _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
 _COINCIDENT = 0.04
 """What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
-_UNLIKE, _OTHERWISE = 0.15, 0.004
+_UNLIKE, _OTHERWISE = 0.15, 0.01
 """What a sum of a mass and a length costs more; and what a mass costs for a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""

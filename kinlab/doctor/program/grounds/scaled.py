@@ -73,7 +73,7 @@ class OtherArm:
 
 
 @dataclass(frozen=True, eq=False)
-class Number:
+class ProgramNumber:
     """A number of a program: of ``pi/2`` the whole.
 
     Attributes:
@@ -110,7 +110,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     names = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True
-    choices: dict[Any, tuple[list[Number], list[float]]] = {}
+    choices: dict[Any, tuple[list[ProgramNumber], list[float]]] = {}
     for one, some in zip(found, meant, strict=True):
         own = may_be_of_one_arm(one.value)
         if (one.alone or own or one.given) and some:
@@ -140,7 +140,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     )
 
 
-def twisted_by(table: DHTable, found: Sequence[Number]) -> float:
+def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
     """How many times as large twists are, where the program's numbers hold them."""
     twists = [link.alpha for link in table.links if link.alpha]
     held = np.array([one.value for one in found if one.alone])
@@ -185,14 +185,14 @@ def own_numbers(robot: Robot) -> Array:
     return np.unique(every[every != 0.0])
 
 
-def _key(one: Number) -> Any:
+def _key(one: ProgramNumber) -> Any:
     """Numbers of one list are of one kind, and equal ones that are given on; others each alone."""
     if one.given:
         return one.value
     return one.place.node if one.place.part == DATA and one.place.place else id(one)
 
 
-def numbers_of(trial: Trial, observed: Observed) -> Iterator[Number]:
+def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     """The numbers of a program, those that a slip has left unused among them."""
     plain = {id(node): node for tree in trial.trees for node in _alone(tree)}
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
@@ -202,11 +202,11 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[Number]:
     for place in (*numbers(trial, observed), *_defaults(trial), *unused):
         whole = below.get(id(place.node))
         if place.value and whole is not None:
-            yield Number(place, np.pi / place.value, True, below=True)
+            yield ProgramNumber(place, np.pi / place.value, True, below=True)
         else:
             alone = place.part == DATA or id(place.node) in plain
             value = float(place.value)
-            yield Number(
+            yield ProgramNumber(
                 place, value, alone, id(place.node) in given and not may_be_of_one_arm(value)
             )
 
@@ -294,7 +294,7 @@ def _meant(kinds: Kinds, value: float) -> set[tuple[str, int, float]]:
 
 
 def _alike(
-    found: Sequence[Number], meant: Sequence[set[tuple[str, int, float]]]
+    found: Sequence[ProgramNumber], meant: Sequence[set[tuple[str, int, float]]]
 ) -> list[set[tuple[str, float]]]:
     """What numbers are, the same kind in all of a list, or of a column of it, where there is one.
 
