@@ -100,8 +100,7 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if not ways:
         return None
     carried = {cells[k].which for _one, k in ways[0]}
-    made_anew = any(part.sets for part in trial.program.parts)
-    other = _apart(table, carried, reader.tied, turned, made_anew)
+    other = _apart(table, carried, reader.tied, turned)
     new = _cells(other, 0.0)
     changed: list[tuple[ProgramEdit, ...]] = []
     for way in ways[:_WAYS]:
@@ -114,7 +113,8 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
             changed.append(tuple(together(put)))
     if not changed:
         return None
-    whole = reader.whole and len(ways) <= _WAYS
+    made_anew = any(part.sets for part in trial.program.parts)  # some numbers of others
+    whole = reader.whole and len(ways) <= _WAYS and not made_anew
     return OtherArm(other, tuple(changed), whole, frozenset(reader.fitting), reader.odd)
 
 
@@ -315,18 +315,8 @@ def _strange(values: Iterable[float]) -> list[float]:
     return [x for x in map(float, values) if not named_at_will(x)]
 
 
-def _apart(
-    table: DHTable,
-    carried: set[Which],
-    tied: dict[Which, Which],
-    turned: float,
-    made_anew: bool,
-) -> DHTable:
-    """The arm with other numbers for those that a program has names for.
-
-    A rod stays one: its moment of inertia may be made of mass and length; where a program makes
-    numbers anew each time, so may a centre in the middle.
-    """
+def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned: float) -> DHTable:
+    """The arm with other numbers for those that a program has names for."""
     every = [(f"{name}{axis}", -1) for name in ("tool", "base") for axis in range(3)]
     every += [(what, k) for what in ("a", "d", "m", "I") for k in range(table.n)]
     every += [(f"com{axis}", k) for axis in range(3) for k in range(table.n)]
@@ -342,18 +332,15 @@ def _apart(
     links: list[DHLink] = []
     for k, link in enumerate(table.links):
         com = np.asarray(link.com, dtype=float)
-        length, longer = _along(table, k, factor)
+        longer = _along(table, k, factor)
         a, mass = factor("a", k) * link.a, factor("m", k) * link.mass
-        reach = com[0] + link.a if standard else com[0]
-        middle = made_anew and bool(_close(np.array(2 * reach), length))
-        if "com" in has and not middle:
+        if "com" in has:
             moved = np.array([factor(f"com{axis}", k) * x for axis, x in enumerate(com)])
             if standard and com[0]:
                 moved[0] = factor("com0", k) * (link.a + com[0]) - a
         else:
             moved = longer * com
-        rod = _close(np.max(np.asarray(link.inertia)), link.mass * length**2 / 12)
-        grown = factor("I", k) if "I" in has and not rod else factor("m", k) * longer**2
+        grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
         links.append(
             replace(
                 link,
@@ -373,16 +360,16 @@ def _apart(
     return replace(table, links=links, unphysical=True, tool=ends[0], base=ends[1])
 
 
-def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> tuple[float, float]:
-    """How long a link is, and how much longer it becomes."""
+def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> float:
+    """How much longer a link is."""
     link = table.links[k]
     if table.convention is Convention.STANDARD:
-        found = (link.a, factor("a", k))
-    elif k + 1 == table.n:
-        found = (float(np.asarray(table.tool)[0, 3]), factor("tool0", -1))
-    else:
-        found = (table.links[k + 1].a, factor("a", k + 1))
-    return found if found[0] else (link.d, factor("d", k))
+        return factor("a", k) if link.a else factor("d", k)
+    last = k + 1 == table.n
+    reach = float(np.asarray(table.tool)[0, 3]) if last else table.links[k + 1].a
+    if not reach:
+        return factor("d", k)
+    return factor("tool0", -1) if last else factor("a", k + 1)
 
 
 def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:

@@ -17,7 +17,6 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
-from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial, named_in
@@ -29,8 +28,6 @@ _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
 _COINCIDENT = 0.04
 """What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
-_UNLIKE, _OTHERWISE = 0.15, 0.01
-"""What a sum of a mass and a length costs more; and what a mass costs for a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
@@ -60,7 +57,6 @@ class Grounds:
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
         self._of_data: dict[str, float] = {}
-        self._numbers = {name for name, x in trial.space.items() if isinstance(x, int | float)}
         if not known:
             return
         for part, tree in enumerate(trial.trees):
@@ -68,7 +64,6 @@ class Grounds:
             for node in nodes(tree):
                 seen = observed.of(node) if isinstance(node, ast.Name | ast.Attribute) else None
                 if seen is not None and seen.shape == () and len({*map(float, seen.values)}) == 1:
-                    self._numbers |= {node.id} if isinstance(node, ast.Name) else set()
                     own = float(seen.values[0])
                     self.values |= {own, 1 / own} if own else set()
         self._below()
@@ -86,22 +81,7 @@ class Grounds:
             return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
-        return self._unlike(edit) + (_TRUSTED if edit.part in self.trusted else 0.0)
-
-    def _unlike(self, edit: ProgramEdit) -> float:
-        """What an edit costs more that takes a number of one kind for that of another."""
-        new = edit.changes[0].new
-        if edit.kind == "name":
-            return _OTHERWISE * self._of_other_kinds(edit.node, new)
-        if not isinstance(new, ast.BinOp) or not isinstance(new.op, ast.Add | ast.Sub):
-            return 0.0
-        return _UNLIKE * self._of_other_kinds(new.left, new.right)
-
-    def _of_other_kinds(self, one: Any, other: Any) -> bool:
-        """Whether two are names of numbers of different kinds."""
-        if not isinstance(one, ast.Name) or not isinstance(other, ast.Name):
-            return False
-        return {one.id, other.id} <= self._numbers and unlike(one.id, other.id)
+        return _TRUSTED if edit.part in self.trusted else 0.0
 
     def _against_data(self, name: str) -> float:
         using = [k for k in self.trial.above[DATA] if name in names(self.trial.trees[k])]
