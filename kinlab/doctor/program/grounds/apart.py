@@ -8,6 +8,7 @@ the arm's is told from its value, from its name, and from its place in a list.
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +20,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.data import together
+from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
 from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.scaled import (
     OtherArm,
@@ -31,8 +32,8 @@ from kinlab.doctor.program.grounds.scaled import (
     twisted_by,
 )
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.places import DATA
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot
@@ -102,20 +103,42 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     carried = {cells[k].which for _one, k in ways[0]}
     other = _apart(table, carried, reader.tied, turned)
     new = _cells(other, 0.0)
-    changed: list[tuple[ProgramEdit, ...]] = []
-    for way in ways[:_WAYS]:
-        put = [
+    puts = [
+        [
             one.times(new[k].value / cells[k].value)
             for one, k in way
             if cells[k].kind != "kept" and new[k].value != cells[k].value
         ]
-        if put:
-            changed.append(tuple(together(put)))
+        for way in ways[:_WAYS]
+    ]
+    changed = tuple(tuple(together(put)) for put in puts if put)
     if not changed:
         return None
-    made_anew = any(part.sets for part in trial.program.parts)  # some numbers of others
-    whole = reader.whole and len(ways) <= _WAYS and not made_anew
-    return OtherArm(other, tuple(changed), whole, frozenset(reader.fitting), reader.odd)
+    whole = reader.whole and len(ways) <= _WAYS and _stays(trial, puts[0])
+    return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
+
+
+def _stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
+    """Whether a program's numbers are what is put there also when its lines have run anew."""
+    if not any(part.sets for part in trial.program.parts):
+        return True
+
+    def held() -> dict[Any, float]:
+        return {(one.node, one.place): float(one.value) for one in leaves(trial)}
+
+    expected = held()
+    expected |= {(one.node, one.place): x for one, x in put if one.part == DATA}
+    edits = together(put)
+    changes = [change for edit in edits for change in edit.changes]
+    try:
+        with quietly(), trial.changed({edit.part for edit in edits}, changes):
+            trial.load()
+            found = held()
+    except (NoProgramError, FailedError):
+        return False
+    return found.keys() == expected.keys() and all(
+        math.isclose(found[key], x, rel_tol=TOLERANCES.same_number) for key, x in expected.items()
+    )
 
 
 class _Reader:
@@ -328,18 +351,24 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
         return _LEAST + _SPREAD * ((1 + every.index(which)) * _TURN % 1.0)
 
     has = {what[:3] for what, _k in carried}
+    told = [{what for what, of in carried | {*tied} if of == k} for k in range(table.n)]
     standard = table.convention is Convention.STANDARD
     links: list[DHLink] = []
     for k, link in enumerate(table.links):
         com = np.asarray(link.com, dtype=float)
-        longer = _along(table, k, factor)
+        length, longer = _along(table, k, factor)
         a, mass = factor("a", k) * link.a, factor("m", k) * link.mass
-        if "com" in has:
-            moved = np.array([factor(f"com{axis}", k) * x for axis, x in enumerate(com)])
-            if standard and com[0]:
-                moved[0] = factor("com0", k) * (link.a + com[0]) - a
-        else:
-            moved = longer * com
+        moved = longer * com
+        for axis, x in enumerate(com if "com" in has else ()):
+            which = f"com{axis}"
+            lengths = np.array([link.a, link.d, length])
+            middle = np.flatnonzero(_close(lengths, 2 * x))
+            if which not in told[k] and x and len(middle):
+                moved[axis] = x * (factor("a", k), factor("d", k), longer)[middle[0]]
+            elif standard and x and not axis:
+                moved[0] = factor(which, k) * (link.a + x) - a
+            else:
+                moved[axis] = factor(which, k) * x
         grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
         links.append(
             replace(
@@ -360,16 +389,16 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
     return replace(table, links=links, unphysical=True, tool=ends[0], base=ends[1])
 
 
-def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> float:
-    """How much longer a link is."""
+def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> tuple[float, float]:
+    """How long a link is, and how much longer it becomes."""
     link = table.links[k]
     if table.convention is Convention.STANDARD:
-        return factor("a", k) if link.a else factor("d", k)
-    last = k + 1 == table.n
-    reach = float(np.asarray(table.tool)[0, 3]) if last else table.links[k + 1].a
-    if not reach:
-        return factor("d", k)
-    return factor("tool0", -1) if last else factor("a", k + 1)
+        found = (link.a, factor("a", k))
+    elif k + 1 == table.n:
+        found = (float(np.asarray(table.tool)[0, 3]), factor("tool0", -1))
+    else:
+        found = (table.links[k + 1].a, factor("a", k + 1))
+    return found if found[0] else (link.d, factor("d", k))
 
 
 def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:
