@@ -199,8 +199,7 @@ def searched(text: str, robot: str, quantity: str) -> LineSearch:
 )
 def test_what_is_right_is_right_for_another_arm(text, robot, quantity) -> None:
     search = searched(text, robot, quantity)
-    assert search._other.whole
-    assert search._holds()
+    assert all(other.whole and search._holds(other) for other in search._others)
 
 
 def test_the_arms_own_number_is_not_the_slip() -> None:

@@ -28,9 +28,10 @@ from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.own_numbers import of_own_numbers
+from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
-from kinlab.doctor.program.grounds.scaled import other_arm, own_numbers, own_rows
+from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
@@ -65,6 +66,8 @@ _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _SAME = 0.011
 """Costs that are one."""
+_HELD = 8
+"""Repairs of which it is looked whether they hold for other arms."""
 _RIVALS = 4
 """Lines of which it is looked what their repairs leave right."""
 _TORQUES = (
@@ -200,8 +203,8 @@ class LineSearch:
         ending = (isinstance(one, _ENDING) for tree in self.trial.trees for one in nodes(tree))
         self.longer = _LONGER if any(ending) else 1
         self.evidence = Grounds(self.trial, self.observed, self.known)
-        self._other = other_arm(self.case.robot, self.trial, self.observed)
-        self._there: list[LineSearch | None] = []
+        self._others = self._other_arms()
+        self._there: dict[OtherArm, LineSearch | None] = {}
         alike = self.case.quantity.name in _TORQUES
         self.dimensions = Dimensions(
             self.trial, self.observed, self.case.robot, [*self.case.arguments], self.states, alike
@@ -241,7 +244,7 @@ class LineSearch:
         """The same program asked at other states, all of which are its first."""
         other = copy.copy(self)
         other.case, other.wanted, other.first = case, wanted, list(range(len(wanted)))
-        other._there = [None]
+        other._others = None, None
         other._ask()
         return other
 
@@ -341,19 +344,34 @@ class LineSearch:
         return [first, *(one for one in found if one.edits != first.edits)]
 
     def of_any_arm(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
-        """Of repairs those that hold for a larger arm too, where some do and some do not."""
-        held: list[ProgramRepair] = []
-        for repair in found[:_RIVALS]:
-            with changed(self.trial, repair.edits[len(self.stand) :]):
-                held += [repair] if self._holds() else []
-        return [*held, *(one for one in found[_RIVALS:])] if held else found
+        """Of repairs those that hold for other arms too, where some do and some do not."""
+        for kind, _arm in enumerate(self._others):
+            held: list[ProgramRepair] = []
+            for repair in found[:_HELD]:
+                own = repair.edits[len(self.stand) :]
+                with changed(self.trial, own):
+                    other = self._arms(own)[kind]
+                    held += [repair] if other is not None and self._holds(other) else []
+            if held:
+                return [*held, *(one for one in found[_HELD:])]
+        return found
 
-    def _holds(self) -> bool:
-        """Whether the program as it stands now is right for a larger arm."""
-        there = self._larger
-        if there is None or self._other is None:
+    def _other_arms(self) -> tuple[OtherArm | None, OtherArm | None]:
+        """An arm whose numbers are unrelated, and one that is larger as a whole."""
+        asked = self.case.robot, self.trial, self.observed
+        return arm_apart(*asked), other_arm(*asked)
+
+    def _arms(self, several: tuple[ProgramEdit, ...]) -> tuple[OtherArm | None, OtherArm | None]:
+        """The same for the program as it stands now, with these edits in it."""
+        sets = any(one.part == DATA or one.numbers is not None for one in (*self.stand, *several))
+        return self._other_arms() if sets and any(self._others) else self._others
+
+    def _holds(self, other: OtherArm) -> bool:
+        """Whether the program as it stands now is right for another arm."""
+        there = self._at_arm(other)
+        if there is None:
             return False
-        for edits_ in self._other.ways:
+        for edits_ in other.ways:
             with changed(self.trial, edits_):
                 values = there.values(there.first)
             if values is not None and there.right(values).all():
@@ -362,11 +380,20 @@ class LineSearch:
 
     def _only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""
-        if self.case.quantity.read is not None or any(map(self._sets_a_number, several)):
+        if self.case.quantity.read is not None:
             return False
-        whole = self._other is not None and self._other.whole and self._larger is not None
+        (before, _), (apart, larger) = self._others, self._arms(several)
+        if before is not None and apart is not None:
+            odd = apart.odd and len(several) > 1
+            if odd or before.fitting - apart.fitting:
+                return True  # a name has a number that none has of those that are called so
+            if apart.whole and self._at_arm(apart) is not None:
+                return not self._holds(apart)
+        if any(map(self._sets_a_number, several)):
+            return False
+        whole = larger is not None and larger.whole and self._at_arm(larger) is not None
         free = any(edit.numbers is not None and _is_free(edit.numbers[1]) for edit in several)
-        return (whole or free) and not self._holds()
+        return (whole or free) and not (larger is not None and self._holds(larger))
 
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
@@ -374,19 +401,18 @@ class LineSearch:
             return True
         return edit.numbers is not None and self.is_own(edit.numbers[1])
 
-    @property
-    def _larger(self) -> LineSearch | None:
-        """The search for what is right of the other arm, made when it is first asked for."""
-        if not self._there:
-            self._there.append(self._of_larger())
-        return self._there[0]
+    def _at_arm(self, other: OtherArm) -> LineSearch | None:
+        """The search for what is right of another arm, made when it is first asked for."""
+        if other not in self._there:
+            self._there[other] = self._of_arm(other)
+        return self._there[other]
 
-    def _of_larger(self) -> LineSearch | None:
-        robot = None if self._other is None else self._other.robot
-        if robot is None:
+    def _of_arm(self, other: OtherArm) -> LineSearch | None:
+        if other.robot is None:
             return None
         some = {name: stack[self.first] for name, stack in self.case.arguments.items()}
-        case = replace(self.case, robot=robot, arguments=some, hand=self.case.hand[self.first])
+        hand = self.case.hand[self.first]
+        case = replace(self.case, robot=other.robot, arguments=some, hand=hand)
         try:
             with np.errstate(all="ignore"):
                 return self.at(case, np.asarray(case.answer(()), dtype=float))

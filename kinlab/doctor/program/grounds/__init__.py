@@ -3,6 +3,8 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
+``apart``         An arm whose numbers have nothing to do with one another
+``called``        What the numbers of an arm are called
 ``dimensions``    The dimensions of a program's expressions: nobody adds a length to a moment
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
 ``scaled``        Another arm, on which what is one by the numbers alone is two things

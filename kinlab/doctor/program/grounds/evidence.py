@@ -17,6 +17,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
+from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial, named_in
@@ -28,6 +29,8 @@ _TRUSTED = 0.1
 """What it costs more in a function of which a right value is made."""
 _COINCIDENT = 0.04
 """What a factor costs more that a name of the program has as its value: 1/2 where l1 is 0.5."""
+_UNLIKE = 0.15
+"""What it costs more to add numbers whose names are those of a mass and of a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
@@ -81,7 +84,18 @@ class Grounds:
             return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
-        return _TRUSTED if edit.part in self.trusted else 0.0
+        unlike_ = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
+        return unlike_ + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _adds_unlike(self, new: Any) -> bool:
+        """Whether an edit makes a sum of the arm's numbers that are of different kinds."""
+        if not isinstance(new, ast.BinOp) or not isinstance(new.op, ast.Add | ast.Sub):
+            return False
+        one, other = new.left, new.right
+        if not isinstance(one, ast.Name) or not isinstance(other, ast.Name):
+            return False
+        known = (self.trial.space.get(name) for name in (one.id, other.id))
+        return all(isinstance(x, int | float) for x in known) and unlike(one.id, other.id)
 
     def _against_data(self, name: str) -> float:
         using = [k for k in self.trial.above[DATA] if name in names(self.trial.trees[k])]

@@ -37,35 +37,43 @@ _PARTS = 12
 """Denominator up to which a fraction, or one of pi, is nobody's length or mass."""
 _WAYS = 32
 """Ways of understanding a program's numbers that are tried."""
+_ROWS = ("array", "asarray", "diag")
+"""Functions that make an array of a list."""
 _NOBODYS = (0.0, 1.0, 2.0)
 """Sizes of numbers with a name that need be nothing of an arm's."""
 
 
 @dataclass(frozen=True, eq=False)
 class OtherArm:
-    """A larger arm, and the program's numbers changed alike.
+    """Another arm, and the program's numbers changed alike.
 
     Attributes:
-        table: the first arm's.
-        twisted: how many times as large the twists are.
+        table: the arm's.
         ways: what is put into the program; several where a number may be several things.
         whole: whether nothing else of the program can be the first arm's own, so that a program
             that is right is right for this one, too.
+        fitting: where numbers of the program are that the first arm has as they are called.
+        odd: whether one is none of the first arm's, while others of its kind are.
     """
 
     table: DHTable
-    twisted: float
     ways: tuple[tuple[ProgramEdit, ...], ...]
     whole: bool
+    fitting: frozenset[Any] = frozenset()
+    odd: bool = False
 
     @cached_property
     def robot(self) -> Robot | None:
         """The arm; None where there is none with links like these."""
-        return _scaled(self.table, self.twisted)
+        try:
+            with already_said():
+                return Robot.from_dh(self.table)
+        except (KinlabError, TypeError, ValueError):
+            return None
 
 
 @dataclass(frozen=True, eq=False)
-class _Number:
+class ProgramNumber:
     """A number of a program: of ``pi/2`` the whole.
 
     Attributes:
@@ -95,19 +103,16 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     table = table_of(robot)
     if table is None:
         return None
-    found = [*_numbers(trial, observed)]
-    twists = [link.alpha for link in table.links if link.alpha]
-    held = np.array([one.value for one in found if one.alone])
-    turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
-    twisted = _TWISTED if turned else 1.0
+    found = [*numbers_of(trial, observed)]
+    twisted = twisted_by(table, found)
     kinds = _kinds(robot, table, twisted)
     meant = _alike(found, [_meant(kinds, one.value) for one in found])
     names = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True
-    choices: dict[Any, tuple[list[_Number], list[float]]] = {}
+    choices: dict[Any, tuple[list[ProgramNumber], list[float]]] = {}
     for one, some in zip(found, meant, strict=True):
-        own = _of_one_arm(one.value)
+        own = may_be_of_one_arm(one.value)
         if (one.alone or own or one.given) and some:
             plain = not own and not one.place.place and one.place.node not in names
             factors = sorted({factor for _kind, factor in some}.union([1.0] * plain))
@@ -115,7 +120,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
         elif own or (some and not one.alone):
             whole = whole and not own and _among(one.value, carried)
         elif one.alone and isinstance(one.place.value, float) and not one.place.place:
-            whole = whole and (abs(one.value) in _NOBODYS or _may_be_step(one.value))
+            whole = whole and named_at_will(one.value)
     ways: list[tuple[ProgramEdit, ...]] = []
     for chosen in islice(product(*(factors for _some, factors in choices.values())), _WAYS + 1):
         changed = [
@@ -127,7 +132,25 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
         ways += [tuple(together(changed))] if changed else []
     if not ways:
         return None
-    return OtherArm(table, twisted, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
+    larger = _scaled(table, twisted)
+    return (
+        None
+        if larger is None
+        else OtherArm(larger, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
+    )
+
+
+def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
+    """How many times as large twists are, where the program's numbers hold them."""
+    twists = [link.alpha for link in table.links if link.alpha]
+    held = np.array([one.value for one in found if one.alone])
+    turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
+    return _TWISTED if turned else 1.0
+
+
+def named_at_will(value: float) -> bool:
+    """Whether a number with a name need be nothing of an arm's."""
+    return abs(value) in _NOBODYS or _may_be_step(value)
 
 
 def own_rows(robot: Robot) -> list[Array]:
@@ -162,27 +185,38 @@ def own_numbers(robot: Robot) -> Array:
     return np.unique(every[every != 0.0])
 
 
-def _key(one: _Number) -> Any:
+def _key(one: ProgramNumber) -> Any:
     """Numbers of one list are of one kind, and equal ones that are given on; others each alone."""
     if one.given:
         return one.value
     return one.place.node if one.place.part == DATA and one.place.place else id(one)
 
 
-def _numbers(trial: Trial, observed: Observed) -> Iterator[_Number]:
+def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
+    """The numbers of a program, those that a slip has left unused among them."""
     plain = {id(node): node for tree in trial.trees for node in _alone(tree)}
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
     unused = (leaf for name in _unused(trial) for leaf in leaves_of(trial, name))
-    for place in (*numbers(trial, observed), *unused):
+    for place in (*numbers(trial, observed), *_defaults(trial), *unused):
         whole = below.get(id(place.node))
         if place.value and whole is not None:
-            yield _Number(place, np.pi / place.value, True, below=True)
+            yield ProgramNumber(place, np.pi / place.value, True, below=True)
         else:
             alone = place.part == DATA or id(place.node) in plain
             value = float(place.value)
-            yield _Number(place, value, alone, id(place.node) in given and not _of_one_arm(value))
+            yield ProgramNumber(
+                place, value, alone, id(place.node) in given and not may_be_of_one_arm(value)
+            )
+
+
+def _defaults(trial: Trial) -> Iterator[NumberPlace]:
+    """The numbers that are written as what arguments are by default."""
+    for part, tree in enumerate(trial.trees):
+        for given in (*tree.args.defaults, *tree.args.kw_defaults):
+            if isinstance(given, ast.Constant) and isinstance(given.value, float):
+                yield NumberPlace(given.value, part, given, "value", given)
 
 
 def _unused(trial: Trial) -> list[str]:
@@ -192,7 +226,7 @@ def _unused(trial: Trial) -> list[str]:
     return [name for name, x in known if name not in used and type(x) in (int, float, list, tuple)]
 
 
-def _scaled(table: DHTable, twisted: float) -> Robot | None:
+def _scaled(table: DHTable, twisted: float) -> DHTable | None:
     """The arm with all its lengths and masses larger; None where that is none."""
     links = [
         replace(
@@ -211,8 +245,8 @@ def _scaled(table: DHTable, twisted: float) -> Robot | None:
     base[:3, 3] *= _LONGER
     try:
         with already_said():
-            return Robot.from_dh(replace(table, links=links, tool=tool, base=base))
-    except (KinlabError, TypeError, ValueError):
+            return replace(table, links=links, tool=tool, base=base)
+    except KinlabError:
         return None
 
 
@@ -242,11 +276,11 @@ def _kinds(robot: Robot, table: DHTable, twisted: float) -> Kinds:
     ]
     for k, link in enumerate(links):
         kinds.append(("mass", k, _heavier(k), [link.mass]))
-        kinds.append(("moment", k, _heavier(k) * _LONGER**2, [*_moments(link)]))
+        kinds.append(("moment", k, _heavier(k) * _LONGER**2, [*moments(link)]))
     return [(what, k, by, np.array(known, dtype=float)) for what, k, by, known in kinds]
 
 
-def _moments(link: DHLink) -> Iterator[float]:
+def moments(link: DHLink) -> Iterator[float]:
     """Of a link's inertia about its centre of mass, about its frame, and about its joint."""
     centre = np.asarray(link.com, dtype=float)
     for arm in (np.zeros(3), centre, centre + (link.a, 0.0, link.d)):
@@ -260,7 +294,7 @@ def _meant(kinds: Kinds, value: float) -> set[tuple[str, int, float]]:
 
 
 def _alike(
-    found: Sequence[_Number], meant: Sequence[set[tuple[str, int, float]]]
+    found: Sequence[ProgramNumber], meant: Sequence[set[tuple[str, int, float]]]
 ) -> list[set[tuple[str, float]]]:
     """What numbers are, the same kind in all of a list, or of a column of it, where there is one.
 
@@ -305,7 +339,7 @@ def _may_be_step(value: float) -> bool:
     return abs(value) <= TOLERANCES.may_be_step
 
 
-def _of_one_arm(value: float) -> bool:
+def may_be_of_one_arm(value: float) -> bool:
     """Whether a number that stays in a program may be made of the first arm's numbers."""
     if not np.isfinite(value):
         return False
@@ -320,9 +354,14 @@ def _among(value: float, known: Array) -> bool:
 
 
 def _alone(tree: ast.AST) -> Iterator[ast.expr]:
-    """The numbers, and parts of pi, that names are set to as they are, or that stand in lists."""
+    """The numbers, and parts of pi, that names are set to as they are, or that stand in lists.
+
+    What is given by its name, or what a function's arguments are by default, has a name, too.
+    """
     for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
+        if isinstance(node, ast.arguments):
+            waiting += [one for one in (*node.defaults, *node.kw_defaults) if one is not None]
         while waiting:
             one = waiting.pop()
             if isinstance(one, ast.Constant) or _of_pi(one):
@@ -333,6 +372,9 @@ def _alone(tree: ast.AST) -> Iterator[ast.expr]:
                 waiting += one.values
             elif isinstance(one, ast.UnaryOp):
                 waiting.append(one.operand)
+            elif isinstance(one, ast.Call):
+                waiting += [keyword.value for keyword in one.keywords]
+                waiting += one.args[:1] if called(one) in _ROWS else []
 
 
 def _of_pi(node: ast.AST) -> bool:

@@ -7,6 +7,7 @@ first that explain most; then what is left is looked for beside an edit that mak
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -201,7 +202,12 @@ class _Tried:
         most = self.search.most // 4
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
-            for way in known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1):
+            few = [*known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1)]
+            more = known.edits(chosen, _EVERY) if turn < _VERIFIED else iter(())
+            for k, way in enumerate(chain(few, (way for way in more if way not in few))):
+                # what is right by this arm's numbers alone may have a sibling that is right
+                if k == len(few) and not self._fits(few[0]):
+                    break
                 most -= self._cost(way)
                 if self._repair(way) is not None:
                     fitting = [way]

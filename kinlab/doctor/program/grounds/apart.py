@@ -1,0 +1,442 @@
+"""An arm whose numbers have nothing to do with one another, on which no two of them are one.
+
+In homework an arm often has l1 = l2 = m1 = m2 = 1 and lc1 = lc2 = 0.5: there a mass is as good as a
+length, and twice a distance to a centre of mass is a length. Which number of a program is which of
+the arm's is told from its value, from its name, and from its place in a list.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
+from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
+from kinlab.doctor.program.grounds.scaled import (
+    OtherArm,
+    ProgramNumber,
+    may_be_of_one_arm,
+    moments,
+    named_at_will,
+    numbers_of,
+    twisted_by,
+)
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import DATA
+from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
+from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.link import Convention
+from kinlab.model.robot import Robot
+from kinlab.tolerances import TOLERANCES
+
+_WAYS = 64
+"""Ways of understanding a program's numbers that are tried."""
+_LEAST, _SPREAD, _TURN = 0.75, 1.1, (5**0.5 - 1) / 2
+"""How much larger numbers of the arm are: never twice alike, and no simple parts of each other."""
+Which = tuple[str, int]
+"""A number of the arm's that is changed by itself: of a link its length, its mass, ..."""
+
+
+@dataclass(frozen=True)
+class _Cell:
+    """A number that the arm's table gives.
+
+    Attributes:
+        kind: ``"length"``, ``"centre"``, ``"mass"``, ``"moment"``, ``"twist"``, ``"kept"``.
+        which: with which of the arm's numbers it changes.
+        links: the links after which it may be called; none where it has no number.
+        value: what it is.
+    """
+
+    kind: str
+    which: Which
+    links: tuple[int, ...]
+    value: float
+
+
+_Label = tuple[str, int | None, tuple[int, ...]]
+"""The name of a number without its digits, these, and its place in a list."""
+_Option = tuple[tuple[ProgramNumber, int], ...]
+"""What numbers of a program are: which cells, by their numbers."""
+
+
+@dataclass(frozen=True)
+class _Item:
+    """Numbers of a program that are understood together.
+
+    Attributes:
+        options: what they may be.
+        alone: whether none other is the same of the arm's, where that can be.
+    """
+
+    options: tuple[_Option, ...]
+    alone: bool
+
+
+def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None:
+    """An arm all of whose numbers that a program has names for are different.
+
+    What the program has no name for stays as it is; but a centre stays in the middle of its link,
+    and a moment of inertia goes with mass and length, where no program has names for these at all.
+    """
+    table = table_of(robot)
+    if table is None:
+        return None
+    found = [*numbers_of(trial, observed)]
+    turned = twisted_by(table, found)
+    cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
+    reader = _Reader(table.n, cells, _labels(trial), found)
+    items = sorted(reader.items, key=lambda item: len(item.options))
+    ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
+    if not ways:
+        return None
+    carried = {cells[k].which for _one, k in ways[0]}
+    other = _apart(table, carried, reader.tied, turned)
+    new = _cells(other, 0.0)
+    puts = [
+        [
+            one.times(new[k].value / cells[k].value)
+            for one, k in way
+            if cells[k].kind != "kept" and new[k].value != cells[k].value
+        ]
+        for way in ways[:_WAYS]
+    ]
+    changed = tuple(tuple(together(put)) for put in puts if put)
+    if not changed:
+        return None
+    whole = reader.whole and len(ways) <= _WAYS and _stays(trial, puts[0])
+    return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
+
+
+def _stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
+    """Whether a program's numbers are what is put there also when its lines have run anew."""
+    if not any(part.sets for part in trial.program.parts):
+        return True
+
+    def held() -> dict[Any, float]:
+        return {(one.node, one.place): float(one.value) for one in leaves(trial)}
+
+    expected = held()
+    expected |= {(one.node, one.place): x for one, x in put if one.part == DATA}
+    edits = together(put)
+    changes = [change for edit in edits for change in edit.changes]
+    try:
+        with quietly(), trial.changed({edit.part for edit in edits}, changes):
+            trial.load()
+            found = held()
+    except (NoProgramError, FailedError):
+        return False
+    return found.keys() == expected.keys() and all(
+        math.isclose(found[key], x, rel_tol=TOLERANCES.same_number) for key, x in expected.items()
+    )
+
+
+class _Reader:
+    """What the numbers of a program may be.
+
+    Args:
+        count: of links.
+        cells: the arm's numbers.
+        labels: the names of the numbers in a program's text.
+        found: the program's numbers.
+
+    Attributes:
+        items: numbers, and what they may be.
+        tied: numbers of the arm's that have one name.
+        whole: whether no other number of the program can be the arm's.
+        fitting: where numbers are that the arm has as they are called.
+        odd: whether one is none of the arm's, while others of its kind are.
+    """
+
+    def __init__(
+        self,
+        count: int,
+        cells: Sequence[_Cell],
+        labels: dict[int, tuple[list[str], list[int]]],
+        found: Sequence[ProgramNumber],
+    ) -> None:
+        self.cells, self.labels = cells, labels
+        self.tied: dict[Which, Which] = {}
+        self.whole = True
+        told = [self._label(one) for one in found]
+        self.from_zero = {name for name, digits, _at in told if digits == 0}
+        last: dict[str, int] = {}
+        for name, _digits, at in told:
+            last[name] = max(last.get(name, 0), *at[:1], 0)
+        self.listed = {name for name, most in last.items() if most + 1 == count}
+        self.items: list[_Item] = []
+        self.fitting: set[Any] = set()
+        self.odd = False
+        self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
+        unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
+        plain: list[float] = []
+        for one, label in zip(found, told, strict=True):
+            may = self._alike(one.value) if one.value else []
+            own = may_be_of_one_arm(one.value)
+            if may and (one.alone or own or one.given):
+                sure, left = self._as_called(may, label)
+                if sure:
+                    self.items.append(_Item(tuple(((one, k),) for k in left), not label[2]))
+                else:
+                    key = (label[:2], label[2][1:]) if one.alone else ()
+                    unknown.setdefault((key, one.value, own), []).append((one, left))
+            elif own:
+                self.whole = False
+            elif may:
+                plain.append(one.value)
+            elif one.alone and isinstance(one.place.value, float) and not one.place.place:
+                self.whole = self.whole and named_at_will(one.value)
+        for (*_key, own), group in unknown.items():
+            stays: list[_Option] = [] if own else [()]
+            self.items.append(_Item((*self._kinds(group), *stays), True))
+        held = np.array([one.value for one in found if one.alone])
+        self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
+
+    def _look_at_names(self, named: Sequence[tuple[ProgramNumber, _Label]]) -> None:
+        """Which numbers the arm has as they are called, and whether any is odd among these."""
+        strange: list[_Label] = []
+        alike: set[str] = set()
+        for one, label in named:
+            kinds, link = kinds_called(label[0]), self._link(label)
+            some = [c for c in self.cells if c.kind in kinds and link in (None, *c.links)]
+            every = [cell for cell in self.cells if cell.kind in kinds]
+            if _among(some, one.value):
+                node = one.place.node if one.place.part == DATA else id(one.place.node)
+                self.fitting.add((node, one.place.place))
+                alike.add(label[0])
+            elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
+                strange.append(label)
+        for name, *_place in strange:
+            same = alike if len(name) > 1 or name in "lmij" else alike & {name}
+            self.odd = self.odd or any(not unlike(name, other) for other in same)
+
+    def _link(self, label: _Label) -> int | None:
+        """The link after which a number is called, or at whose place it stands."""
+        name, digits, at = label
+        if digits is not None:
+            return digits - (name not in self.from_zero)
+        return at[0] if at and name in self.listed else None
+
+    def _alike(self, value: float) -> list[int]:
+        """The cells of a value; of the opposite one where it is none's, or measured along d."""
+        values = np.array([cell.value for cell in self.cells])
+        size, same = _close(values, value), _close(values, value, signed=True)
+        if same.any():
+            both = np.array([cell.which[0] in ("com1", "com2") for cell in self.cells])
+            size &= same | both
+        return [int(k) for k in np.flatnonzero(size)]
+
+    def _label(self, one: ProgramNumber) -> _Label:
+        """The name of a number without its digits, these, and its place in a list."""
+        place = one.place
+        if place.part == DATA:
+            names = [k.strip(".") for k in place.place if isinstance(k, str)]
+            names, at = [str(place.node), *names], [k for k in place.place if type(k) is int]
+        else:
+            names, at = self.labels.get(id(place.node), ([""], []))
+        digits = [x for name in names for x in re.findall(r"\d+", name)]
+        return stem(names[-1]), int(digits[-1]) if digits else None, tuple(at)
+
+    def _as_called(self, may: list[int], label: _Label) -> tuple[bool, list[int]]:
+        """Of cells those that are called so, and whether any is."""
+        kinds, link = kinds_called(label[0]), self._link(label)
+        may = [k for k in may if self.cells[k].kind != "moment" or not self._again(k, may)]
+        left = [k for k in may if self.cells[k].kind in kinds]
+        sure = bool(left)
+        left = left or may
+        if link is not None:
+            left = [k for k in left if link in self.cells[k].links] or left
+        elif not label[2] and (sure or not label[0]):  # one number for those of all links
+            firsts = {self.cells[k].which[0]: self.cells[k].which for k in reversed(left)}
+            for k in left:
+                self.tied[self.cells[k].which] = firsts[self.cells[k].which[0]]
+            left = [k for k in left if self.cells[k].which in firsts.values()]
+        return sure, left
+
+    def _again(self, k: int, may: list[int]) -> bool:
+        """Whether a moment of inertia is that of a cell before."""
+        which = self.cells[k].which
+        return any(self.cells[j].which == which for j in may if j < k)
+
+    def _kinds(self, group: list[tuple[ProgramNumber, list[int]]]) -> Iterator[_Option]:
+        """What numbers of one list may be: of one kind, all of them."""
+        if len(group) == 1:
+            yield from (((group[0][0], k),) for k in group[0][1])
+            return
+        for kind in dict.fromkeys(self.cells[k].kind for k in group[0][1]):
+            each = [
+                (one, next((k for k in left if self.cells[k].kind == kind), None))
+                for one, left in group
+            ]
+            if all(k is not None for _one, k in each):
+                yield tuple((one, k) for one, k in each if k is not None)
+
+
+def _among(cells: Sequence[_Cell], value: float) -> bool:
+    return bool(_close(np.array([cell.value for cell in cells]), value).any())
+
+
+def _ways(items: Sequence[_Item], used: frozenset[int]) -> Iterator[_Option]:
+    """Ways to understand all, those in which nothing has two names where that can be."""
+    if not items:
+        yield ()
+        return
+    first, rest = items[0], items[1:]
+    free = [x for x in first.options if not first.alone or not {k for _one, k in x} & used]
+    for option in free or first.options:
+        for others in _ways(rest, used | {k for _one, k in option}):
+            yield (*option, *others)
+
+
+def _close(values: Array, value: float, signed: bool = False) -> Any:
+    near = TOLERANCES.same_relation * abs(value)
+    gap = values - value if signed else np.abs(values) - abs(value)
+    return np.abs(gap) <= near
+
+
+def _cells(table: DHTable, gravity: float) -> list[_Cell]:
+    """The numbers of an arm, in the same order for arms of one kind."""
+    standard = table.convention is Convention.STANDARD
+    cells: list[_Cell] = []
+
+    def put(kind: str, what: str, k: int, links: tuple[int, ...], values: Iterable[float]) -> None:
+        cells.extend(_Cell(kind, (what, k), links, float(x)) for x in values)
+
+    for k, link in enumerate(table.links):
+        com = np.asarray(link.com, dtype=float)
+        put("length", "a", k, (k,) if standard else (k, k - 1), [link.a])
+        put("length", "d", k, (k,), [link.d])
+        for axis, (x, end) in enumerate(zip(com, (link.a, link.d, link.d), strict=True)):
+            which = f"com{axis}" if x else "d" if axis else "a"
+            put("centre", which, k, (k,), [x, end + x, end - x] if end else [x])
+        put("mass", "m", k, (k,), [link.mass])
+        put("moment", "I", k, (k,), moments(link))
+        put("twist", "twist", -1, (k,), [link.alpha])
+        put("kept", "kept", -1, (), _strange([link.theta, link.armature]))
+    ends = np.asarray(table.tool, dtype=float), np.asarray(table.base, dtype=float)
+    for name, pose in zip(("tool", "base"), ends, strict=True):
+        links = (table.n - 1,) if name == "tool" and not standard else ()
+        for axis in range(3):
+            put("length", f"{name}{axis}", -1, links, [pose[axis, 3]])
+        put("kept", "kept", -1, (), _strange(pose[:3, :3].ravel()))
+    put("kept", "kept", -1, (), [gravity])
+    return cells
+
+
+def _strange(values: Iterable[float]) -> list[float]:
+    """Of numbers those that need be something of an arm's."""
+    return [x for x in map(float, values) if not named_at_will(x)]
+
+
+def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned: float) -> DHTable:
+    """The arm with other numbers for those that a program has names for."""
+    every = [(f"{name}{axis}", -1) for name in ("tool", "base") for axis in range(3)]
+    every += [(what, k) for what in ("a", "d", "m", "I") for k in range(table.n)]
+    every += [(f"com{axis}", k) for axis in range(3) for k in range(table.n)]
+
+    def factor(what: str, k: int) -> float:
+        which = tied.get((what, k), (what, k))
+        if which not in carried:
+            return 1.0
+        return _LEAST + _SPREAD * ((1 + every.index(which)) * _TURN % 1.0)
+
+    has = {what[:3] for what, _k in carried}
+    told = [{what for what, of in carried | {*tied} if of == k} for k in range(table.n)]
+    standard = table.convention is Convention.STANDARD
+    links: list[DHLink] = []
+    for k, link in enumerate(table.links):
+        com = np.asarray(link.com, dtype=float)
+        length, longer = _along(table, k, factor)
+        a, mass = factor("a", k) * link.a, factor("m", k) * link.mass
+        moved = longer * com
+        for axis, x in enumerate(com if "com" in has else ()):
+            which = f"com{axis}"
+            lengths = np.array([link.a, link.d, length])
+            middle = np.flatnonzero(_close(lengths, 2 * x))
+            if which not in told[k] and x and len(middle):
+                moved[axis] = x * (factor("a", k), factor("d", k), longer)[middle[0]]
+            elif standard and x and not axis:
+                moved[0] = factor(which, k) * (link.a + x) - a
+            else:
+                moved[axis] = factor(which, k) * x
+        grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
+        links.append(
+            replace(
+                link,
+                a=a,
+                alpha=turned * link.alpha,
+                d=factor("d", k) * link.d,
+                mass=mass,
+                com=moved,
+                inertia=grown * np.asarray(link.inertia),
+            )
+        )
+    ends: list[Array] = []
+    for name in ("tool", "base"):
+        pose = np.array(getattr(table, name), dtype=float)
+        pose[:3, 3] *= [factor(f"{name}{axis}", -1) for axis in range(3)]
+        ends.append(pose)
+    return replace(table, links=links, unphysical=True, tool=ends[0], base=ends[1])
+
+
+def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> tuple[float, float]:
+    """How long a link is, and how much longer it becomes."""
+    link = table.links[k]
+    if table.convention is Convention.STANDARD:
+        found = (link.a, factor("a", k))
+    elif k + 1 == table.n:
+        found = (float(np.asarray(table.tool)[0, 3]), factor("tool0", -1))
+    else:
+        found = (table.links[k + 1].a, factor("a", k + 1))
+    return found if found[0] else (link.d, factor("d", k))
+
+
+def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:
+    """What the numbers in a program's text are called, with their places in lists."""
+    found: dict[int, tuple[list[str], list[int]]] = {}
+
+    def named(value: Any, names: list[str], at: list[int]) -> None:
+        if isinstance(value, ast.Constant):
+            found[id(value)] = names, at
+        elif isinstance(value, ast.UnaryOp):
+            named(value.operand, names, at)
+        elif isinstance(value, ast.BinOp):  # of pi/2
+            named(value.right, names, at)
+        elif isinstance(value, ast.Call):
+            for one in value.args[:1]:
+                named(one, names, at)
+            for keyword in value.keywords:
+                named(keyword.value, [*names, keyword.arg or ""], at)
+        elif isinstance(value, ast.List | ast.Tuple):
+            for k, one in enumerate(value.elts):
+                named(one, names, [*at, k])
+        elif isinstance(value, ast.Dict):
+            for key, one in zip(value.keys, value.values, strict=True):
+                named(one, [*names, str(getattr(key, "value", ""))], at)
+
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.arguments):
+                given = [*reversed(node.posonlyargs + node.args)]
+                for argument, value in zip(given, reversed(node.defaults), strict=False):
+                    named(value, [argument.arg], [])
+                for argument, default in zip(node.kwonlyargs, node.kw_defaults, strict=True):
+                    named(default, [argument.arg], [])
+            elif isinstance(node, ast.Assign):
+                for target in node.targets:
+                    both: Any = [(target, node.value)]
+                    if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
+                        both = zip(target.elts, node.value.elts, strict=False)
+                    for one, value in both:
+                        named(value, [getattr(one, "id", getattr(one, "attr", ""))], [])
+    return found

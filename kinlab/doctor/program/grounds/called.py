@@ -1,0 +1,33 @@
+"""What the numbers of an arm are called: a length l1, a mass m2, a moment of inertia Izz."""
+
+from __future__ import annotations
+
+import re
+
+_CALLED = (
+    (re.compile(r"(lc|lg|com|cm|cen|rc)|(c|s)[xyz]?$"), ("centre",)),
+    (re.compile(r"(i|j)[xyz]{0,2}[cg]?$|inert|moment"), ("moment",)),
+    (re.compile(r"m$|mass"), ("mass",)),
+    (re.compile(r"al|twist"), ("twist",)),
+    (re.compile(r"[la]$|len|linkl"), ("length",)),
+    (re.compile(r"[rd]$"), ("length", "centre")),
+    (re.compile(r"g$|grav"), ("kept",)),
+)
+"""How names begin, and what is called so; the first that fits."""
+_LENGTHS = {"length", "centre"}
+
+
+def stem(name: str) -> str:
+    """A name without its digits: ``lc`` of ``lc_2``."""
+    return re.sub(r"[\d_]+", "", name).lower()
+
+
+def kinds_called(name: str) -> tuple[str, ...]:
+    """What may be called so; nothing where that cannot be told."""
+    return next((kinds for begin, kinds in _CALLED if begin.match(stem(name))), ())
+
+
+def unlike(one: str, other: str) -> bool:
+    """Whether names are those of different kinds of numbers, which have no sum."""
+    first, last = set(kinds_called(one)), set(kinds_called(other))
+    return bool(first and last) and first.isdisjoint(last) and not first | last <= _LENGTHS

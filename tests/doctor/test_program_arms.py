@@ -1,0 +1,166 @@
+"""Arms with round numbers, on which a mass is as good as a length: what is told holds for others.
+
+With l1 = l2 = m1 = m2 = 1 and lc1 = lc2 = 0.5 many a wrong edit makes a program right.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hand_programs import repaired
+
+import kinlab as kl
+from kinlab.doctor.program.grounds.apart import arm_apart
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.read import read
+from kinlab.doctor.program.repair import changed
+from kinlab.doctor.program.trial import Trial
+
+ROUND = {"l1": 1.0, "l2": 1.0, "c1": 0.5, "c2": 0.5, "m1": 1.0, "m2": 1.0, "I1": 0.1, "I2": 0.1}
+OTHER = {"l1": 0.7, "l2": 0.3, "c1": 0.4, "c2": 0.1, "m1": 2.3, "m2": 3.7, "I1": 0.2, "I2": 0.11}
+
+NAMED = """
+import numpy as np
+
+l1, l2, c1, c2 = @l1, @l2, @c1, @c2
+m1, m2, I1, I2, g = @m1, @m2, @I1, @I2, 9.81
+
+def f(q, v, a):
+    b = m2*l1*c2*np.cos(q[1])
+    h = m2*l1*c2*np.sin(q[1])
+    d = I2 + m2*c2**2
+    M = np.array([[I1 + m1*c1**2 + m2*l1**2 + d + 2*b, d + b], [d + b, d]])
+    n = np.array([-h*v[1]*(2*v[0] + v[1]), h*v[0]**2])
+    G2 = m2*g*c2*np.cos(q[0] + q[1])
+    G = np.array([(m1*c1 + m2*l1)*g*np.cos(q[0]) + G2, G2])
+    return M @ a + n + G
+"""
+WITHIN = """
+import numpy as np
+
+def f(q):
+    a1, r1, r2 = @l1, @c1, @c2
+    m = np.array([@m1, @m2])
+    J = {"J1": @I1, "J2": @I2}
+    c = np.cos(q[1])
+    m11 = m[0]*r1**2 + J["J1"] + m[1]*(a1**2 + r2**2 + 2*a1*r2*c) + J["J2"]
+    m12 = m[1]*(r2**2 + a1*r2*c) + J["J2"]
+    return np.array([[m11, m12], [m12, m[1]*r2**2 + J["J2"]]])
+"""
+GIVEN = """
+import numpy as np
+
+def f(q, m1=@m1, m2=@m2, l1=@l1, lc1=@c1, lc2=@c2, *, g=9.81):
+    G2 = m2*g*lc2*np.cos(q[0] + q[1])
+    G1 = m1*g*lc1*np.cos(q[0]) + m2*g*l1*np.cos(q[0]) + G2
+    return np.array([G1, G2])
+"""
+TABLE = """
+import numpy as np
+
+links = [[@l1, @c1, @m1], [@l2, @c2, @m2]]
+
+def f(q):
+    c = np.cos(np.cumsum(q))
+    first, last = links
+    second = 9.81*last[2]*last[1]*c[1]
+    return np.array([9.81*(first[2]*first[1] + last[2]*first[0])*c[0] + second, second])
+"""
+PROGRAMS = {
+    "named": ("inverse_dynamics", NAMED),
+    "within": ("mass_matrix", WITHIN),
+    "given": ("gravity_torques", GIVEN),
+    "table": ("gravity_torques", TABLE),
+}
+
+
+def arm(numbers):
+    """The planar arm of two links with these numbers."""
+    links = [
+        kl.DHLink(
+            a=numbers[f"l{k}"],
+            mass=numbers[f"m{k}"],
+            com=(numbers[f"c{k}"] - numbers[f"l{k}"], 0, 0),
+            inertia=np.diag([0, numbers[f"I{k}"], numbers[f"I{k}"]]),
+        )
+        for k in (1, 2)
+    ]
+    return kl.Robot.from_dh(kl.DHTable("round", "standard", links, gravity=(0, -9.81, 0)))
+
+
+def text_for(text, numbers):
+    for name, value in numbers.items():
+        text = text.replace(f"@{name}", repr(value))
+    return text
+
+
+def made(text):
+    space = {}
+    exec(text, space)  # noqa: S102  texts of this file
+    return space["f"]
+
+
+def worst(robot, quantity, function) -> float:
+    return float(np.max(kl.compare(robot, quantity, function, samples=6).errors))
+
+
+def holds(name, slip, sentence) -> bool:
+    """Whether the program with a slip, repaired as a sentence says, is right for another arm."""
+    quantity, text = PROGRAMS[name]
+    wrong = text_for(text.replace(*slip), OTHER)
+    return any(
+        worst(arm(OTHER), quantity, after["f"]) < 1e-9 for after in repaired(wrong, sentence)
+    )
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_program_with_the_numbers_of_an_arm_apart_is_right_for_it(name) -> None:
+    quantity, text = PROGRAMS[name]
+    function = made(text_for(text, ROUND))
+    robot = arm(ROUND)
+    assert worst(robot, quantity, function) < 1e-12
+    trial = Trial(read(function))
+    count = 3 if quantity == "inverse_dynamics" else 1
+    states = [tuple(np.array([0.3 + k, -0.7 - k]) for k in range(count))]
+    other = arm_apart(robot, trial, Observed(trial, states))
+    assert other is not None and other.whole
+    first, last = other.robot.table.links
+    assert len({first.a, last.a, first.mass, last.mass, 1.0}) >= 4
+    errors = []
+    for way in other.ways:
+        with changed(trial, way):
+            errors.append(worst(other.robot, quantity, trial.function))
+    assert min(errors) < 1e-12 < 1e-3 < worst(other.robot, quantity, function)
+
+
+@pytest.mark.parametrize(
+    ("name", "right", "slip"),
+    [
+        ("named", "b = m2*l1*c2", "b = m2*c1*c2"),
+        ("named", "(m1*c1 + m2*l1)", "(m1*c1 + m2*c1)"),
+        ("named", "m2*l1**2 + d", "m2*c1**2 + d"),
+        ("named", "h = m2*l1*c2", "h = m2*I1*c2"),
+        ("within", "2*a1*r2*c)", "a1*r2*c)"),
+        ("within", "+ a1*r2*c)", "+ r1*r2*c)"),
+        ("within", "(r2**2 + a1", "(r2 + a1"),
+        ("given", "m2*g*lc2*np", "m2*g*l1*lc2**2*np"),
+        ("given", "m2*g*l1*np.cos(q[0]) +", "m2*g*l1*np.cos(q[1]) +"),
+        ("table", "last[2]*first[0]", "last[2]*first[1]"),
+    ],
+)
+def test_a_repair_holds_for_an_arm_of_other_numbers(name, right, slip) -> None:
+    quantity, text = PROGRAMS[name]
+    assert text.count(right) == 1
+    found = kl.diagnose(arm(ROUND), quantity, made(text_for(text.replace(right, slip), ROUND)))
+    assert found.causes and holds(name, (right, slip), found.causes[0].sentence)
+
+
+def test_a_length_is_not_exchanged_for_a_mass() -> None:
+    """Both are half of what they should be, and ``c1, m1 = 1, 0.5`` would make up for it."""
+    text = NAMED
+    for slip in (("b = m2*l1*c2", "b = m2*c1*c2"), ("(m1*c1 + m2*l1)", "(m1*c1 + m2*c1)")):
+        text = text.replace(*slip)
+    found = kl.diagnose(arm(ROUND), "inverse_dynamics", made(text_for(text, ROUND)))
+    assert found.causes and "exchanged" not in found.causes[0].sentence
+    after = repaired(text_for(text, OTHER), found.causes[0].sentence)
+    assert any(worst(arm(OTHER), "inverse_dynamics", one["f"]) < 1e-9 for one in after)
