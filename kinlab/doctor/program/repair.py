@@ -29,7 +29,7 @@ from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
 from kinlab.doctor.program.edits.own_numbers import of_own_numbers
 from kinlab.doctor.program.grounds.apart import arm_apart
-from kinlab.doctor.program.grounds.dimensions import Dimensions
+from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
@@ -281,7 +281,7 @@ class LineSearch:
             ]
             every = [edit for edit in every if edit.cost < below]
             most = _WEIGHED // 3 if self.stand else _WEIGHED
-            every = sorted(every, key=lambda edit: edit.cost)[:most]
+            every = sorted(every, key=_at_best)[:most]
             weigh = self.dimensions.against
             every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
             tried = self._in_turn(sorted(every, key=self._dear))
@@ -363,7 +363,10 @@ class LineSearch:
 
     def _arms(self, several: tuple[ProgramEdit, ...]) -> tuple[OtherArm | None, OtherArm | None]:
         """The same for the program as it stands now, with these edits in it."""
-        sets = any(one.part == DATA or one.numbers is not None for one in (*self.stand, *several))
+        sets = any(
+            one.part == DATA or one.numbers is not None or one.of_the_arm
+            for one in (*self.stand, *several)
+        )
         return self._other_arms() if sets and any(self._others) else self._others
 
     def _holds(self, other: OtherArm) -> bool:
@@ -624,6 +627,11 @@ class LineSearch:
         except (KinlabError, TypeError, ValueError):
             return None
         return values if values.shape == wanted.shape else None
+
+
+def _at_best(edit: ProgramEdit) -> float:
+    """What an edit costs if nothing speaks against it."""
+    return edit.cost - LIKE * (edit.kind == "name")
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:

@@ -24,7 +24,9 @@ _GRAVITY = (9.7, 9.9)
 """Between which a number is rather gravity's."""
 _TURNED = 0.02
 """What it costs more to put a number in with the other sign."""
-_MOST = 12
+_SUMMED = 0.04
+"""The same of a number that is a sum of two, in place of one of these."""
+_MOST = 16
 """Numbers of one kind of which any may be meant."""
 
 
@@ -33,12 +35,12 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     table = table_of(robot)
     if table is None:
         return
-    kinds = sizes_of(table)
+    kinds, summed = sizes_of(table), _from_the_joint(table)
     every = [*numbers(trial, observed)]
     for place in every:
         if not isinstance(place.value, float):
             continue
-        for value, cost in _meant(place, kinds):
+        for value, cost in _meant(place, kinds, summed):
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
@@ -51,15 +53,24 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
 def sizes_of(table: DHTable) -> dict[str, list[float]]:
     """The sizes of the arm's lengths, masses, and moments of inertia, each once."""
     lengths = [x for k in table.links for x in (k.a, k.d, *np.ravel(k.com))]
-    for k in table.links:  # from the joint, too
-        lengths += [*np.add((k.a, k.d, k.d), np.ravel(k.com))]
+    lengths += _from_the_joint(table)
     lengths += [*np.ravel(np.asarray(table.tool)[:3, 3]), *np.ravel(np.asarray(table.base)[:3, 3])]
     moments = [x for k in table.links for x in np.ravel(k.inertia)]
     kinds = {"length": lengths, "mass": [k.mass for k in table.links], "moment": moments}
-    return {kind: sorted({abs(float(x)) for x in some if x}) for kind, some in kinds.items()}
+    return {
+        kind: sorted({float(f"{abs(x):.12g}") for x in some if x}) for kind, some in kinds.items()
+    }
 
 
-def _meant(place: NumberPlace, kinds: dict[str, list[float]]) -> Iterator[tuple[float, float]]:
+def _from_the_joint(table: DHTable) -> list[float]:
+    """How far centres of mass are from their links' joints, along each axis."""
+    sums = [np.add((k.a, k.d, k.d), np.ravel(k.com)) for k in table.links]
+    return [float(f"{abs(x):.12g}") for x in np.ravel(sums)]
+
+
+def _meant(
+    place: NumberPlace, kinds: dict[str, list[float]], summed: Sequence[float]
+) -> Iterator[tuple[float, float]]:
     """Numbers that may be meant, and how far-fetched each is."""
     size = abs(float(place.value))
     own = [known for known in kinds.values() if among(size, known)]
@@ -69,12 +80,16 @@ def _meant(place: NumberPlace, kinds: dict[str, list[float]]) -> Iterator[tuple[
     elif size in _PLAIN or _GRAVITY[0] < size < _GRAVITY[1] or size <= TOLERANCES.may_be_step:
         return
     cost = 1.12 if own else 1.1
-    for known in own or kinds.values():
+    for kind, known in kinds.items():
+        if own and known not in own:
+            continue
         for value in known[:_MOST]:
             if abs(value - size) > TOLERANCES.same_number * value:
+                far = _SUMMED if own and among(value, summed) else 0.0
                 same = float(np.copysign(value, place.value))
-                yield same, cost
-                yield -same, cost + _TURNED
+                yield same, cost + far
+                if kind == "length":
+                    yield -same, cost + far + _TURNED
 
 
 def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterator[ProgramEdit]:

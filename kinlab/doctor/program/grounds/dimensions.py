@@ -20,6 +20,7 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.own_numbers import among, sizes_of
+from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, with_other
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial
@@ -35,12 +36,9 @@ _BY = {
     "gravity": _LENGTH * _RATE**2,
     "none": 1.0,
 }
-_LETTERS = {"l": "length", "a": "length", "d": "length", "r": "length", "c": "length",
-            "m": "mass", "i": "moment", "j": "moment", "g": "gravity"}  # fmt: skip
-"""What a number is whose name begins so."""
-_WORDS = {"len": "length", "mass": "mass", "inertia": "moment", "grav": "gravity", "com": "length"}
-"""The same of longer ones."""
-_SHORT = 3
+_MEANT = {"length": "length", "centre": "length", "mass": "mass", "moment": "moment",
+          "kept": "gravity"}  # fmt: skip
+"""What a number is that is called so."""
 _GRAVITY = (9.7, 9.9)
 _PARTS = 12
 """Denominator of fractions that have no dimension."""
@@ -49,7 +47,7 @@ _FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
 _PLAIN = ("sin", "cos", "tan", "arctan2", "atan2", "arccos", "acos", "arcsin", "asin")
 _SAME = ("abs", "array", "asarray", "float", "sum", "negative", "copy", "ravel", "diag")
 _STATEMENTS = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
-_FAR, _LIKE = 1.2, 0.12
+_FAR, LIKE = 1.2, 0.12
 """What it costs less to take a name for a far one of the same dimension."""
 _APART, _CHANGED = 0.12, 0.1
 """What an edit costs more that adds what is of different dimensions, or that changes one."""
@@ -153,7 +151,7 @@ class Dimensions:
             return 0.0
         if not _alike(was, found):
             return _CHANGED if self.consistent else 0.0
-        return -_LIKE if edit.kind == "name" and edit.cost > _FAR and was else 0.0
+        return -LIKE if edit.kind == "name" and edit.cost > _FAR and was else 0.0
 
     def _of_new(self, node: Any) -> float | None:
         """The dimension of an expression that is put in."""
@@ -354,10 +352,7 @@ def _kind(
 
 def _told_by(name: str) -> str | None:
     """What a number is by its name: ``l1``, ``mass``."""
-    short = name.rstrip("0123456789_").lower()
-    if len(short) <= _SHORT:
-        return _LETTERS.get(short[:1])
-    return next((kind for word, kind in _WORDS.items() if short.startswith(word)), None)
+    return next((_MEANT[kind] for kind in kinds_called(name) if kind in _MEANT), None)
 
 
 def _is_simple(value: float) -> bool:
