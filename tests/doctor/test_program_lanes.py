@@ -160,6 +160,42 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
     assert seen > 0.7 * len(pairs)
 
 
+def test_loops_and_conditions_have_lanes() -> None:
+    search = searched(*OTHERS["objects, recursion, a table in the module"])
+    kinds = ("loop", "condition")
+    tried = [one for one in search.tried if one[0].kind in kinds]
+    with quietly():
+        lanes, close, _lost = singly(search, tried)
+    assert {edit.kind for edit, _values in tried} == {*kinds}
+    assert len(tried) > 20
+    assert len(lanes.placed) == len(tried)
+    assert close.all()
+
+
+def test_numbers_of_tables_have_lanes() -> None:
+    """Beside edits of whole rows, and of the table as a whole."""
+    text = """
+import numpy as np
+
+LENGTHS = [0.5, 0.4]
+MASSES = [2.0, 1.5]
+TABLE = [[0.53, 2.1], [0.47, 1.7]]
+
+def f(q):
+    tip = TABLE[1][1]*9.81*LENGTHS[1]*np.cos(q[0] + q[1])
+    return np.array([(MASSES[0] + MASSES[1])*9.81*TABLE[0][0]*np.cos(q[0]) + tip, tip])
+"""
+    search = searched("planar2r", "gravity_torques", text)
+    tried = [one for one in search.tried if one[0].part == -1]
+    with quietly():
+        _lanes, close, _lost = singly(search, tried)
+    assert {"rows swapped", "columns swapped", "entries swapped"} <= {
+        edit.kind for edit, _ in tried
+    }
+    assert len(tried) > 30
+    assert close.all()
+
+
 def test_a_program_is_left_as_it_was() -> None:
     search = searched(*OTHERS["objects, recursion, a table in the module"])
     before = search.answers(search.first)

@@ -54,6 +54,7 @@ class InLanes:
             for tree, part in zip(trial.trees, trial.program.parts, strict=True)
         ]
         data = [one for one in self.woven.data if one[0] in self.placed]
+        data.sort(key=lambda one: _depth(one[1].now))  # a row is made anew with what is in it
         self._wide, self._data = _of_objects(trial, data)
         self.work = 0
 
@@ -172,6 +173,14 @@ def _counterparts(old: Any, new: Any) -> dict[int, Any]:
     elif hasattr(old, "__dict__"):
         found |= _counterparts(vars(old), vars(new))
     return found
+
+
+def _depth(value: Any) -> int:
+    """How deep numbers are in it: 0 of a number, 2 of a table."""
+    if isinstance(value, np.ndarray):
+        return value.ndim
+    inner = value.values() if isinstance(value, dict) else value
+    return 1 + max(map(_depth, inner), default=0) if isinstance(value, list | tuple | dict) else 0
 
 
 def _narrow(value: Any) -> bool:

@@ -42,9 +42,13 @@ def apart(statement: Any, value: ast.expr) -> ast.expr:
     """What a statement sets, where it may run for some lanes alone."""
     old: list[ast.expr] = []
     if isinstance(statement, ast.Assign):
-        target = ast.parse(ast.unparse(statement.targets[0]), mode="eval").body
-        old = [ast.Lambda(_NOTHING, target)]
+        old = [ast.Lambda(_NOTHING, loaded(statement.targets[0]))]
     return ast.Call(ast.Name("_kept", ast.Load()), [ast.Lambda(_NOTHING, value), *old], [])
+
+
+def loaded(target: ast.expr) -> ast.expr:
+    """What is set, to be read."""
+    return ast.parse(ast.unparse(target), mode="eval").body
 
 
 _NOTHING = ast.arguments([], [], None, [], [], None, [])
@@ -62,11 +66,29 @@ class Ways:
         self.only: LaneGroup | None = None
 
     def turns(
-        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]
+        self,
+        edits: Sequence[int],
+        old: Callable[[], Any],
+        new: Callable[[int], Any],
+        counter: Callable[[], Any],
     ) -> Iterator[Any]:
-        """What a loop runs over: in the lanes of each edit, and in all others."""
-        for values in self._each(edits, old, new):
+        """What a loop runs over: in the lanes of each edit, and in all others.
+
+        Where it does not turn for these, its counter is afterwards what it was.
+        """
+        outer = self.only
+        try:
+            before = [counter()]
+        except NameError:
+            before = []
+        for given in self._each(edits, old, new):
+            values = [*given]
             yield from values
+            only, last = self.only, values
+        if before and not len(last) and only is not outer:
+            self.only = LaneGroup(None, np.empty(0, dtype=int))
+            yield before[0]
+            self.only = outer
 
     def sides(
         self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]
@@ -103,6 +125,8 @@ class Ways:
         lanes, only = self.lanes, self.only
         if only is None:
             return new()
+        if not only.size:
+            return 0.0 if old is None else old()
         here, lanes.here, self.only = lanes.here, only, None
         try:
             value = new()

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
-from kinlab.doctor.program.lanes.ways import apart, may_run_apart
+from kinlab.doctor.program.lanes.ways import apart, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
@@ -285,6 +285,8 @@ class Woven:
         numbers: Any = tuple(number for number, _new in ways)
         given = [ast.Constant(numbers), _lambda(getattr(other, name)),
                  _lambda(_chosen(ways), (_EDIT,))]  # fmt: skip
+        if isinstance(statement, ast.For):
+            given.append(_lambda(loaded(statement.target)))
         call = ast.Call(ast.Name("_turns" if looped else "_sides", ast.Load()), given, [])
         setattr(other, name, call if looped else ast.Name("_yes", ast.Load()))
         if not looped:

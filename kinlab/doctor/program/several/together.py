@@ -38,6 +38,8 @@ _LIKELY, _PRODUCT = 300, 150_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
+_FOR_THREES = 4
+"""Of the work the part that pairs leave to threes."""
 _NONE = -1
 """In place of an edit's number."""
 
@@ -121,9 +123,9 @@ class TriedTogether:
     def pairs(self) -> list[Chosen]:
         """Any two edits that make the program right, the likeliest first."""
         found: list[Chosen] = []
-        before = 0
+        before, kept = 0, 0 if self.search.stand else self.left // _FOR_THREES
         for rank, one, other in self._blocks() if self.usable else ():
-            if rank != before and (found or self.left <= 0):
+            if rank != before and (found or self.left <= kept):
                 break
             before = rank
             chosen = self._apart(one, other)
@@ -211,7 +213,9 @@ class TriedTogether:
         spoilt, found = moved & ~right, []
         ranks = np.arange(1, len(few) + 1)
         first, second = np.triu_indices(len(few), 1)
-        apart = ~self.within[few[first], few[second]]
+        within = self.within[np.ix_(few, few)]
+        within[np.ix_(few < _WITHIN, few < _WITHIN)] = False
+        apart = ~within[first, second]
         first, second = first[apart], second[apart]
         either = moved[first] | moved[second]
         spoilt_alone = (spoilt[first] & ~moved[second]) | (spoilt[second] & ~moved[first])
@@ -220,7 +224,7 @@ class TriedTogether:
             fits = ahead & (spoilt_alone & ~moved[k] == 0) & (wrong & ~(either | moved[k]) == 0)
             fits &= spoilt[k] & ~either == 0
             at = np.flatnonzero(fits)
-            at = at[~(self.within[few[first[at]], few[k]] | self.within[few[second[at]], few[k]])]
+            at = at[~(within[first[at], k] | within[second[at], k])]
             found.append(np.stack([first[at], second[at], np.full(len(at), k)], axis=1))
         every = np.concatenate(found) if found else np.empty((0, 3), dtype=int)
         order = np.argsort((every + 1).prod(axis=1), kind="stable")
