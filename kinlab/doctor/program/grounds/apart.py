@@ -197,8 +197,10 @@ class _Reader:
             elif one.alone and isinstance(one.place.value, float) and not one.place.place:
                 self.whole = self.whole and named_at_will(one.value)
         for (*_key, own), group in unknown.items():
+            kinds = [*self._kinds(group)]
             stays: list[_Option] = [] if own else [()]
-            self.items.append(_Item((*self._kinds(group), *stays), True))
+            self.items.append(_Item((*kinds, *stays), True))
+            self.whole = self.whole and not (own and len(kinds) > 1)
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
