@@ -100,7 +100,9 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
         return None
-    carried = {cells[k].which for _one, k in ways[0]}
+    strange = (one for item in items for option in item.options for one in option)
+    carried = {cells[k].which for one, k in strange if may_be_of_one_arm(one.value)}
+    carried |= {cells[k].which for _one, k in ways[0]}
     other = _apart(table, carried, reader.tied, turned)
     new = _cells(other, 0.0)
     puts = [
@@ -196,11 +198,13 @@ class _Reader:
                 plain.append(one.value)
             elif one.alone and isinstance(one.place.value, float) and not one.place.place:
                 self.whole = self.whole and named_at_will(one.value)
+        unsure = 0
         for (*_key, own), group in unknown.items():
             kinds = [*self._kinds(group)]
             stays: list[_Option] = [] if own else [()]
             self.items.append(_Item((*kinds, *stays), True))
-            self.whole = self.whole and not (own and len(kinds) > 1)
+            unsure += own and len(kinds) > 1
+        self.whole = self.whole and unsure < 2
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
