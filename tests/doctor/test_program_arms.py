@@ -164,3 +164,26 @@ def test_a_length_is_not_exchanged_for_a_mass() -> None:
     assert found.causes and "exchanged" not in found.causes[0].sentence
     after = repaired(text_for(text, OTHER), found.causes[0].sentence)
     assert any(worst(arm(OTHER), "inverse_dynamics", one["f"]) < 1e-9 for one in after)
+
+
+def apart(text, robot):
+    trial = Trial(read(made(text)))
+    states = [(np.array([0.3, -0.7]),) * 3]
+    other = arm_apart(robot, trial, Observed(trial, states))
+    assert other is not None
+    return other
+
+
+def test_a_number_that_is_none_of_those_called_so_is_odd() -> None:
+    robot = arm(ROUND)
+    right, wrong = (apart(text_for(NAMED, ROUND | more), robot) for more in ({}, {"c2": 2.0}))
+    assert not right.odd and wrong.odd
+    assert right.fitting - wrong.fitting == {("c2", ())}
+
+
+def test_what_a_program_has_no_name_for_stays_as_it_is() -> None:
+    """Nobody can change an arm's length in a program that has none of it."""
+    text = NAMED.replace("m1, m2, I1, I2, g = @m1,", "m2, I1, I2, g =").replace("m1*", "")
+    assert "m1" not in text
+    first, last = apart(text_for(text, ROUND), arm(ROUND)).table.links
+    assert first.mass == 1.0 and last.mass != 1.0 and first.a != last.a

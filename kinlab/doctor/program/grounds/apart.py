@@ -100,7 +100,9 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
         return None
-    carried = {cells[k].which for _one, k in ways[0]}
+    strange = (one for item in items for option in item.options for one in option)
+    carried = {cells[k].which for one, k in strange if may_be_of_one_arm(one.value)}
+    carried |= {cells[k].which for _one, k in ways[0]}
     other = _apart(table, carried, reader.tied, turned)
     new = _cells(other, 0.0)
     puts = [
@@ -184,7 +186,7 @@ class _Reader:
             may = self._alike(one.value) if one.value else []
             own = may_be_of_one_arm(one.value)
             if may and (one.alone or own or one.given):
-                sure, left = self._as_called(may, label)
+                sure, left = self._as_called(may, label, one.place.part == DATA)
                 if sure:
                     self.items.append(_Item(tuple(((one, k),) for k in left), not label[2]))
                 else:
@@ -196,9 +198,13 @@ class _Reader:
                 plain.append(one.value)
             elif one.alone and isinstance(one.place.value, float) and not one.place.place:
                 self.whole = self.whole and named_at_will(one.value)
+        unsure = 0
         for (*_key, own), group in unknown.items():
+            kinds = [*self._kinds(group)]
             stays: list[_Option] = [] if own else [()]
-            self.items.append(_Item((*self._kinds(group), *stays), True))
+            self.items.append(_Item((*kinds, *stays), True))
+            unsure += own and len(kinds) > 1
+        self.whole = self.whole and unsure < 2
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
@@ -247,14 +253,14 @@ class _Reader:
         digits = [x for name in names for x in re.findall(r"\d+", name)]
         return stem(names[-1]), int(digits[-1]) if digits else None, tuple(at)
 
-    def _as_called(self, may: list[int], label: _Label) -> tuple[bool, list[int]]:
+    def _as_called(self, may: list[int], label: _Label, data: bool) -> tuple[bool, list[int]]:
         """Of cells those that are called so, and whether any is."""
         kinds, link = kinds_called(label[0]), self._link(label)
         may = [k for k in may if self.cells[k].kind != "moment" or not self._again(k, may)]
         left = [k for k in may if self.cells[k].kind in kinds]
         sure = bool(left)
         left = left or may
-        if link is not None:
+        if link is not None and (sure or data):  # the text's rows may be those of a matrix
             left = [k for k in left if link in self.cells[k].links] or left
         elif not label[2] and (sure or not label[0]):  # one number for those of all links
             firsts = {self.cells[k].which[0]: self.cells[k].which for k in reversed(left)}
