@@ -387,7 +387,7 @@ class LineSearch:
             return False
         (before, _), (apart, larger) = self._others, self._arms(several)
         if before is not None and apart is not None:
-            odd = apart.odd and len(several) > 1
+            odd = apart.odd and len(several) > 1 and not self._holds(apart)
             if odd or before.fitting - apart.fitting:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self._at_arm(apart) is not None:

@@ -43,6 +43,8 @@ _WAYS = 64
 """Ways of understanding a program's numbers that are tried."""
 _LEAST, _SPREAD, _TURN = 0.75, 1.1, (5**0.5 - 1) / 2
 """How much larger numbers of the arm are: never twice alike, and no simple parts of each other."""
+_ENDS = ("base", "tool")
+"""What the transforms before and behind a table are called."""
 Which = tuple[str, int]
 """A number of the arm's that is changed by itself: of a link its length, its mass, ..."""
 
@@ -257,6 +259,9 @@ class _Reader:
         """Of cells those that are called so, and whether any is."""
         kinds, link = kinds_called(label[0]), self._link(label)
         may = [k for k in may if self.cells[k].kind != "moment" or not self._again(k, may)]
+        ends = [k for k in may if label[0] in _ENDS and self.cells[k].which[0].startswith(label[0])]
+        if ends:
+            return True, ends
         left = [k for k in may if self.cells[k].kind in kinds]
         sure = bool(left)
         left = left or may
