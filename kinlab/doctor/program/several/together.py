@@ -32,12 +32,14 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 100_000_000, 20_000_000
+_ALL, _LEAST = 90_000_000, 20_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 150_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
+_NUMBERS = 2
+"""Numbers of answers that amount to one operation."""
 _FOR_THREES = 4
 """Of the work the part that pairs leave to threes."""
 _NONE = -1
@@ -111,6 +113,7 @@ class TriedTogether:
             found = found + (wanted[:1] - found[:, :1])
         scale = self.search.scale[: len(states)].reshape(len(states), -1)
         rows: Array = (found / scale).reshape(len(chosen), -1)
+        self.left -= rows.size // _NUMBERS
         return rows - self.known.own[: rows.shape[1]]
 
     def _fits(self, rows: Array) -> Any:
