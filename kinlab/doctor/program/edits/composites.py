@@ -111,7 +111,8 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         return
     plain = [one for one in scope.pieces.get(_VECTOR, {}).values() if _plain(one)]
     names = [one for one in plain if not isinstance(one, ast.BinOp)]
-    rates = [one for one in names if _begins(one, _RATES)][:_FEW]
+    turned = [x for x in scope.pieces.get(_VECTOR, {}).values() if _is_turned(x)]
+    rates = [one for one in (*names, *turned) if _begins(_last(one), _RATES)][:_FEW]
     vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
     own = ast.unparse(here.node)
     for rate in rates:
@@ -124,6 +125,16 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 product = ast.Call(scope.cross, [rate, product], [])
                 new = ast.BinOp(here.node, ast.Add(), product)
                 yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _is_turned(node: ast.expr) -> bool:
+    """A matrix times a name: ``R.T @ w``."""
+    product = isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult)
+    return product and isinstance(_last(node), ast.Name | ast.Subscript)
+
+
+def _last(node: ast.expr) -> ast.expr:
+    return node.right if isinstance(node, ast.BinOp) else node
 
 
 def _plain(node: ast.expr) -> bool:

@@ -50,6 +50,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(new, "parentheses", 1.13)
         for new in _crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
+        for new in _called_once(left, op, right):
+            yield here.instead(new, "parentheses", 1.14)
         for side, inner in (("left", left), ("right", right)):
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
                 into = ast.Call(inner.func, [ast.BinOp(inner.args[0], op, right)], inner.keywords)
@@ -74,6 +76,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(kept, "extra factor", cost + _FLAT * alone)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
+                last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
+                yield here.instead(last, "order", 1.07)
             yield from _turned(here)
         elif isinstance(op, ast.Mult):
             if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
@@ -157,6 +162,14 @@ def _squared(node: ast.BinOp) -> Iterator[ast.expr]:
             whole = ast.BinOp(ast.BinOp(one.left, op, other.left), other.op, other.right)
             joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
             yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
+
+
+def _called_once(left: ast.expr, op: ast.operator, right: ast.expr) -> Iterator[ast.expr]:
+    """A function of a sum for a sum of it: ``cos(a + b)`` for ``cos(a) + cos(b)``."""
+    if isinstance(left, ast.Call) and isinstance(right, ast.Call):
+        same = ast.dump(left.func) == ast.dump(right.func)
+        if same and len(left.args) == len(right.args) == 1:
+            yield ast.Call(left.func, [ast.BinOp(left.args[0], op, right.args[0])], left.keywords)
 
 
 def _crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
@@ -418,6 +431,10 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             near = _alike(other, node.id)
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             yield here.instead(ast.Name(other, ast.Load()), kind, 1.1 if near else 1.25)
+    if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
+        for text, entry in scope.simple(shape):  # an entry of a list by a counter
+            if isinstance(entry, ast.Subscript) and text != node.id:
+                yield here.instead(entry, "name", 1.2)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and shape:
         for other, entries in scope.lists.items():
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:

@@ -36,11 +36,12 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     if table is None:
         return
     kinds, summed = sizes_of(table), _from_the_joint(table)
+    weight = float(np.linalg.norm(table.gravity))
     every = [*numbers(trial, observed)]
     for place in every:
         if not isinstance(place.value, float):
             continue
-        for value, cost in _meant(place, kinds, summed):
+        for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed):
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
