@@ -33,6 +33,7 @@ from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
+from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
@@ -46,6 +47,10 @@ _WORK = 45_000_000
 """Operations of numbers, or what amounts to them, of which all searches have their share."""
 _ALONE = 50_000_000
 """What may be done for single edits beside which none stands."""
+_FURTHER = 2000
+"""Edits that are run all at once where there is no time to run each."""
+_AT_ONCE, _FEWEST = 500, 125
+"""How many of them at a time; as many are left out where one of them cannot be run."""
 _WEIGHED = 9000
 """Edits that are weighed, and may be tried."""
 _NODE = 30
@@ -268,30 +273,15 @@ class LineSearch:
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
         with quietly():
-            every = edits(self.trial, self.observed)
-            every += of_table(self.trial, self.observed, self.case.robot)
-            every += of_own_numbers(self.trial, self.observed, self.case.robot)
-            sure = as_it_is(self.trial, self.observed, self.case.robot)
-            every = [edit for edit in every if edit.part != DATA or not sure(edit)]
-            named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
-            every = [
-                edit
-                for edit in every
-                if not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
-            ]
-            every = [edit for edit in every if edit.cost < below]
-            most = _WEIGHED // 3 if self.stand else _WEIGHED
-            every = sorted(every, key=_at_best)[:most]
-            weigh = self.dimensions.against
-            every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
-            tried = self._in_turn(sorted(every, key=self._dear))
+            tried = self._weighed(below)
             variants = Variants(self.trial, tried)
-            for edit in tried:
+            for turn, edit in enumerate(tried):
                 farthest = best + (_DOUBTED if doubted else _TIED)
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work += self.cost_of(edit)
                 if self.work > (self.most if self.stand else _ALONE):
+                    found = found or self._in_lanes(tried[turn:][:_FURTHER])
                     break
                 try:
                     with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
@@ -315,6 +305,61 @@ class LineSearch:
             elif not self.stand and found[0].edits[-1].part != DATA:
                 found = self._numbers(strange=True) + found
         return found
+
+    def _weighed(self, below: float) -> list[ProgramEdit]:
+        """Every edit in the order in which it is tried."""
+        every = edits(self.trial, self.observed)
+        every += of_table(self.trial, self.observed, self.case.robot)
+        every += of_own_numbers(self.trial, self.observed, self.case.robot)
+        sure = as_it_is(self.trial, self.observed, self.case.robot)
+        every = [edit for edit in every if edit.part != DATA or not sure(edit)]
+        named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
+        every = [
+            edit
+            for edit in every
+            if edit.cost < below and not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
+        ]
+        most = _WEIGHED // 3 if self.stand else _WEIGHED
+        every = sorted(every, key=_at_best)[:most]
+        weigh = self.dimensions.against
+        every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
+        return self._in_turn(sorted(every, key=self._dear))
+
+    def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
+        """Those of further edits that make the program right: they are run all at once."""
+        if self.stand or self.case.quantity.read is not None:
+            return []
+        found: list[ProgramRepair] = []
+        for k in range(0, len(rest), _AT_ONCE):
+            for edit, values in self._run_at_once(rest[k : k + _AT_ONCE]):
+                self.tried.append((edit, values))
+                if self.right(values).all():
+                    with changed(self.trial, (edit,)):
+                        repair = self.verdict((edit,))
+                    found += [] if repair is None else [repair]
+        return found
+
+    def _run_at_once(self, some: list[ProgramEdit]) -> list[tuple[ProgramEdit, Array]]:
+        """What edits make of the program; of those among which one is none, each half alone."""
+        states = [tuple(stack[k].copy() for stack in self._few[0]) for k in range(len(self.first))]
+        try:
+            lanes = InLanes(self.trial, self.observed, [[one] for one in some], states, False)
+        except NoProgramError:
+            return []
+        every = lanes.answers(np.arange(-1, len(some))[:, None])
+        own, wanted = self.values(self.first), self._few[1]
+        if every is None and len(some) > _FEWEST:
+            half = len(some) // 2
+            return self._run_at_once(some[:half]) + self._run_at_once(some[half:])
+        if every is None or own is None or every[0].size != wanted.size:
+            return []
+        values = every.reshape(len(every), *wanted.shape)
+        if self.case.quantity.name in ANY_ZERO:
+            values = values + (wanted[:1] - values[:, :1])
+        if not (np.abs(values[0] - own) <= self._near).all():
+            return []
+        placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k + 1]).all()]
+        return [(some[k], values[k + 1]) for k in placed]
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The likeliest first; of repairs of several lines the one that leaves more of them right.
