@@ -50,7 +50,8 @@ def slips_in(
         # all repairs of a text give one formula: the likeliest is told
         per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
         told = sum(len(found[0].kinds) for found in per_entry if found)
-        if sum(not found for found in per_entry) >= _PATIENCE or (not written and told > _FLOOD):
+        missed = sum(not found for found in per_entry)
+        if missed >= _PATIENCE or (not written and (missed or told > _FLOOD)):
             break
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)

@@ -49,7 +49,11 @@ _ALONE = 50_000_000
 """What may be done for single edits beside which none stands."""
 _FURTHER = 2000
 """Edits that are run all at once where there is no time to run each."""
-_AT_ONCE, _FEWEST = 500, 125
+_QUICK = 1000
+"""Edits that have been run alone by then, of programs of which lanes are worth the time."""
+_MORE_WORK, _WOVEN = 15_000_000, 7000
+"""Work that may be done for them; what putting one in amounts to."""
+_AT_ONCE, _FEWEST = 400, 200
 """How many of them at a time; as many are left out where one of them cannot be run."""
 _WEIGHED = 9000
 """Edits that are weighed, and may be tried."""
@@ -281,7 +285,9 @@ class LineSearch:
                     continue
                 self.work += self.cost_of(edit)
                 if self.work > (self.most if self.stand else _ALONE):
-                    found = found or self._in_lanes(tried[turn:][:_FURTHER])
+                    found = found or self._in_lanes(
+                        tried[turn:][: _FURTHER if turn > _QUICK else 0]
+                    )
                     break
                 try:
                     with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):
@@ -331,6 +337,8 @@ class LineSearch:
             return []
         found: list[ProgramRepair] = []
         for k in range(0, len(rest), _AT_ONCE):
+            if self.work > _ALONE + _MORE_WORK:
+                break
             for edit, values in self._run_at_once(rest[k : k + _AT_ONCE]):
                 self.tried.append((edit, values))
                 if self.right(values).all():
@@ -347,6 +355,7 @@ class LineSearch:
         except NoProgramError:
             return []
         every = lanes.answers(np.arange(-1, len(some))[:, None])
+        self.work += lanes.work + _WOVEN * len(some)
         own, wanted = self.values(self.first), self._few[1]
         if every is None and len(some) > _FEWEST:
             half = len(some) // 2
