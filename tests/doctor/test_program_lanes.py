@@ -210,7 +210,7 @@ def test_a_program_is_left_as_it_was() -> None:
 
 
 def test_a_place_within_a_place() -> None:
-    lanes = Lanes(np.array([[0, 1], [0, -1], [1, -1], [-1, -1]]))
+    lanes = Lanes(np.array([[0, 1], [0, -1], [1, -1], [-1, -1]]), 10**9)
     x = 3.0
 
     def inner():
@@ -221,7 +221,7 @@ def test_a_place_within_a_place() -> None:
 
 
 def test_lanes_that_would_go_another_way_are_lost() -> None:
-    lanes = Lanes(np.array([[0], [1], [-1], [-1]]))
+    lanes = Lanes(np.array([[0], [1], [-1], [-1]]), 10**9)
     value = lanes.pick((0, 1), lambda: 1.0, lambda edit: -1.0 if edit == 0 else 2.0)
     assert isinstance(value, Laned)
     assert value > 0

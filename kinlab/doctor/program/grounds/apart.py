@@ -185,7 +185,7 @@ class _Reader:
         unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
-            may = self._alike(one.value) if one.value else []
+            may = self._alike(one) if one.value else []
             own = may_be_of_one_arm(one.value)
             if may and (one.alone or own or one.given):
                 sure, left = self._as_called(may, label, one.place.part == DATA)
@@ -197,7 +197,8 @@ class _Reader:
             elif own:
                 self.whole = False
             elif may:
-                plain.append(one.value)
+                if not isinstance(one.place.value, int):  # a factor, a power
+                    plain.append(one.value)
             elif one.alone and isinstance(one.place.value, float) and not one.place.place:
                 self.whole = self.whole and named_at_will(one.value)
         unsure = 0
@@ -235,11 +236,14 @@ class _Reader:
             return digits - (name not in self.from_zero)
         return at[0] if at and name in self.listed else None
 
-    def _alike(self, value: float) -> list[int]:
-        """The cells of a value; of the opposite one where it is none's, or measured along d."""
+    def _alike(self, one: ProgramNumber) -> list[int]:
+        """The cells of a value; of the opposite one where it is none's, or measured along d.
+
+        A number of the text may have a sign in front.
+        """
         values = np.array([cell.value for cell in self.cells])
-        size, same = _close(values, value), _close(values, value, signed=True)
-        if same.any():
+        size, same = _close(values, one.value), _close(values, one.value, signed=True)
+        if same.any() and one.place.part == DATA:
             both = np.array([cell.which[0] in ("com1", "com2") for cell in self.cells])
             size &= same | both
         return [int(k) for k in np.flatnonzero(size)]

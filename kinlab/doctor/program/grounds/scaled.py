@@ -150,7 +150,13 @@ def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
 
 def named_at_will(value: float) -> bool:
     """Whether a number with a name need be nothing of an arm's."""
-    return abs(value) in _NOBODYS or _may_be_step(value)
+    return abs(value) in _NOBODYS or _may_be_step(value) or _turns_degrees(value)
+
+
+def _turns_degrees(value: float) -> bool:
+    """Whether a number is what degrees are multiplied with, or radians."""
+    parts = value * 180 / np.pi, value * np.pi / 180
+    return any(abs(abs(x) - 1) <= TOLERANCES.same_relation for x in parts)
 
 
 def own_rows(robot: Robot) -> list[Array]:
@@ -345,7 +351,7 @@ def may_be_of_one_arm(value: float) -> bool:
         return False
     parts = _PARTS * value, _PARTS * value / np.pi
     plain = any(abs(x - round(x)) <= TOLERANCES.same_relation * abs(x) for x in parts)
-    return not _may_be_step(value) and not plain
+    return not _may_be_step(value) and not plain and not _turns_degrees(value)
 
 
 def _among(value: float, known: Array) -> bool:

@@ -21,6 +21,10 @@ _EDIT = 800
 _PLAIN = (float, int, complex, bool)
 
 
+class TooMuchError(Exception):
+    """More work than may be done: a recursion with an edit in each call."""
+
+
 class LaneGroup:
     """Some of the lanes: all, or those of an edit.
 
@@ -86,15 +90,18 @@ class Lanes:
 
     Args:
         chosen: the numbers of the edits of each lane, (L, most); -1 for none.
+        most: work that may be done.
     """
 
-    def __init__(self, chosen: Any) -> None:
+    def __init__(self, chosen: Any, most: int) -> None:
         self.all = self.here = LaneGroup(chosen)
         self.lost = np.zeros(len(chosen), dtype=bool)
-        self.work = 0
+        self.work, self.most = 0, most
 
     def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]) -> Any:
         """What a place of the program gives: for the lanes of its edits what these make of it."""
+        if self.work > self.most:
+            raise TooMuchError
         here = self.here
         value = old()
         known = here.edits

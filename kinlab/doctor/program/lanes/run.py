@@ -11,11 +11,14 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.program.lanes.functions import with_lanes
-from kinlab.doctor.program.lanes.numbers import Laned, Lanes
+from kinlab.doctor.program.lanes.numbers import Laned, Lanes, TooMuchError
 from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.lanes.woven import Edits, Woven
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.trial import QUICK, FailedError, FieldChange, Trial, made
+
+_MOST = 60_000_000
+"""Work of one run."""
 
 
 class InLanes:
@@ -58,7 +61,7 @@ class InLanes:
         self._wide, self._data = _of_objects(trial, data)
         self.work = 0
 
-    def answers(self, chosen: Any, count: int | None = None) -> Array | None:
+    def answers(self, chosen: Any, count: int | None = None, most: int = _MOST) -> Array | None:
         """The numbers of the answers with these edits, (C, S, P); NaN where a lane was lost.
 
         None where the program does something that lanes cannot follow.
@@ -66,8 +69,9 @@ class InLanes:
         Args:
             chosen: the numbers of the edits of each lane, (C, most); -1 for none.
             count: how many of the states are asked; None for all.
+            most: work that may be done.
         """
-        lanes = Lanes(chosen)
+        lanes = Lanes(chosen, most)
         stacks: list[Any] = []
         try:
             with self._placed(lanes):
@@ -76,7 +80,7 @@ class InLanes:
                     entries = np.array(answer, dtype=object).ravel()
                     stacks.append([_full(entry, lanes) for entry in entries])
                 found = np.array(stacks)
-        except (FailedError, TypeError, ValueError):
+        except (FailedError, TooMuchError, TypeError, ValueError):
             return None
         finally:
             self.work += lanes.work

@@ -38,6 +38,8 @@ _LIKELY, _PRODUCT = 300, 250_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
+_BEYOND = 10_000_000
+"""What one run may take beyond what is left."""
 _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
 _FOR_THREES = 4
@@ -101,7 +103,7 @@ class TriedTogether:
     def _rows(self, chosen: Any, count: int | None) -> Array | None:
         """What edits change together, relative to the answer's size, (C, P)."""
         before = self.lanes.work
-        found = self.lanes.answers(chosen, count)
+        found = self.lanes.answers(chosen, count, _BEYOND + max(self.left, 0))
         self.left -= self.lanes.work - before
         if found is None:
             return None
