@@ -97,7 +97,9 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     found = [*numbers_of(trial, observed)]
     turned = twisted_by(table, found)
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
-    reader = _Reader(table.n, cells, _labels(trial), found)
+    every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
+    negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
+    reader = _Reader(table.n, cells, _labels(trial), found, negative)
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -153,6 +155,7 @@ class _Reader:
         cells: the arm's numbers.
         labels: the names of the numbers in a program's text.
         found: the program's numbers.
+        negative: the numbers in a program's text with a minus in front.
 
     Attributes:
         items: numbers, and what they may be.
@@ -168,8 +171,9 @@ class _Reader:
         cells: Sequence[_Cell],
         labels: dict[int, tuple[list[str], list[int]]],
         found: Sequence[ProgramNumber],
+        negative: set[int],
     ) -> None:
-        self.cells, self.labels = cells, labels
+        self.cells, self.labels, self.negative = cells, labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
         told = [self._label(one) for one in found]
@@ -237,13 +241,11 @@ class _Reader:
         return at[0] if at and name in self.listed else None
 
     def _alike(self, one: ProgramNumber) -> list[int]:
-        """The cells of a value; of the opposite one where it is none's, or measured along d.
-
-        A number of the text may have a sign in front.
-        """
+        """The cells of a value; of the opposite one where it is none's, or measured along d."""
+        value = -one.value if id(one.place.node) in self.negative else one.value
         values = np.array([cell.value for cell in self.cells])
-        size, same = _close(values, one.value), _close(values, one.value, signed=True)
-        if same.any() and one.place.part == DATA:
+        size, same = _close(values, value), _close(values, value, signed=True)
+        if same.any():
             both = np.array([cell.which[0] in ("com1", "com2") for cell in self.cells])
             size &= same | both
         return [int(k) for k in np.flatnonzero(size)]
