@@ -18,7 +18,7 @@ from kinlab.doctor.program.lanes.numbers import Laned, LaneGroup, Lanes
 _BODY = ast.Assign | ast.AugAssign | ast.If | ast.For | ast.Pass
 """Statements that may run for some lanes alone."""
 _LOST = ast.Yield | ast.YieldFrom | ast.NamedExpr | ast.Lambda
-_WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setdefault", "clear")
+WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setdefault", "clear")
 """Calls that change what they are called on, for all lanes."""
 
 
@@ -33,17 +33,17 @@ def may_run_apart(statement: ast.AST) -> bool:
             return False
         if isinstance(node, _LOST):
             return False
-        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in _WRITES:
+        if isinstance(node, ast.Call) and getattr(node.func, "attr", "") in WRITES:
             return False
     return True
 
 
 def apart(statement: Any, value: ast.expr) -> ast.expr:
     """What a statement sets, where it may run for some lanes alone."""
-    old: list[ast.expr] = []
+    given: list[ast.expr] = [function_of(value)]
     if isinstance(statement, ast.Assign):
-        old = [ast.Lambda(_NOTHING, loaded(statement.targets[0]))]
-    return ast.Call(ast.Name("_kept", ast.Load()), [ast.Lambda(_NOTHING, value), *old], [])
+        given.append(function_of(loaded(statement.targets[0])))
+    return ast.Call(ast.Name("_kept", ast.Load()), given, [])
 
 
 def loaded(target: ast.expr) -> ast.expr:
@@ -51,7 +51,10 @@ def loaded(target: ast.expr) -> ast.expr:
     return ast.parse(ast.unparse(target), mode="eval").body
 
 
-_NOTHING = ast.arguments([], [], None, [], [], None, [])
+def function_of(body: ast.expr, names: tuple[str, ...] = ()) -> ast.Lambda:
+    """A function that gives an expression."""
+    given = [ast.arg(name) for name in names]
+    return ast.Lambda(ast.arguments([], given, None, [], [], None, []), body)
 
 
 class Ways:
@@ -81,11 +84,12 @@ class Ways:
             before = [counter()]
         except NameError:
             before = []
+        only, last = outer, before
         for given in self._each(edits, old, new):
             values = [*given]
             yield from values
             only, last = self.only, values
-        if before and not len(last) and only is not outer:
+        if before and not last and only is not outer:
             self.only = LaneGroup(None, np.empty(0, dtype=int))
             yield before[0]
             self.only = outer

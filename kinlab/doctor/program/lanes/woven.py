@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
-from kinlab.doctor.program.lanes.ways import apart, loaded, may_run_apart
+from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
@@ -27,8 +27,6 @@ _COUNTS = ("range", "len", "isinstance", "sorted", "map", "next")
 """Calls that no number with lanes can be given."""
 _RUNS = ("enumerate", "zip", "reversed")
 """Calls that give what they are given one after another."""
-_WRITES = ("append", "extend", "insert", "pop", "update", "add", "remove", "setdefault", "clear")
-"""Calls that change what they are called on."""
 _EDIT = "_edit"
 _LISTS = ast.ListComp | ast.SetComp | ast.GeneratorExp
 
@@ -89,13 +87,9 @@ class Woven:
 
     def _put_apart(self, number: int, change: FieldChange) -> bool:
         """Puts an edit of what a loop runs over, or of a condition, where that is asked."""
-        holder, field, new = change.holder, change.field, change.new
-        if isinstance(holder, list):
-            if id(holder) not in self._lists:
-                return False
-            spot: Spot = (*self._lists[id(holder)], field)
-        else:
-            spot = (holder, field, None)
+        spot, new = self._place(change), change.new
+        if spot is None:
+            return False
         while isinstance(spot[0], ast.expr) and id(spot[0]) in self._above:
             _now, new, spot = self._outside(spot, new)
         statement, name, _k = spot
@@ -137,15 +131,19 @@ class Woven:
 
     # -------- Where an edit is asked
 
+    def _place(self, change: FieldChange) -> Spot | None:
+        """The place that an edit changes; None of a list that is none of the trees'."""
+        if not isinstance(change.holder, list):
+            return change.holder, change.field, None
+        if id(change.holder) not in self._lists:
+            return None
+        return *self._lists[id(change.holder)], change.field
+
     def _spot(self, change: FieldChange) -> tuple[Spot, ast.expr] | None:
         """The expression that an edit changes, and what that becomes; None without one."""
-        holder, field, new = change.holder, change.field, change.new
-        if isinstance(holder, list):
-            if id(holder) not in self._lists:
-                return None
-            spot: Spot = (*self._lists[id(holder)], field)
-        else:
-            spot = (holder, field, None)
+        spot, new = self._place(change), change.new
+        if spot is None:
+            return None
         now = _at(spot)
         if isinstance(now, ast.stmt):
             return self._of_statement(now, new)
@@ -167,7 +165,7 @@ class Woven:
         if top is None or not isinstance(new, ast.expr):
             return None
         parts = [*nodes(new), *nodes(_at(spot))]
-        writes = any(isinstance(node, ast.Call) and called(node) in _WRITES for node in parts)
+        writes = any(isinstance(node, ast.Call) and called(node) in WRITES for node in parts)
         return None if writes else (spot, new)
 
     def _outside(self, spot: Spot, new: Any) -> tuple[ast.AST, ast.AST, Spot]:
@@ -283,10 +281,10 @@ class Woven:
         looped = isinstance(statement, ast.For)
         name = "iter" if looped else "test"
         numbers: Any = tuple(number for number, _new in ways)
-        given = [ast.Constant(numbers), _lambda(getattr(other, name)),
-                 _lambda(_chosen(ways), (_EDIT,))]  # fmt: skip
+        given = [ast.Constant(numbers), function_of(getattr(other, name)),
+                 function_of(_chosen(ways), (_EDIT,))]  # fmt: skip
         if isinstance(statement, ast.For):
-            given.append(_lambda(loaded(statement.target)))
+            given.append(function_of(loaded(statement.target)))
         call = ast.Call(ast.Name("_turns" if looped else "_sides", ast.Load()), given, [])
         setattr(other, name, call if looped else ast.Name("_yes", ast.Load()))
         if not looped:
@@ -325,12 +323,12 @@ class Woven:
             new = _chosen([(number, self._inside(new, scope, asked)) for number, new in edited])
             given = [
                 ast.Constant(numbers),
-                _lambda(self._inside(node, scope, asked)),
-                _lambda(new, (_EDIT,)),
+                function_of(self._inside(node, scope, asked)),
+                function_of(new, (_EDIT,)),
             ]
             call = ast.Call(ast.Name("_pick", ast.Load()), given, [])
             target = ast.Name(label, ast.Store())
-            asked[key] = (ast.Assign([target], _lambda(call, scope)), label, scope)
+            asked[key] = (ast.Assign([target], function_of(call, scope)), label, scope)
         _statement, label, own = asked[key]
         if not {*own} <= {*scope}:
             raise NoProgramError("an expression that stands in two places")
@@ -398,7 +396,7 @@ def _permuted(value: ast.expr, names: list[ast.expr], other: list[ast.expr]) -> 
     entries: list[ast.expr] = [
         ast.Subscript(given, ast.Constant(other.index(one)), ast.Load()) for one in names
     ]
-    return ast.Call(_lambda(ast.Tuple(entries, ast.Load()), ("_given",)), [value], [])
+    return ast.Call(function_of(ast.Tuple(entries, ast.Load()), ("_given",)), [value], [])
 
 
 def _chosen(edited: list[tuple[int, ast.expr]]) -> ast.expr:
@@ -414,8 +412,3 @@ def _at(spot: Spot) -> Any:
     parent, name, k = spot
     value = getattr(parent, name)
     return value if k is None else value[k]
-
-
-def _lambda(body: ast.expr, names: tuple[str, ...] = ()) -> ast.Lambda:
-    given = [ast.arg(name) for name in names]
-    return ast.Lambda(ast.arguments([], given, None, [], [], None, []), body)
