@@ -10,6 +10,7 @@ from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes
 from kinlab.doctor.program.lanes.run import InLanes
+from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
@@ -278,3 +279,13 @@ def f(q):
     with quietly():
         _lanes, close, _lost = singly(search, tried)
     assert close.sum() > 0.8 * len(tried)
+
+
+def test_a_loop_that_no_lane_runs_through() -> None:
+    lanes = Lanes(np.array([[0]]), 10**9)
+
+    def no_range(_edit):
+        raise ValueError
+
+    assert [*Ways(lanes).turns((0,), lambda: range(3), no_range, lambda: 2)] == []
+    assert lanes.lost.all()

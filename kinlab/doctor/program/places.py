@@ -106,6 +106,15 @@ def with_other(node: Any, field: str, k: int | None, new: Any) -> Any:
     return other
 
 
+def paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """What an assignment sets, each with its value: ``a, b = 1, 2`` sets two."""
+    if isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for one, part in zip(target.elts, value.elts, strict=False):
+            yield from paired(one, part)
+    else:
+        yield target, value
+
+
 def called(node: ast.Call) -> str:
     """The last name of what is called: ``cross`` of ``np.cross``."""
     target = node.func

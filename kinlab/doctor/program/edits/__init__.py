@@ -7,6 +7,8 @@ module            what it holds
 ``as_the_arm``    The numbers of a program as the arm's table has them
 ``blocks``        Statements in other places: earlier or later, in a loop or behind it, one that is
                   missing
+``chains``        Sums and products of a program otherwise: their parentheses, a factor of another
+                  term
 ``composites``    What is missing of several names at once: a cross product, a moment about another
                   axis
 ``data``          The numbers of a program: those in its text, and those in the data that it uses

@@ -10,8 +10,9 @@ from types import ModuleType
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired
 from kinlab.doctor.program.trial import Trial
 
 ANGLES = ("sin", "cos", "tan")
@@ -168,9 +169,9 @@ class Scope:
             return
         known = self.pieces.setdefault(seen.shape, {})
         own = known[text] = known.get(text) or copied(node)
-        bare = _without_numbers(node) if seen.shape == () else None
+        bare = without_numbers(node) if seen.shape == () else None
         if bare is not None:
-            known.setdefault(ast.unparse(bare), bare)
+            known.setdefault(ast.unparse(bare), copied(bare))
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
 
@@ -271,25 +272,6 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _scalars(here, scope, summand or whole or below, operated)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
-
-
-def _without_numbers(node: ast.expr) -> ast.expr | None:
-    """A product without the numbers in it: ``h*c`` of ``2*h*c``; None where it has none."""
-    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
-        return None
-    factors: list[ast.expr] = []
-    inner: ast.expr = node
-    while isinstance(inner, ast.BinOp) and isinstance(inner.op, ast.Mult):
-        factors.insert(0, inner.right)
-        inner = inner.left
-    factors.insert(0, inner)
-    rest = [copied(one) for one in factors if not isinstance(one, ast.Constant)]
-    if len(rest) == len(factors) or len(rest) < 2:
-        return None
-    found = rest[0]
-    for one in rest[1:]:
-        found = ast.BinOp(found, ast.Mult(), one)
-    return found
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
@@ -492,11 +474,9 @@ def _whole(node: ast.AST, observed: Observed) -> bool:
 
 def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
     """The names that an assignment sets, each with its value."""
-    if isinstance(target, ast.Name):
-        yield target.id, value
-    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        for one, part in zip(target.elts, value.elts, strict=False):
-            yield from _set(one, part)
+    for one, part in paired(target, value):
+        if isinstance(one, ast.Name):
+            yield one.id, part
 
 
 def _unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:

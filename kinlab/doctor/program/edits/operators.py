@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations, permutations
 from typing import Any
 
+from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
 from kinlab.doctor.program.edits.data import measured
 from kinlab.doctor.program.observed import Observed
@@ -15,8 +16,6 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")
 """Functions whose numbers are no quantities."""
-_SUMS = (ast.Add, ast.Sub)
-_PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
 _FEW = 8
 """Attributes and keys among which a wrong one is looked for early."""
 _LONGEST = 6
@@ -42,15 +41,15 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.instead(alone, extra, 1.1)
         if index:
             return
-        for new in _together(node):
+        for new in chains.together(node):
             yield here.instead(new, "parentheses", 1.09)
-        for new in _multiplied(node):
+        for new in chains.multiplied(node):
             yield here.instead(new, "operator", 1.12)
-        for new in _squared(node):
+        for new in chains.squared(node):
             yield here.instead(new, "parentheses", 1.13)
-        for new in _crosswise(node):
+        for new in chains.crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
-        for new in _called_once(left, op, right):
+        for new in chains.called_once(node):
             yield here.instead(new, "parentheses", 1.14)
         for side, inner in (("left", left), ("right", right)):
             if isinstance(inner, ast.Call) and side == "left" and len(inner.args) == 1:
@@ -60,7 +59,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             # a - b + c for a - (b + c)
             rest = ast.BinOp(left.right, op, right)
             yield here.instead(ast.BinOp(left.left, left.op, rest), "parentheses", 1.2)
-    elif isinstance(op, _PRODUCTS):
+    elif isinstance(op, chains.PRODUCTS):
         for outer, sum_, name in ((left, right, "right"), (right, left, "left")):
             if isinstance(sum_, ast.BinOp) and isinstance(sum_.op, ast.Add | ast.Sub):
                 # a*(b + c) for a*b + c
@@ -91,8 +90,10 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             if square and isinstance(left, ast.Constant) and left.value == 2:
                 across = ast.Attribute(right, "T", ast.Load())
                 yield here.instead(ast.BinOp(right, ast.Add(), across), "transposed", 1.08)
-            if not (isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, _PRODUCTS)):
-                for new in _added(node):
+            if not (
+                isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, chains.PRODUCTS)
+            ):
+                for new in chains.added(node):
                     yield here.instead(new, "operator", 1.16)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Div):
                 below = ast.BinOp(left.right, ast.Mult(), right)
@@ -114,112 +115,6 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
-
-
-_Factors = list[tuple[ast.operator, ast.expr]]
-"""Terms or factors, each with the operator before it."""
-
-
-def _together(node: ast.BinOp) -> Iterator[ast.expr]:
-    """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
-    head, terms = _chain(node, _SUMS)
-    for i in range(len(terms)):
-        # of the terms from the i-th to the last, a factor of the first belongs to all
-        first, factors = _chain(terms[i - 1][1] if i else head, _PRODUCTS)
-        for k, (by, factor) in enumerate(factors):
-            if isinstance(by, ast.Mult | ast.MatMult):
-                inner = _times(_times(factor, factors[k + 1 :]), terms[i:])
-                whole: ast.expr = ast.BinOp(_times(first, factors[:k]), by, inner)
-                yield _times(head, [*terms[: i - 1], (terms[i - 1][0], whole)]) if i else whole
-    op, last = terms[-1]
-    first, factors = _chain(last, _PRODUCTS)
-    for k in range(len(factors)):
-        before, after = _times(first, factors[:k]), factors[k:]
-        yield _times(ast.BinOp(node.left, op, before), after)
-        if len(terms) > 1:
-            inner = _times(ast.BinOp(terms[-2][1], op, before), after)
-            yield _times(head, [*terms[:-2], (terms[-2][0], inner)])
-
-
-def _multiplied(node: ast.BinOp) -> Iterator[ast.expr]:
-    """Two terms of a sum as a product: ``a + b*c`` for ``a + b + c``."""
-    head, terms = _chain(node, _SUMS)
-    for k, (_op, term) in enumerate(terms):
-        before = terms[k - 1][1] if k else head
-        factor, rest = _chain(term, _PRODUCTS)
-        whole = _times(ast.BinOp(before, ast.Mult(), factor), rest)
-        joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
-        yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
-
-
-def _squared(node: ast.BinOp) -> Iterator[ast.expr]:
-    """Two squares of a sum as the square of one: ``(a + b)**2`` for ``a**2 + b**2``."""
-    head, terms = _chain(node, _SUMS)
-    each = [head, *(term for _op, term in terms)]
-    for k, (op, term) in enumerate(terms):
-        one, other = (x if isinstance(x, ast.BinOp) else None for x in (each[k], term))
-        if one and other and isinstance(one.op, ast.Pow) and isinstance(other.op, ast.Pow):
-            whole = ast.BinOp(ast.BinOp(one.left, op, other.left), other.op, other.right)
-            joined = [*terms[: k - 1], (terms[k - 1][0], whole)] if k else []
-            yield _times(head if k else whole, [*joined, *terms[k + 1 :]])
-
-
-def _called_once(left: ast.expr, op: ast.operator, right: ast.expr) -> Iterator[ast.expr]:
-    """A function of a sum for a sum of it: ``cos(a + b)`` for ``cos(a) + cos(b)``."""
-    if isinstance(left, ast.Call) and isinstance(right, ast.Call):
-        same = ast.dump(left.func) == ast.dump(right.func)
-        if same and len(left.args) == len(right.args) == 1:
-            yield ast.Call(left.func, [ast.BinOp(left.args[0], op, right.args[0])], left.keywords)
-
-
-def _crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
-    """One factor each of two terms for one another: ``a*d + c*b`` for ``a*b + c*d``."""
-    head, terms = _chain(node, _SUMS)
-    op, last = terms[-1]
-    before = terms[-2][1] if len(terms) > 1 else head
-    one, other = _chain(before, _PRODUCTS), _chain(last, _PRODUCTS)
-    if len(one[1]) != len(other[1]) or not one[1]:
-        return
-    for k, (factor, instead) in enumerate(zip(_factors(one), _factors(other), strict=True)):
-        if ast.dump(factor) != ast.dump(instead):
-            first, tail = _with_factor(one, k, instead), _with_factor(other, k, factor)
-            rest = [*terms[:-2], (terms[-2][0], first)] if len(terms) > 1 else []
-            yield _times(head if rest else first, [*rest, (op, tail)])
-
-
-def _factors(chain: tuple[ast.expr, _Factors]) -> list[ast.expr]:
-    return [chain[0], *(factor for _op, factor in chain[1])]
-
-
-def _with_factor(chain: tuple[ast.expr, _Factors], k: int, new: ast.expr) -> ast.expr:
-    first, others = chain
-    if not k:
-        return _times(new, others)
-    return _times(first, [*others[: k - 1], (others[k - 1][0], new), *others[k:]])
-
-
-def _added(node: ast.BinOp) -> Iterator[ast.expr]:
-    """A product as a sum of two: ``a + b*c`` for ``a*b*c``."""
-    head, factors = _chain(node, _PRODUCTS)
-    for k, (op, factor) in enumerate(factors):
-        if isinstance(op, ast.Mult):
-            last = _times(factor, factors[k + 1 :])
-            yield ast.BinOp(_times(head, factors[:k]), ast.Add(), last)
-
-
-def _chain(node: ast.expr, ops: tuple[type[ast.operator], ...]) -> tuple[ast.expr, _Factors]:
-    """A sum or product as its first part and the others, each with its operator."""
-    others: _Factors = []
-    while isinstance(node, ast.BinOp) and isinstance(node.op, ops):
-        others.insert(0, (node.op, node.right))
-        node = node.left
-    return node, others
-
-
-def _times(first: ast.expr, others: _Factors) -> ast.expr:
-    for op, factor in others:
-        first = ast.BinOp(first, op, factor)
-    return first
 
 
 def _turned(here: Here) -> Iterator[ProgramEdit]:

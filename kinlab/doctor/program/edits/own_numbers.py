@@ -78,7 +78,7 @@ def _meant(
     if own:
         if place.part == DATA and not place.place:
             return  # a name for one of the arm's numbers
-    elif size in _PLAIN or _GRAVITY[0] < size < _GRAVITY[1] or size <= TOLERANCES.may_be_step:
+    elif size in _PLAIN or may_be_gravity(size) or size <= TOLERANCES.may_be_step:
         return
     cost = 1.12 if own else 1.1
     for kind, known in kinds.items():
@@ -109,6 +109,11 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
             for more in (ast.Add(), ast.Sub()):
                 edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.14)
                 yield replace(edit, of_the_arm=True)
+
+
+def may_be_gravity(value: float) -> bool:
+    """Whether a number is rather the acceleration of gravity, to some digits."""
+    return _GRAVITY[0] < value < _GRAVITY[1]
 
 
 def among(value: float, known: Sequence[float]) -> bool:

@@ -32,7 +32,7 @@ from kinlab.doctor.program.grounds.scaled import (
     twisted_by,
 )
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA
+from kinlab.doctor.program.places import DATA, paired
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
@@ -451,9 +451,6 @@ def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:
                     named(default, [argument.arg], [])
             elif isinstance(node, ast.Assign):
                 for target in node.targets:
-                    both: Any = [(target, node.value)]
-                    if isinstance(target, ast.Tuple) and isinstance(node.value, ast.Tuple):
-                        both = zip(target.elts, node.value.elts, strict=False)
-                    for one, value in both:
+                    for one, value in paired(target, node.value):
                         named(value, [getattr(one, "id", getattr(one, "attr", ""))], [])
     return found

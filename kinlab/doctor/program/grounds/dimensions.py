@@ -18,11 +18,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.additions import ANGLES, ARCS
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
-from kinlab.doctor.program.edits.own_numbers import among, sizes_of
+from kinlab.doctor.program.edits.own_numbers import among, may_be_gravity, sizes_of
 from kinlab.doctor.program.grounds.called import kinds_called
+from kinlab.doctor.program.grounds.scaled import unused
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, with_other
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, paired, with_other
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
@@ -39,12 +41,8 @@ _BY = {
 _MEANT = {"length": "length", "centre": "length", "mass": "mass", "moment": "moment",
           "kept": "gravity"}  # fmt: skip
 """What a number is that is called so."""
-_GRAVITY = (9.7, 9.9)
 _PARTS = 12
 """Denominator of fractions that have no dimension."""
-_FACTORS = (0.25, 0.5, 1.0, 2.0, 3.0, 4.0)
-"""Numbers that may be factors wherever they stand."""
-_PLAIN = ("sin", "cos", "tan", "arctan2", "atan2", "arccos", "acos", "arcsin", "asin")
 _SAME = ("abs", "array", "asarray", "float", "sum", "negative", "copy", "ravel", "diag")
 _STATEMENTS = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
 _FAR, LIKE = 1.2, 0.12
@@ -119,13 +117,12 @@ class Dimensions:
         return found
 
     def _sound(self, node: ast.AST) -> bool:
-        if isinstance(node, ast.Call) and called(node) in _PLAIN[:3] and node.args:
+        if isinstance(node, ast.Call) and called(node) in ANGLES and node.args:
             return _alike(self.of(node.args[0]), 0.0)
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
             return _alike(self.of(node.left), self.of(node.right))
         if isinstance(node, ast.Return) and self._alike:
-            value = node.value
-            inner = value.args[0] if isinstance(value, ast.Call) and _is_array(value) else value
+            inner = _listed(node.value)
             if isinstance(inner, ast.List | ast.Tuple):
                 told = [x for x in map(self.of, inner.elts) if x is not None]
                 return all(_alike(told[0], x) for x in told)
@@ -192,9 +189,9 @@ class Dimensions:
     def _of_call(self, node: ast.Call) -> float | None:
         name = called(node)
         given = [self._of_new(one) for one in node.args]
-        if name in _PLAIN:
-            if name in _PLAIN[:3] and given and not _alike(given[0], 0.0):
-                raise _ApartError
+        if name in ANGLES and given and not _alike(given[0], 0.0):
+            raise _ApartError
+        if name in (*ANGLES, *ARCS):
             return 0.0
         if name in ("cross", "dot", "outer") and len(given) == 2:
             return None if None in given else sum(x for x in given if x is not None)
@@ -224,8 +221,10 @@ def _alike(one: float | None, other: float | None) -> bool:
     return one is None or other is None or abs(one - other) <= TOLERANCES.tried_further
 
 
-def _is_array(node: ast.AST) -> bool:
-    return isinstance(node, ast.Call) and called(node) in ("array", "asarray") and bool(node.args)
+def _listed(node: Any) -> Any:
+    """What an array is made of; of anything else itself."""
+    array = isinstance(node, ast.Call) and called(node) in ("array", "asarray") and node.args
+    return node.args[0] if array else node
 
 
 def _ratio(one: Seen, other: Seen) -> float | None:
@@ -288,9 +287,8 @@ def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[Pr
 
 def _unused(trial: Trial) -> Iterator[NumberPlace]:
     """Numbers of the module that nothing uses: an edit may."""
-    used = {*trial.program.data, *trial.sets}
-    for name, value in trial.program.space.items():
-        if name not in used and type(value) in (int, float):
+    for name in unused(trial):
+        if type(trial.space[name]) in (int, float):
             yield from leaves_of(trial, name)
 
 
@@ -300,19 +298,10 @@ def _named(trial: Trial) -> dict[int, str]:
     for tree in trial.trees:
         for node in nodes(tree):
             if isinstance(node, ast.Assign):
-                for name, value in _given(node.targets[0], node.value):
-                    found |= {id(one): name for one in _alone(value)}
+                for target, value in paired(node.targets[0], node.value):
+                    name = getattr(target, "id", getattr(target, "attr", None))
+                    found |= {id(one): name for one in _alone(value) if name is not None}
     return found
-
-
-def _given(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
-    if isinstance(target, ast.Name):
-        yield target.id, value
-    elif isinstance(target, ast.Attribute):
-        yield target.attr, value
-    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
-        for one, part in zip(target.elts, value.elts, strict=False):
-            yield from _given(one, part)
 
 
 def _alone(value: ast.expr) -> Iterator[ast.expr]:
@@ -322,10 +311,10 @@ def _alone(value: ast.expr) -> Iterator[ast.expr]:
     elif isinstance(value, ast.List | ast.Tuple):
         for one in value.elts:
             yield from _alone(one)
-    elif _is_array(value) and isinstance(value, ast.Call):
-        yield from _alone(value.args[0])
     elif isinstance(value, ast.Constant):
         yield value
+    elif _listed(value) is not value:
+        yield from _alone(_listed(value))
 
 
 def _kind(
@@ -334,13 +323,13 @@ def _kind(
     """What a number is; ``"none"`` of what has no dimension, None where that is not told."""
     size = abs(float(place.value))
     may = [kind for kind, known in kinds.items() if among(size, known)]
-    may += ["gravity"] if _GRAVITY[0] < size < _GRAVITY[1] else []
+    may += ["gravity"] if may_be_gravity(size) else []
     name = place.node if place.part == DATA else named.get(id(place.node))
     keys = [key for key in place.place if isinstance(key, str)]
     told = _told_by(keys[-1].lstrip(".") if keys else name or "")
-    plain = size in _FACTORS or not size or among(size, sorted(angles)) or _is_simple(size)
     if not size:
         return "none"
+    plain = among(size, sorted(angles)) or _is_simple(size)
     if isinstance(place.value, int) and name is None and not keys:
         return "none"  # in the middle of a formula
     if told in may:

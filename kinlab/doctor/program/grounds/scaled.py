@@ -133,11 +133,9 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if not ways:
         return None
     larger = _scaled(table, twisted)
-    return (
-        None
-        if larger is None
-        else OtherArm(larger, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
-    )
+    if larger is None:
+        return None
+    return OtherArm(larger, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
 
 
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
@@ -204,8 +202,8 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
-    unused = (leaf for name in _unused(trial) for leaf in leaves_of(trial, name))
-    for place in (*numbers(trial, observed), *_defaults(trial), *unused):
+    idle = (leaf for name in unused(trial) for leaf in leaves_of(trial, name))
+    for place in (*numbers(trial, observed), *_defaults(trial), *idle):
         whole = below.get(id(place.node))
         if place.value and whole is not None:
             yield ProgramNumber(place, np.pi / place.value, True, below=True)
@@ -225,7 +223,7 @@ def _defaults(trial: Trial) -> Iterator[NumberPlace]:
                 yield NumberPlace(given.value, part, given, "value", given)
 
 
-def _unused(trial: Trial) -> list[str]:
+def unused(trial: Trial) -> list[str]:
     """Names of numbers of the module that a slip has left unused: a repair may use them again."""
     used = {*trial.program.data, *trial.sets}
     known = trial.program.space.items()

@@ -1,0 +1,124 @@
+"""Sums and products of a program otherwise: their parentheses, a factor of another term."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator, Sequence
+
+SUMS = (ast.Add, ast.Sub)
+PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
+
+Others = Sequence[tuple[ast.operator, ast.expr]]
+"""Terms or factors, each with the operator before it."""
+Chain = tuple[ast.expr, Others]
+"""A sum or product: its first member, and the others."""
+
+
+def chain(node: ast.expr, ops: tuple[type[ast.operator], ...]) -> Chain:
+    """A sum or product as its first member and the others."""
+    others: list[tuple[ast.operator, ast.expr]] = []
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ops):
+        others.insert(0, (node.op, node.right))
+        node = node.left
+    return node, others
+
+
+def members(of: Chain) -> list[ast.expr]:
+    """Its terms or factors without their operators."""
+    return [of[0], *(member for _op, member in of[1])]
+
+
+def joined(first: ast.expr, others: Others) -> ast.expr:
+    """The expression of a chain."""
+    for op, member in others:
+        first = ast.BinOp(first, op, member)
+    return first
+
+
+def together(node: ast.BinOp) -> Iterator[ast.expr]:
+    """``a*(b + c)`` and ``(a + b)*c`` of sums in which the parentheses are left out."""
+    head, terms = chain(node, SUMS)
+    for i in range(len(terms)):
+        # of the terms from the i-th to the last, a factor of the first belongs to all
+        first, factors = chain(terms[i - 1][1] if i else head, PRODUCTS)
+        for k, (by, factor) in enumerate(factors):
+            if isinstance(by, ast.Mult | ast.MatMult):
+                inner = joined(joined(factor, factors[k + 1 :]), terms[i:])
+                whole = ast.BinOp(joined(first, factors[:k]), by, inner)
+                yield _with((head, terms[:i]), i, whole)
+    op, last = terms[-1]
+    first, factors = chain(last, PRODUCTS)
+    for k in range(len(factors)):
+        before, after = joined(first, factors[:k]), factors[k:]
+        yield joined(ast.BinOp(node.left, op, before), after)
+        if len(terms) > 1:
+            inner = joined(ast.BinOp(terms[-2][1], op, before), after)
+            yield _with((head, terms[:-1]), len(terms) - 1, inner)
+
+
+def multiplied(node: ast.BinOp) -> Iterator[ast.expr]:
+    """Two terms of a sum as a product: ``a + b*c`` for ``a + b + c``."""
+    head, terms = chain(node, SUMS)
+    for k, (before, (_op, term)) in enumerate(zip(members((head, terms)), terms, strict=False)):
+        factor, rest = chain(term, PRODUCTS)
+        whole = joined(ast.BinOp(before, ast.Mult(), factor), rest)
+        yield _with((head, [*terms[:k], *terms[k + 1 :]]), k, whole)
+
+
+def squared(node: ast.BinOp) -> Iterator[ast.expr]:
+    """Two squares of a sum as the square of one: ``(a + b)**2`` for ``a**2 + b**2``."""
+    head, terms = chain(node, SUMS)
+    for k, (before, (op, term)) in enumerate(zip(members((head, terms)), terms, strict=False)):
+        one, other = (x if isinstance(x, ast.BinOp) else None for x in (before, term))
+        if one and other and isinstance(one.op, ast.Pow) and isinstance(other.op, ast.Pow):
+            whole = ast.BinOp(ast.BinOp(one.left, op, other.left), other.op, other.right)
+            yield _with((head, [*terms[:k], *terms[k + 1 :]]), k, whole)
+
+
+def crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
+    """One factor each of the last two terms for one another: ``a*d + c*b`` for ``a*b + c*d``."""
+    head, terms = chain(node, SUMS)
+    *_, before, last = members((head, terms))
+    one, other = chain(before, PRODUCTS), chain(last, PRODUCTS)
+    if len(one[1]) != len(other[1]) or not one[1]:
+        return
+    for k, (factor, instead) in enumerate(zip(members(one), members(other), strict=True)):
+        if ast.dump(factor) != ast.dump(instead):
+            tail = (terms[-1][0], _with(other, k, factor))
+            yield _with((head, [*terms[:-1], tail]), len(terms) - 1, _with(one, k, instead))
+
+
+def called_once(node: ast.BinOp) -> Iterator[ast.expr]:
+    """A function of a sum for a sum of it: ``cos(a + b)`` for ``cos(a) + cos(b)``."""
+    left, right = node.left, node.right
+    if isinstance(left, ast.Call) and isinstance(right, ast.Call):
+        same = ast.dump(left.func) == ast.dump(right.func)
+        if same and len(left.args) == len(right.args) == 1:
+            whole = ast.BinOp(left.args[0], node.op, right.args[0])
+            yield ast.Call(left.func, [whole], left.keywords)
+
+
+def added(node: ast.BinOp) -> Iterator[ast.expr]:
+    """A product as a sum of two: ``a + b*c`` for ``a*b*c``."""
+    head, factors = chain(node, PRODUCTS)
+    for k, (op, factor) in enumerate(factors):
+        if isinstance(op, ast.Mult):
+            last = joined(factor, factors[k + 1 :])
+            yield ast.BinOp(joined(head, factors[:k]), ast.Add(), last)
+
+
+def without_numbers(node: ast.expr) -> ast.expr | None:
+    """A product without the numbers in it: ``h*c`` of ``2*h*c``; None where it has none."""
+    factors = members(chain(node, (ast.Mult,)))
+    rest = [one for one in factors if not isinstance(one, ast.Constant)]
+    if len(rest) == len(factors) or len(rest) < 2:
+        return None
+    return joined(rest[0], [(ast.Mult(), one) for one in rest[1:]])
+
+
+def _with(of: Chain, k: int, new: ast.expr) -> ast.expr:
+    """A chain with something else as its k-th member."""
+    first, others = of
+    if not k:
+        return joined(new, others)
+    return joined(first, [*others[: k - 1], (others[k - 1][0], new), *others[k:]])
