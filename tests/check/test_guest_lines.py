@@ -34,20 +34,20 @@ def trap(q):
     return np.array([np.tanh(q[0])])
 
 @kl.hand_formula("gravity_torques", robot="single_link")
-def endless(q):
-    time.sleep(60)
-
-@kl.hand_formula("gravity_torques", robot="single_link")
 def wave(q):
     return np.array([m1 * g0 * lc1 * np.sin(q[0])])
 """
+ENDLESS = """
+@kl.hand_formula("gravity_torques", robot="single_link")
+def endless(q):
+    time.sleep(60)
+"""
 SIGN = "line 8, the sign is wrong: `outer = 1.5*g0*0.4*np.cos(q[0] - q[1])` should be "
-WAVE = "line 24, sine and cosine are exchanged"
+WAVE = "line 20, sine and cosine are exchanged"
 
 
 @pytest.fixture
-def file(tmp_path, monkeypatch):
-    monkeypatch.setenv("KINLAB_CHECK_SECONDS", "2")
+def file(tmp_path):
     (tmp_path / "mine.py").write_text(FILE, encoding="utf-8")
     return tmp_path / "mine.py"
 
@@ -59,8 +59,15 @@ def test_lines_are_told_and_a_lost_process_costs_its_own_only(file, capfd):
     assert rows["sign"]["causes"][0]["places"] == ["line 8"]
     assert "trapped" in capfd.readouterr().err  # an edit led there
     assert rows["trap"]["verdict"] == "differs, cause unknown"
-    assert rows["endless"] is None
     assert rows["wave"]["causes"][0]["sentence"].startswith(WAVE)
+
+
+def test_a_function_without_end_is_not_asked_for_its_lines(file, monkeypatch):
+    monkeypatch.setenv("KINLAB_CHECK_SECONDS", "2")
+    file.write_text(FILE.split("@kl")[0] + ENDLESS, encoding="utf-8")
+    done = kinlab("check", file, "--samples", "10", "--json", cwd="/")
+    (row,) = json.loads(done.stdout)["rows"]
+    assert "did not come back within 2 s" in str(row) and row["diagnosis"] is None
 
 
 def test_the_sentences_are_in_the_language_of_the_asker(file):

@@ -111,10 +111,10 @@ def test_nothing_is_guessed() -> None:
      "((((9**6)**6)**6)**6)**6"],
 )  # fmt: skip
 def test_hostile_text_is_refused_at_once(text: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ExpressionError):
         parse(text)
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
 
 
 def test_hostile_files_and_messages(tmp_path: Path) -> None:

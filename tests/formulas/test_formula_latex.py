@@ -55,10 +55,10 @@ def test_means_the_same_as_the_text(latex, text):
     ],
 )  # fmt: skip
 def test_anything_else_is_refused_at_once(latex, message):
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(ExpressionError, match=message):
         parse(expression(latex, "here"), "here")
-    assert time.perf_counter() - start < 1.0
+    assert time.process_time() - start < 1.0
 
 
 def test_in_a_file(tmp_path):

@@ -198,9 +198,25 @@ class LineSearch:
         chosen = list(which)
         return [stack[chosen] for stack in self.case.arguments.values()], self.wanted[chosen]
 
-    def _prepare(self) -> None:
+    def states_at(self, which: Sequence[int]) -> list[tuple[Array, ...]]:
+        """Some states, each as the arguments of one call."""
         stacks = self.case.arguments.values()
-        self.states = [tuple(stack[k].copy() for stack in stacks) for k in self.watched]
+        return [tuple(stack[k].copy() for stack in stacks) for k in which]
+
+    def from_right_zero(self, values: Array, wanted: Array) -> Array:
+        """A potential's answers moved to the right zero; others as they are.
+
+        Args:
+            values: at some states, or stacks of these.
+            wanted: what is right there.
+        """
+        if self.case.quantity.name not in ANY_ZERO:
+            return values
+        firsts = np.take(values, [0], axis=values.ndim - wanted.ndim)
+        return np.asarray(values + (wanted[:1] - firsts))
+
+    def _prepare(self) -> None:
+        self.states = self.states_at(self.watched)
         self.known: list[Glossary] = []
         if table_of(self.case.robot) is not None:
             given = self.case.arguments.items()
@@ -234,8 +250,7 @@ class LineSearch:
             own, hand = self.values(self.watched), self.case.hand[self.watched]
         if own is None or own.shape != hand.shape:
             return False
-        if self.case.quantity.name in ANY_ZERO:
-            hand = hand + (self.wanted[:1] - hand[:1])
+        hand = self.from_right_zero(hand, self.wanted)
         size = max(float(np.max(np.abs(hand))), float(np.max(self.sizes)))
         return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size))
 
@@ -333,13 +348,14 @@ class LineSearch:
 
     def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
         """Those of further edits that make the program right: they are run all at once."""
-        if self.stand or self.case.quantity.read is not None:
+        own = self.values(self.first)
+        if self.stand or self.case.quantity.read is not None or own is None:
             return []
         found: list[ProgramRepair] = []
         for k in range(0, len(rest), _AT_ONCE):
             if self.work > _ALONE + _MORE_WORK:
                 break
-            for edit, values in self._run_at_once(rest[k : k + _AT_ONCE]):
+            for edit, values in self._run_at_once(rest[k : k + _AT_ONCE], own):
                 self.tried.append((edit, values))
                 if self.right(values).all():
                     with changed(self.trial, (edit,)):
@@ -347,24 +363,21 @@ class LineSearch:
                     found += [] if repair is None else [repair]
         return found
 
-    def _run_at_once(self, some: list[ProgramEdit]) -> list[tuple[ProgramEdit, Array]]:
+    def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
         """What edits make of the program; of those among which one is none, each half alone."""
-        states = [tuple(stack[k].copy() for stack in self._few[0]) for k in range(len(self.first))]
+        states = self.states_at(self.first)
         try:
             lanes = InLanes(self.trial, self.observed, [[one] for one in some], states, False)
         except NoProgramError:
             return []
         every = lanes.answers(np.arange(-1, len(some))[:, None])
         self.work += lanes.work + _WOVEN * len(some)
-        own, wanted = self.values(self.first), self._few[1]
         if every is None and len(some) > _FEWEST:
             half = len(some) // 2
-            return self._run_at_once(some[:half]) + self._run_at_once(some[half:])
-        if every is None or own is None or every[0].size != wanted.size:
+            return self._run_at_once(some[:half], own) + self._run_at_once(some[half:], own)
+        if every is None or every[0].size != own.size:
             return []
-        values = every.reshape(len(every), *wanted.shape)
-        if self.case.quantity.name in ANY_ZERO:
-            values = values + (wanted[:1] - values[:, :1])
+        values = self.from_right_zero(every.reshape(len(every), *own.shape), self._few[1])
         if not (np.abs(values[0] - own) <= self._near).all():
             return []
         placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k + 1]).all()]
@@ -660,10 +673,10 @@ class LineSearch:
         A potential's are moved to the right zero.
         """
         values = self.answers(which)
-        if values is None or self.case.quantity.name not in ANY_ZERO:
-            return values
+        if values is None:
+            return None
         _stacks, wanted = self._few if which is self.first else self._at(which)
-        return np.asarray(values + (wanted[:1] - values[:1]))
+        return self.from_right_zero(values, wanted)
 
     def answers(self, which: Sequence[int]) -> Array | None:
         """The same as they are."""

@@ -63,12 +63,10 @@ class TriedTogether:
     def __init__(self, search: LineSearch, known: Effects) -> None:
         self.search, self.known = search, known
         self.left = search.most if search.stand else max(_LEAST, _ALL - search.work)
-        self.zero = search.case.quantity.name in ANY_ZERO
-        self.count = 1 + self.zero
+        self.count = 1 + (search.case.quantity.name in ANY_ZERO)
         self.sound = np.empty(0, dtype=int)
         self.usable = False
-        stacks = search.case.arguments.values()
-        states = [tuple(stack[k].copy() for stack in stacks) for k in search.first]
+        states = search.states_at(search.first)
         edits = known.alike[:_EDITS]
         if search.case.quantity.read is not None:
             return
@@ -111,12 +109,20 @@ class TriedTogether:
         wanted = self.search.wanted[states].reshape(len(states), -1)
         if wanted.shape != found.shape[1:]:
             return None
-        if self.zero:
-            found = found + (wanted[:1] - found[:, :1])
+        found = self.search.from_right_zero(found, wanted)
         scale = self.search.scale[: len(states)].reshape(len(states), -1)
         rows: Array = (found / scale).reshape(len(chosen), -1)
         self.left -= rows.size // _NUMBERS
         return rows - self.known.own[: rows.shape[1]]
+
+    def _right(self, chosen: Any) -> tuple[Any, Array | None]:
+        """Which of some combinations make the program right; and what all do at first."""
+        rows = self._rows(chosen, self.count)
+        right = chosen[self._fits(rows)] if rows is not None else chosen[:0]
+        if len(right) and self.count < len(self.search.first):
+            whole = self._rows(right, None)
+            right = right[self._fits(whole)] if whole is not None else right[:0]
+        return right, rows
 
     def _fits(self, rows: Array) -> Any:
         """Which effects make the first numbers right."""
@@ -136,13 +142,9 @@ class TriedTogether:
             chosen = self._apart(one, other)
             if not len(chosen):
                 continue
-            rows = self._rows(chosen, self.count)
+            right, rows = self._right(chosen)
             if rows is None:
-                return []
-            right = chosen[self._fits(rows)]
-            if len(right) and self.count < len(self.search.first):
-                whole = self._rows(right, None)
-                right = right[self._fits(whole)] if whole is not None else right[:0]
+                break
             found += [(int(i), int(j)) for i, j in right]
             self._keep(chosen, rows)
         return sorted(found, key=self.known.cost)
@@ -194,11 +196,8 @@ class TriedTogether:
         for start in range(0, len(three), _BLOCK**2):
             if self.left <= 0:
                 break
-            some = three[start : start + _BLOCK**2]
-            rows = self._rows(some, self.count)
-            right = some[self._fits(rows)] if rows is not None else some[:0]
-            whole = self._rows(right, None) if len(right) else None
-            if whole is not None and len(right := right[self._fits(whole)]):
+            right, _rows = self._right(three[start : start + _BLOCK**2])
+            if len(right):
                 return sorted((tuple(map(int, one)) for one in right), key=self.known.cost)
         return []
 
