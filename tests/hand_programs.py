@@ -17,7 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 
 import kinlab as kl
+from kinlab.doctor.changes import Case
 from kinlab.doctor.examine import prepare
+from kinlab.doctor.program.read import read
+from kinlab.doctor.program.repair import LineSearch
 
 
 @dataclass(frozen=True)
@@ -583,11 +586,28 @@ def _changed(value, keys, found, new):
     return value * (new / old) if old else new
 
 
+def written(text, file=None):
+    """The ``f`` of a text, in a module of its own."""
+    space = {"__name__": "hand"}
+    code = compile(text, str(file or "<no file>"), "exec", dont_inherit=True)
+    exec(code, space)  # noqa: S102  texts of the tests
+    return space["f"]
+
+
+def searched(robot, quantity, text, beside=1.0):
+    """A search in a program, right or wrong, for what lies beside the engine's answers."""
+    case, engine = prepare(robot, quantity, (), 10, 3)
+    f = written(text)
+    states = zip(*case.arguments.values(), strict=True)
+    hand = np.array([f(*map(np.copy, state)) for state in states], dtype=float)
+    program = read(f)
+    assert program is not None
+    return LineSearch(program, Case(**{**vars(case), "hand": hand}), engine + beside, 1e-9)
+
+
 def asked(text, robot, quantity):
     """What is said of a text, and whether it is right once that stands in it."""
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of the tests
-    found = kl.diagnose(robot, quantity, space["f"], samples=20)
+    found = kl.diagnose(robot, quantity, written(text), samples=20)
     assert not found.agrees
     case, engine = prepare(robot, quantity, (), 10, 3)
     states = [*zip(*case.arguments.values(), strict=True)]

@@ -414,11 +414,10 @@ ASKED = """
 import sys
 sys.path.insert(0, {tests!r})
 import kinlab as kl
-from hand_programs import PROGRAMS
+from hand_programs import PROGRAMS, written
 for name, old, new in {slips!r}:
-    space = {{"__name__": "hand"}}
-    exec(PROGRAMS[name].text.replace(old, new), space)
-    print(kl.diagnose("planar2r", PROGRAMS[name].quantity, space["f"], samples=20).sentence)
+    f = written(PROGRAMS[name].text.replace(old, new))
+    print(kl.diagnose("planar2r", PROGRAMS[name].quantity, f, samples=20).sentence)
 """
 SLIPS = (
     ("planar fk", "c, s = np.cos", "c, s = np.sin"),

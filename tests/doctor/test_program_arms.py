@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_programs import repaired
+from hand_programs import repaired, written
 
 import kinlab as kl
 from kinlab.doctor.program.grounds.apart import arm_apart
@@ -94,12 +94,6 @@ def text_for(text, numbers):
     return text
 
 
-def made(text):
-    space = {}
-    exec(text, space)  # noqa: S102  texts of this file
-    return space["f"]
-
-
 def worst(robot, quantity, function) -> float:
     return float(np.max(kl.compare(robot, quantity, function, samples=6).errors))
 
@@ -116,7 +110,7 @@ def holds(name, slip, sentence) -> bool:
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_program_with_the_numbers_of_an_arm_apart_is_right_for_it(name) -> None:
     quantity, text = PROGRAMS[name]
-    function = made(text_for(text, ROUND))
+    function = written(text_for(text, ROUND))
     robot = arm(ROUND)
     assert worst(robot, quantity, function) < 1e-12
     trial = Trial(read(function))
@@ -151,7 +145,7 @@ def test_the_program_with_the_numbers_of_an_arm_apart_is_right_for_it(name) -> N
 def test_a_repair_holds_for_an_arm_of_other_numbers(name, right, slip) -> None:
     quantity, text = PROGRAMS[name]
     assert text.count(right) == 1
-    found = kl.diagnose(arm(ROUND), quantity, made(text_for(text.replace(right, slip), ROUND)))
+    found = kl.diagnose(arm(ROUND), quantity, written(text_for(text.replace(right, slip), ROUND)))
     assert found.causes and holds(name, (right, slip), found.causes[0].sentence)
 
 
@@ -160,14 +154,14 @@ def test_a_length_is_not_exchanged_for_a_mass() -> None:
     text = NAMED
     for slip in (("b = m2*l1*c2", "b = m2*c1*c2"), ("(m1*c1 + m2*l1)", "(m1*c1 + m2*c1)")):
         text = text.replace(*slip)
-    found = kl.diagnose(arm(ROUND), "inverse_dynamics", made(text_for(text, ROUND)))
+    found = kl.diagnose(arm(ROUND), "inverse_dynamics", written(text_for(text, ROUND)))
     assert found.causes and "exchanged" not in found.causes[0].sentence
     after = repaired(text_for(text, OTHER), found.causes[0].sentence)
     assert any(worst(arm(OTHER), "inverse_dynamics", one["f"]) < 1e-9 for one in after)
 
 
 def apart(text, robot):
-    trial = Trial(read(made(text)))
+    trial = Trial(read(written(text)))
     states = [(np.array([0.3, -0.7]),) * 3]
     other = arm_apart(robot, trial, Observed(trial, states))
     assert other is not None

@@ -6,7 +6,7 @@ import ast
 
 import numpy as np
 import pytest
-from hand_programs import repaired
+from hand_programs import repaired, written
 
 import kinlab as kl
 from kinlab.doctor.program.edits.operators import negated
@@ -62,18 +62,12 @@ def arm() -> kl.Robot:
     return kl.Robot.from_dh(kl.DHTable("grounds", "modified", links))
 
 
-def made(text):
-    space = {}
-    exec(text, space)  # noqa: S102  texts of this file
-    return space["f"]
-
-
 def test_the_program_is_right(arm) -> None:
-    assert np.max(kl.compare(arm, "gravity_torques", made(TORQUES)).errors) < 1e-12
+    assert np.max(kl.compare(arm, "gravity_torques", written(TORQUES)).errors) < 1e-12
 
 
 def test_the_program_with_another_arms_numbers_is_right_for_that_arm(arm) -> None:
-    function = made(TORQUES)
+    function = written(TORQUES)
     trial = Trial(read(function))
     states = [(np.array([0.3, -0.7, 1.1]),), (np.array([-1.2, 0.4, 0.9]),)]
     other = other_arm(arm, trial, Observed(trial, states))
@@ -106,11 +100,11 @@ def test_a_repair_holds_at_other_twists(arm, piece, slip) -> None:
     """At alpha = -pi/2 a sine is -1: its square, its cube and its sign are one there."""
     assert TORQUES.count(piece) == 1
     wrong = TORQUES.replace(piece, slip)
-    found = kl.diagnose(arm, "gravity_torques", made(wrong))
+    found = kl.diagnose(arm, "gravity_torques", written(wrong))
     assert found.causes
     states = np.random.default_rng(2).uniform(-2, 2, (6, 3))
     assert any(
-        all(np.allclose(after["f"](q), made(TORQUES)(q), atol=1e-12) for q in states)
+        all(np.allclose(after["f"](q), written(TORQUES)(q), atol=1e-12) for q in states)
         for after in repaired(wrong, found.causes[0].sentence)
     )
     line = next(k for k, text in enumerate(wrong.splitlines(), 1) if slip in text)
@@ -125,7 +119,7 @@ def f(q):
     second = 1.5 * 9.81 * 0.4 * np.cos(q[0] + q[1])
     return np.array([3.5 * 9.81 * 0.5 * np.cos(q[0]) + second, np.tanh(q[1])])
 """
-    found = kl.diagnose("planar2r", "gravity_torques", made(text))
+    found = kl.diagnose("planar2r", "gravity_torques", written(text))
     assert not found.agrees and not found.causes
     assert any("g1" in said for said in found.proved)
 
@@ -152,8 +146,8 @@ def f(q):
         _outer(np.ones(400), np.ones(400))
     grown = "import numpy as np\ndef f(q):\n    return np.outer(np.ones(400), np.ones(400))"
     with pytest.raises(FailedError, match="so many"):
-        Trial(read(made(grown))).function(np.zeros(2))
-    found = kl.diagnose(arm, "fk", made(text))
+        Trial(read(written(grown))).function(np.zeros(2))
+    found = kl.diagnose(arm, "fk", written(text))
     assert "line 7 (in A)" in found.causes[0].sentence
 
 
@@ -167,4 +161,4 @@ def f(q):
 def test_no_loop_and_no_array_grows_with_an_edit(grown):
     text = f"import numpy as np\ndef f(q):\n    return {grown}"
     with pytest.raises(FailedError, match="so many"):
-        Trial(read(made(text))).function(np.zeros(2))
+        Trial(read(written(text))).function(np.zeros(2))

@@ -3,16 +3,13 @@ edits does, run alone."""
 
 import numpy as np
 import pytest
-from hand_programs import PROGRAMS, asked, lines_named
+from hand_programs import PROGRAMS, asked, lines_named, searched
 
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import Case
-from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.lanes.ways import Ways
-from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import LineSearch, changed
+from kinlab.doctor.program.repair import changed
 from kinlab.doctor.program.trial import NoProgramError, quietly
 
 OTHERS = {
@@ -89,25 +86,16 @@ def f(q, v, tau):
 }
 
 
-def searched(robot, quantity, text):
-    """A search in a program, right or wrong, with what it has tried."""
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    case, engine = prepare(robot, quantity, (), 10, 3)
-    states = [*zip(*case.arguments.values(), strict=True)]
-    hand = np.array([space["f"](*map(np.copy, state)) for state in states], dtype=float)
-    case = Case(**{**vars(case), "hand": hand})
-    program = read(space["f"])
-    assert program is not None
-    search = LineSearch(program, case, engine + 1.0, 1e-9)  # nothing is right: all is tried
+def in_every_way(robot, quantity, text):
+    """A search with what it has tried."""
+    search = searched(robot, quantity, text)
     search.singles()
     return search
 
 
 def in_lanes(search, some):
-    stacks = search.case.arguments.values()
-    states = [tuple(stack[k].copy() for stack in stacks) for k in search.first]
-    return InLanes(search.trial, search.observed, [[edit] for edit in some], states, counts=False)
+    states, each = search.states_at(search.first), [[edit] for edit in some]
+    return InLanes(search.trial, search.observed, each, states, counts=False)
 
 
 def singly(search, tried):
@@ -128,7 +116,7 @@ TEXTS = {
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_a_lane_answers_as_the_edited_program(name) -> None:
-    search = searched(*TEXTS[name])
+    search = in_every_way(*TEXTS[name])
     dice = np.random.default_rng(7)
     tried = [search.tried[k] for k in dice.permutation(len(search.tried))[:250]]
     with quietly():
@@ -162,7 +150,7 @@ def test_a_lane_answers_as_the_edited_program(name) -> None:
 
 
 def test_loops_and_conditions_have_lanes() -> None:
-    search = searched(*OTHERS["objects, recursion, a table in the module"])
+    search = in_every_way(*OTHERS["objects, recursion, a table in the module"])
     kinds = ("loop", "condition")
     tried = [one for one in search.tried if one[0].kind in kinds]
     with quietly():
@@ -186,7 +174,7 @@ def f(q):
     tip = TABLE[1][1]*9.81*LENGTHS[1]*np.cos(q[0] + q[1])
     return np.array([(MASSES[0] + MASSES[1])*9.81*TABLE[0][0]*np.cos(q[0]) + tip, tip])
 """
-    search = searched("planar2r", "gravity_torques", text)
+    search = in_every_way("planar2r", "gravity_torques", text)
     tried = [one for one in search.tried if one[0].part == -1]
     with quietly():
         _lanes, close, _lost = singly(search, tried)
@@ -198,7 +186,7 @@ def f(q):
 
 
 def test_a_program_is_left_as_it_was() -> None:
-    search = searched(*OTHERS["objects, recursion, a table in the module"])
+    search = in_every_way(*OTHERS["objects, recursion, a table in the module"])
     before = search.answers(search.first)
     space, sizes = dict(search.trial.space), [len(nodes(tree)) for tree in search.trial.trees]
     with quietly():
@@ -274,7 +262,7 @@ def f(q):
     g[0] = (2.0 + 1.5)*9.81*0.5*np.cos(q[0]) + g[1]
     return np.array(g, dtype=float)
 """
-    search = searched("planar2r", "gravity_torques", text)
+    search = in_every_way("planar2r", "gravity_torques", text)
     tried = search.tried
     with quietly():
         _lanes, close, _lost = singly(search, tried)

@@ -7,13 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_programs import asked
+from hand_programs import asked, searched, written
 
 import kinlab as kl
-from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.grounds.dimensions import Dimensions
-from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import LineSearch
 
 MOTION = """
 import numpy as np
@@ -122,9 +119,7 @@ SLIPS = [
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_the_programs_are_right(name) -> None:
     robot, quantity, text = PROGRAMS[name]
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    assert kl.diagnose(robot, quantity, space["f"]).agrees
+    assert kl.diagnose(robot, quantity, written(text)).agrees
 
 
 @pytest.mark.parametrize(("name", "old", "new"), [x[:3] for x in SLIPS], ids=[x[3] for x in SLIPS])
@@ -150,9 +145,8 @@ def test_a_slip_is_told(name, old, new) -> None:
 def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
     robot, quantity, text = PROGRAMS[name]
     assert text.count(old) == 1
-    space = {"__name__": "hand"}
-    exec(compile(text.replace(old, new), "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    assert said in str(kl.diagnose(robot, quantity, space["f"], samples=20))
+    wrong = written(text.replace(old, new))
+    assert said in str(kl.diagnose(robot, quantity, wrong, samples=20))
 
 
 @pytest.mark.parametrize(
@@ -173,14 +167,8 @@ def test_two_slips_are_told(name, slips) -> None:
 
 
 def dimensions(text):
-    robot, quantity = "planar2r_rods", "inverse_dynamics"
-    space = {"__name__": "hand"}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  texts of this file
-    case, engine = prepare(robot, quantity, (), 10, 3)
-    hand = [space["f"](*map(np.copy, x)) for x in zip(*case.arguments.values(), strict=True)]
-    case = type(case)(**{**vars(case), "hand": np.array(hand)})
-    search = LineSearch(read(space["f"]), case, engine + 1.0, 1e-9)
-    names = [*case.arguments]
+    search = searched("planar2r_rods", "inverse_dynamics", text)
+    names = [*search.case.arguments]
     return search, Dimensions(search.trial, search.observed, search.case.robot, names,
                               search.states, alike=True)  # fmt: skip
 

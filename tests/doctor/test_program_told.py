@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
-from dataclasses import replace
 
 import numpy as np
 import pytest
+from hand_programs import searched, written
 
 import kinlab as kl
-from kinlab.doctor.changes import Case
-from kinlab.doctor.examine import prepare
 from kinlab.doctor.program.read import read
-from kinlab.doctor.program.repair import LineSearch
 from kinlab.doctor.program.trial import FailedError, Trial
 
 ENERGY = """
@@ -101,9 +98,7 @@ def said(tmp_path):
         assert text.count(old) == 1
         path = tmp_path / "hand.py"
         path.write_text(text.replace(old, new))
-        space = {"__name__": "hand"}
-        exec(compile(path.read_text(), str(path), "exec"), space)  # noqa: S102  texts of this file
-        found = kl.diagnose(robot, quantity, space["f"])
+        found = kl.diagnose(robot, quantity, written(path.read_text(), path))
         assert not found.agrees
         return str(found)
 
@@ -179,14 +174,6 @@ def test_slips_that_were_unknown(old, new, told, said) -> None:
     assert told in said(UPPER, old, new, quantity="mass_matrix")
 
 
-def searched(text: str, robot: str, quantity: str) -> LineSearch:
-    space = {"__name__": "hand"}
-    exec(text, space)  # noqa: S102  texts of this file
-    case, engine = prepare(robot, quantity, (), 10, 3)
-    own: Case = replace(case, hand=engine)
-    return LineSearch(read(space["f"]), own, engine, 1e-6)
-
-
 @pytest.mark.parametrize(
     ("text", "robot", "quantity"),
     [
@@ -198,21 +185,20 @@ def searched(text: str, robot: str, quantity: str) -> LineSearch:
     ],
 )
 def test_what_is_right_is_right_for_another_arm(text, robot, quantity) -> None:
-    search = searched(text, robot, quantity)
+    search = searched(robot, quantity, text, 0.0)
     assert all(other.whole and search._holds(other) for other in search._others)
 
 
 def test_the_arms_own_number_is_not_the_slip() -> None:
-    search = searched(CLOSED, "planar2r", "gravity_torques")
+    search = searched("planar2r", "gravity_torques", CLOSED, 0.0)
     assert search.is_own(1.5)
     assert not search.is_own(-1.5)
 
 
 def test_a_programs_own_error_is_told_from_ours() -> None:
-    space = {"__name__": "hand"}
-    exec("import numpy as np\ndef f(q):\n    return q[7]", space)  # noqa: S102
+    short = written("def f(q):\n    return q[7]")
     with pytest.raises(FailedError, match="IndexError"):
-        Trial(read(space["f"])).function(np.zeros(2))
+        Trial(read(short)).function(np.zeros(2))
 
 
 def test_a_name_that_a_slip_has_left_unused_is_moved_with_the_other_arm(said) -> None:
@@ -231,9 +217,7 @@ def f(q):
     return np.matrix([[(2.0 + 1.5)*0.5**2 + 1.5*0.4**2 + 2*b, 1.5*0.4**2 + b],
                       [1.5*0.4**2 + b, d]])
 """
-    space: dict = {}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
-    found = kl.diagnose("planar2r", "mass_matrix", space["f"], samples=20)
+    found = kl.diagnose("planar2r", "mass_matrix", written(text), samples=20)
     assert not found.agrees
     assert "line 6" in found.sentence
 
@@ -256,9 +240,7 @@ def f(q):
     first = A(q[0], 0.412, 0, -H) @ A(q[1], 0.154, 0, -H) @ A(-H, q[2], 0.0203, 0)
     return first @ A(q[3], 0, 0, -H) @ A(q[4], 0, 0, -H) @ A(q[5], 0.263, 0, 0)
 """
-    space: dict = {}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
-    found = kl.diagnose("stanford", "fk", space["f"], samples=20)
+    found = kl.diagnose("stanford", "fk", written(text), samples=20)
     assert found.causes and {"line 13", "line 14"} <= {*found.causes[0].places}, str(found)
 
 
@@ -278,9 +260,7 @@ def f(q):
         J[2, j] = 1.0
     return J
 """
-    space: dict = {}
-    exec(compile(text, "<no file>", "exec"), space)  # noqa: S102  a text of this file
-    found = kl.diagnose("planar3r", "planar_jacobian", space["f"], samples=20)
+    found = kl.diagnose("planar3r", "planar_jacobian", written(text), samples=20)
     assert "line 10" in found.sentence
     assert "if True" not in found.sentence
 
@@ -341,11 +321,8 @@ def f(q):
     return np.array([[0.04 + J2[{0}]*s**2 + J2[{1}]*c**2 + 1.5*(0.25*c)**2, 0.0],
                      [0.0, J2[2] + {2}]])
 """
-    right: dict = {}
-    exec(compile(text.format(0, 1, "1.5*0.25**2"), "<no file>", "exec"), right)  # noqa: S102  a text of this file
-    assert kl.diagnose(arm, "mass_matrix", right["f"], samples=20).agrees
-    wrong: dict = {}
-    exec(compile(text.format(1, 0, "1.5*0.25"), "<no file>", "exec"), wrong)  # noqa: S102  a text of this file
-    found = kl.diagnose(arm, "mass_matrix", wrong["f"], samples=20)
+    right, wrong = text.format(0, 1, "1.5*0.25**2"), text.format(1, 0, "1.5*0.25")
+    assert kl.diagnose(arm, "mass_matrix", written(right), samples=20).agrees
+    found = kl.diagnose(arm, "mass_matrix", written(wrong), samples=20)
     assert found.causes
     assert "line 5" not in found.causes[0].places, found.sentence
