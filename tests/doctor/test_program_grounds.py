@@ -12,9 +12,10 @@ import kinlab as kl
 from kinlab.doctor.program.edits.operators import negated
 from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.own.calls import QUICK
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import changed
-from kinlab.doctor.program.trial import FailedError, Trial, _outer
+from kinlab.doctor.program.trial import FailedError, Trial
 
 TORQUES = """
 import numpy as np
@@ -143,7 +144,7 @@ def f(q):
     return T
 """
     with pytest.raises(ValueError, match="so many"):
-        _outer(np.ones(400), np.ones(400))
+        QUICK.outer(np.ones(400), np.ones(400))
     grown = "import numpy as np\ndef f(q):\n    return np.outer(np.ones(400), np.ones(400))"
     with pytest.raises(FailedError, match="so many"):
         Trial(read(written(grown))).function(np.zeros(2))

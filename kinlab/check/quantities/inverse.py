@@ -195,6 +195,31 @@ def _furthest(task: Task, robot: Robot, answers: Any, engine: Array) -> Array:
     return found
 
 
+def row_by_row(rows: int, task: Task, robot: Robot, answers: Any, engine: Array) -> Array:
+    """Of so many solutions of each state the places; what is given beyond is in the last one.
+
+    A row that is no solution is where it should be, if another is one.
+
+    Args:
+        rows: how many.
+        task: what is asked.
+        robot: of whom.
+        answers: solutions, (N, m, n).
+        engine: the target of each of the rows, (N, rows, ...).
+    """
+    solutions = as_solutions(robot, answers)
+    found = np.full(engine.shape, np.nan)
+    most = min(rows - 1, solutions.shape[1] - 1)
+    found[:, :most] = reached(robot, task, solutions[:, :most])
+    found[:, most] = _furthest(task, robot, solutions[:, most:], engine[:, most])
+    given: Any = np.isfinite(solutions).any(axis=2)
+    none: Any = np.ones(engine.shape[:2], dtype=bool)
+    none[:, :most], none[:, most] = ~given[:, :most], ~given[:, most:].any(axis=1)
+    free = none & given.any(axis=1, keepdims=True)
+    found[free] = engine[free]
+    return found
+
+
 def _sample(
     task: Task, robot: Robot, arguments: Any, count: int, rng: np.random.Generator
 ) -> tuple[Array, ...]:

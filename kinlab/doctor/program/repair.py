@@ -53,8 +53,8 @@ _QUICK = 1000
 """Edits that have been run alone by then, of programs of which lanes are worth the time."""
 _MORE_WORK, _WOVEN = 15_000_000, 7000
 """Work that may be done for them; what putting one in amounts to."""
-_AT_ONCE, _FEWEST = 400, 200
-"""How many of them at a time; as many are left out where one of them cannot be run."""
+_AT_ONCE = 400
+"""How many of them at a time."""
 _WEIGHED = 9000
 """Edits that are weighed, and may be tried."""
 _NODE = 30
@@ -172,6 +172,7 @@ class LineSearch:
         self.sizes = error_sizes(self.wanted)
         self._asked = state_by_state(asked)
         self._few = self._at(self.first)
+        self._several = self._distinct() if self.case.quantity.read is not None else 1
         self._near = max(TOLERANCES.tried_further, self.allowed) * self.scale
 
     def _differences(self) -> bool:
@@ -215,6 +216,25 @@ class LineSearch:
         firsts = np.take(values, [0], axis=values.ndim - wanted.ndim)
         return np.asarray(values + (wanted[:1] - firsts))
 
+    def of_lanes(self, found: Array) -> Array | None:
+        """What is compared of answers in lanes; None of answers of another size.
+
+        Args:
+            found: all the numbers of the answers at the first states, or some of these, (C, S, P).
+        """
+        wanted = self._few[1][: found.shape[1]]
+        shape = (len(found), *wanted.shape)
+        read, robot = self.case.quantity.read, self.case.robot
+        if read is None:
+            if found.size != np.prod(shape):
+                return None
+            return self.from_right_zero(found.reshape(shape), wanted)
+        if found.shape[2] % robot.n:
+            return None
+        solutions = found.reshape(len(found) * len(wanted), -1, robot.n)
+        every = np.broadcast_to(wanted, shape).reshape(len(solutions), *wanted.shape[1:])
+        return np.asarray(read(robot, solutions, every)).reshape(shape)
+
     def _prepare(self) -> None:
         self.states = self.states_at(self.watched)
         self.known: list[Glossary] = []
@@ -251,8 +271,9 @@ class LineSearch:
         if own is None or own.shape != hand.shape:
             return False
         hand = self.from_right_zero(hand, self.wanted)
-        size = max(float(np.max(np.abs(hand))), float(np.max(self.sizes)))
-        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size))
+        known = np.abs(hand[np.isfinite(hand)])
+        size = max(float(np.max(known, initial=0.0)), float(np.max(self.sizes)))
+        return bool(np.allclose(own, hand, rtol=1e-9, atol=1e-9 * size, equal_nan=True))
 
     @property
     def written_out(self) -> bool:
@@ -349,7 +370,7 @@ class LineSearch:
     def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
         """Those of further edits that make the program right: they are run all at once."""
         own = self.values(self.first)
-        if self.stand or self.case.quantity.read is not None or own is None:
+        if self.stand or own is None:
             return []
         found: list[ProgramRepair] = []
         for k in range(0, len(rest), _AT_ONCE):
@@ -364,24 +385,25 @@ class LineSearch:
         return found
 
     def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
-        """What edits make of the program; of those among which one is none, each half alone."""
-        states = self.states_at(self.first)
+        """What edits make of the program, as far as lanes can follow it."""
+        states, left = self.states_at(self.first), _ALONE + _MORE_WORK - self.work
         try:
             lanes = InLanes(self.trial, self.observed, [[one] for one in some], states, False)
         except NoProgramError:
             return []
-        every = lanes.answers(np.arange(-1, len(some))[:, None])
+        none, each = np.array([[-1]]), np.arange(len(some))[:, None]
+        answers = [lanes.answers(which, None, left) for which in (none, each)]
         self.work += lanes.work + _WOVEN * len(some)
-        if every is None and len(some) > _FEWEST:
-            half = len(some) // 2
-            return self._run_at_once(some[:half], own) + self._run_at_once(some[half:], own)
-        if every is None or every[0].size != own.size:
+        as_it_is, values = (None if one is None else self.of_lanes(one) for one in answers)
+        if as_it_is is None or values is None or not self._as_alone(as_it_is[0], own):
             return []
-        values = self.from_right_zero(every.reshape(len(every), *own.shape), self._few[1])
-        if not (np.abs(values[0] - own) <= self._near).all():
-            return []
-        placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k + 1]).all()]
-        return [(some[k], values[k + 1]) for k in placed]
+        placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k]).all()]
+        return [(some[k], values[k]) for k in placed]
+
+    def _as_alone(self, values: Array, own: Array) -> bool:
+        """Whether a lane without an edit answers as the program does."""
+        none = ~np.isfinite(values) & ~np.isfinite(own)
+        return bool((none | (np.abs(values - own) <= self._near)).all())
 
     def _by_evidence(self, found: list[ProgramRepair]) -> list[ProgramRepair]:
         """The likeliest first; of repairs of several lines the one that leaves more of them right.
@@ -451,7 +473,7 @@ class LineSearch:
     def _only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""
         if self.case.quantity.read is not None:
-            return False
+            return self._distinct() < self._several  # one solution is left out, another given twice
         (before, _), (apart, larger) = self._others, self._arms(several)
         if before is not None and apart is not None:
             odd = apart.odd and len(several) > 1 and not self._holds(apart)
@@ -658,7 +680,7 @@ class LineSearch:
         gap = np.abs(values - self.wanted[list(which)]).reshape(len(which), -1)
         return float(np.max(gap.max(axis=1, initial=0.0) / self.sizes[list(which)]))
 
-    def distinct(self) -> int:
+    def _distinct(self) -> int:
         """How many different answers there are at the first states; solutions are several."""
         try:
             answers = np.asarray(self._asked(None, *self._few[0]), dtype=float)

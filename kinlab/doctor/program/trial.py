@@ -11,13 +11,14 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from types import CodeType, FrameType, FunctionType, ModuleType
+from types import CodeType, FrameType, FunctionType
 from typing import Any
 
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.kept import Contents
+from kinlab.doctor.program.own.calls import CALLS, REAL_CALLS, bounded_range
 from kinlab.doctor.program.own.definitions import (
     FIELDS,
     META,
@@ -41,10 +42,6 @@ class FailedError(Exception):
 
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
-_LARGEST = 100_000
-"""Numbers that an array, or an outer product, may have."""
-_LONGEST = 5_000
-"""Turns that a loop over numbers may have."""
 _TURNS = 2_000
 """Turns that all ``while`` loops of one call may take."""
 _LINES = 20_000
@@ -118,13 +115,13 @@ class Trial:
             self.space[name] = self._own(program.space[name])
         self.bound = tuple(self._own(one) for one in program.bound)
         self._keep()
+        calls = CALLS if _catches(program) else CALLS | REAL_CALLS
         for name, value in self.space.items():
-            if value is np or value is np.cross:
-                self.space[name] = QUICK if value is np else _cross
+            self.space[name] = calls.get(id(value), value)
         self.trees = [
             bounded(part.tree, None if part.sets else part.function) for part in program.parts
         ]
-        self.space |= {"_turn": self._turn, "_edit": 0, "range": _range}
+        self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
@@ -385,43 +382,6 @@ def quietly() -> Iterator[None]:
         yield
 
 
-def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
-    """numpy's cross product; of two vectors of three numbers ten times as fast."""
-    if not rest and not options:
-        a, b = np.asarray(one), np.asarray(other)
-        if a.shape == b.shape == (3,):
-            (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
-            return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
-    return np.cross(one, other, *rest, **options)
-
-
-def _range(*bounds: int) -> range:
-    """A range, but none that an edit made of so many turns: of 200 its square."""
-    found = range(*bounds)
-    if len(found) > _LONGEST:
-        raise ValueError("a range of so many numbers")
-    return found
-
-
-def _outer(one: Any, other: Any, *rest: Any) -> Any:
-    """numpy's outer product, but none that grows without end where an edit made it of a dot."""
-    if np.size(one) * np.size(other) > _LARGEST:
-        raise ValueError("an outer product of so many numbers")
-    return np.outer(one, other, *rest)
-
-
-def _array(*given: Any, **named: Any) -> Any:
-    """numpy's array, but none that grows without end where an edit puts rows for numbers."""
-    found = np.array(*given, **named)
-    if found.size > _LARGEST:
-        raise ValueError("an array of so many numbers")
-    return found
-
-
-QUICK = ModuleType("numpy")
-QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
-
-
 def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
     """A function of a definition, with the defaults that the user's own has."""
     module = ast.Module(tree.body if part.sets else [tree], [])
@@ -458,6 +418,11 @@ def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[A
 
 def _or(new: Any, own: Any) -> Any:
     return own if new is ... else new
+
+
+def _catches(program: OwnProgram) -> bool:
+    """Whether a program answers errors itself."""
+    return any(isinstance(node, ast.Try) for part in program.parts for node in nodes(part.tree))
 
 
 def _callers(program: OwnProgram) -> dict[int, set[int]]:

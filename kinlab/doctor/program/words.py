@@ -422,8 +422,6 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     exact = repair.error <= TOLERANCES.left_of_several or search.differences
     if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
         return None
-    if search.case.quantity.read is not None and _fewer(repair, search):
-        return None
     edits = []
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
@@ -440,13 +438,6 @@ def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
         if not own or _right(tuple(one for one in repair.edits if one is not edit), search):
             return False
     return True
-
-
-def _fewer(repair: ProgramRepair, search: LineSearch) -> bool:
-    """Whether it leaves one solution out by giving another twice."""
-    before = search.distinct()
-    with quietly(), changed(search.trial, repair.edits):
-        return search.distinct() < before
 
 
 def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:

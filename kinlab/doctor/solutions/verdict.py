@@ -16,7 +16,7 @@ import numpy as np
 from kinlab.arrays import Array, first_largest
 from kinlab.check.compare import error_sizes
 from kinlab.check.diagnosis import Cause, Diagnosis
-from kinlab.check.quantities.inverse import TASKS, as_solutions, reached
+from kinlab.check.quantities.inverse import TASKS, as_solutions, reached, row_by_row
 from kinlab.doctor import verdicts
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derivations.joined import (
@@ -104,11 +104,13 @@ def judged(
     if study is not None and study.off and not study.unknown:
         causes = [_all_off(study)]
     else:
-        assert case.quantity.read is not None
-        # of each target the solution that is furthest off, where the tool is
-        own = replace(case, hand=np.asarray(case.quantity.read(robot, hand, engine)))
+        rows = found.q.shape[1]
+        read = partial(row_by_row, rows, task)
+        targets = np.repeat(engine[:, None], rows, axis=1)
+        shown = replace(case.quantity, read=read)
+        own = replace(case, quantity=shown, hand=read(robot, hand, targets))
         edited: list[Cause] = []
-        for some in own.looked_through(engine, TOLERANCES.formula_agrees):
+        for some in own.looked_through(targets, TOLERANCES.formula_agrees):
             if some.excuse is not None:
                 return replace(right, form=some.excuse.form, remarks=some.excuse.remarks)
             if edited := some.causes:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi
 from types import ModuleType
 
@@ -22,6 +22,8 @@ _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
+_BESIDE = 0.04
+"""The same of a term that stands in the line beside, of what is called alike."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -44,6 +46,7 @@ class Scope:
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
+        addends: the terms of the sums that are set, by what is set, without its number.
         cross: what gives the product of two vectors, where it is known.
         whole: names of whole numbers that are given to a function, and counters.
     """
@@ -62,17 +65,19 @@ class Scope:
         self.angles: dict[str, ast.expr] = {}
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
+        self.addends: dict[str, set[str]] = {}
+        self._inside: frozenset[str] = frozenset()
+        self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
         self.cross = _cross(calls, observed, self.has_numpy)
-        inner: set[str] = set()
+        inner, outer = set[str](), set[str]()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
                 set_here = names(node.target)
                 passed = dict(_passed(node.target, node.iter, observed))
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
                 self.counters += [n for n in set_here if n not in (*self.counters, *passed)]
-                if isinstance(node, ast.comprehension):
-                    inner |= {*set_here}
+                (inner if isinstance(node, ast.comprehension) else outer).update(set_here)
         for one in trial.trees:
             for node in nodes(one):
                 self._of_member(node, observed)
@@ -90,7 +95,9 @@ class Scope:
         self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
-                self._of_expression(node, observed, inner)
+                self._of_expression(node, observed, inner - outer)
+            if isinstance(node, ast.Assign):
+                self._of_addends(node)
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
@@ -126,6 +133,14 @@ class Scope:
                 counted = ast.Name(counter, ast.Load())
                 entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+
+    def _of_addends(self, statement: ast.Assign) -> None:
+        known = self.addends.setdefault(_stem([statement]), set())
+        literal = isinstance(statement.value, ast.List | ast.Tuple | ast.Call)
+        for value in entries(statement.value) if literal else (statement.value,):
+            for one in _summands(value) if isinstance(value, ast.BinOp) else ():
+                bare = without_numbers(one)
+                known |= {ast.unparse(one)} if bare is None else {ast.unparse(bare)}
 
     def _of_member(self, node: ast.AST, observed: Observed) -> None:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute):
@@ -189,9 +204,25 @@ class Scope:
         rows = [x[3] for x in seen.values if x.shape == (4, 4)] if seen is not None else []
         return bool(rows) and all(np.array_equal(row, (0, 0, 0, 1)) for row in rows)
 
+    def stand(self, above: Sequence[ast.AST]) -> None:
+        """Goes to a place of the part: counters of loops around it alone are known there."""
+        around = [getattr(one, "generators", [one]) for one in above]
+        loops = [x.target for some in around for x in some if hasattr(x, "iter")]
+        self._inside = frozenset(name for target in loops for name in names(target))
+
+    def pieces_here(self, shape: Shape) -> dict[str, ast.expr]:
+        """The expressions of one shape that may stand there, by their text."""
+        known = self._known_here.get((self._inside, shape))
+        if known is None:
+            outside = {*self.counters} - self._inside
+            every = self.pieces.get(shape, {}).items()
+            known = {text: one for text, one in every if outside.isdisjoint(names(one))}
+            self._known_here[self._inside, shape] = known
+        return known
+
     def simple(self, shape: Shape) -> Iterator[tuple[str, ast.expr]]:
         """Names, entries of lists and attributes of one shape."""
-        for text, node in self.pieces.get(shape, {}).items():
+        for text, node in self.pieces_here(shape).items():
             if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
                 yield text, node
 
@@ -274,6 +305,15 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _terms(here, scope, shape, whole)
 
 
+def entries(value: ast.expr) -> Iterator[ast.expr]:
+    """The entries of what is written as rows: ``np.array([[a, b], [c, d]])``."""
+    inner = value.args[:1] if isinstance(value, ast.Call) else getattr(value, "elts", None)
+    if inner is None:
+        yield value
+    for one in inner or ():
+        yield from entries(one) if isinstance(one, ast.List | ast.Tuple) else (one,)
+
+
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A name for a zero that is given on, or that is an entry."""
     for _text, scalar in scope.simple(()):
@@ -332,7 +372,7 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     beside = _factors_beside(here) if term else set()
     if named and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
-    for text, scalar in scope.pieces.get((), {}).items():
+    for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
         dear = 0.0 if text in beside else scope.dear(scalar)
@@ -384,7 +424,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     node = here.node
     own = ast.unparse(node)
     entry = isinstance(here.parent, ast.List | ast.Tuple)
-    for text, piece in scope.pieces.get(shape, {}).items():
+    siblings = scope.addends.get(_stem(here.above), set()) if whole else set()
+    for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         if text == own or not (whole or named or isinstance(piece, ast.Attribute)):
             continue
@@ -394,7 +435,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         beside = entry and used and not _of_a_kind(piece, node)
         if beside and not (isinstance(piece, ast.Name) and piece.id in _entries_beside(here)):
             continue
-        dear = scope.dear(piece)
+        dear = min(scope.dear(piece), _BESIDE if text in siblings else 1.0)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
         if whole and shape == () and not dear:
@@ -403,6 +444,14 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
+
+
+def _stem(above: Sequence[ast.AST]) -> str:
+    """What a statement sets, without its number or indices: ``m`` of ``m12``, ``M`` of an entry."""
+    statement = next(one for one in reversed(above) if isinstance(one, ast.stmt))
+    if not isinstance(statement, ast.Assign):
+        return ""
+    return ast.unparse(statement.targets[0]).split("[")[0].rstrip("0123456789")
 
 
 def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:

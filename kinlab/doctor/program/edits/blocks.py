@@ -101,13 +101,14 @@ def _updates(
     """What a loop uses, and does not set anew: ``T = T @ A``, ``p = p + R @ d``, ``w = w_next``."""
     inside = {name for one in loop.body for name in _sets(one)}
     counted = {*names(loop)} & {*scope.counters}
+    scope.stand([one for one in nodes(tree) if loop in nodes(one)])
     used = _uses(tree)
     before = {name for one in nodes(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
     for name in sorted((used & before) - inside - counted):
         shape = scope.shapes.get(name)
         if shape is None:
             continue
-        for text, piece in scope.pieces.get(shape, {}).items():
+        for text, piece in scope.pieces_here(shape).items():
             given = {*names(piece)}
             if text == name or not given & inside:
                 continue

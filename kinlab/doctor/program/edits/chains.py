@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 SUMS = (ast.Add, ast.Sub)
 PRODUCTS = (ast.Mult, ast.Div, ast.MatMult)
+_NAMES = (ast.Name, ast.Subscript, ast.Attribute)
 
 Others = Sequence[tuple[ast.operator, ast.expr]]
 """Terms or factors, each with the operator before it."""
@@ -76,16 +77,21 @@ def squared(node: ast.BinOp) -> Iterator[ast.expr]:
 
 
 def crosswise(node: ast.BinOp) -> Iterator[ast.expr]:
-    """One factor each of the last two terms for one another: ``a*d + c*b`` for ``a*b + c*d``."""
+    """One factor each of the last two terms for one another: ``a*d + c*b`` for ``a*b + c*d``.
+
+    Of terms with as many factors those in one place; of others names that begin alike.
+    """
     head, terms = chain(node, SUMS)
     *_, before, last = members((head, terms))
     one, other = chain(before, PRODUCTS), chain(last, PRODUCTS)
-    if len(one[1]) != len(other[1]) or not one[1]:
-        return
-    for k, (factor, instead) in enumerate(zip(members(one), members(other), strict=True)):
-        if ast.dump(factor) != ast.dump(instead):
-            tail = (terms[-1][0], _with(other, k, factor))
-            yield _with((head, [*terms[:-1], tail]), len(terms) - 1, _with(one, k, instead))
+    alike = len(one[1]) == len(other[1])
+    for j, factor in enumerate(members(one)):
+        for k, instead in enumerate(members(other)):
+            begins = {ast.unparse(x)[0] for x in (factor, instead) if isinstance(x, _NAMES)}
+            fits = j == k and bool(one[1]) if alike else len(begins) == 1
+            if fits and ast.dump(factor) != ast.dump(instead):
+                tail = (terms[-1][0], _with(other, k, factor))
+                yield _with((head, [*terms[:-1], tail]), len(terms) - 1, _with(one, j, instead))
 
 
 def called_once(node: ast.BinOp) -> Iterator[ast.expr]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, number
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
@@ -41,6 +41,10 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
         yield from _times_scalars(here, scope)
     if shape == _VECTOR and (term or (factor and here.field == "right")):
         yield from _cross_products(here, scope)
+    if shape == _VECTOR:
+        yield from _of_turning(here, scope)
+        if isinstance(parent, ast.Call) and called(parent) == "cross" and _is_arm(node):
+            yield from _of_levers(here, scope)
 
 
 def _name(node: ast.expr) -> str:
@@ -109,9 +113,9 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A velocity, or an acceleration, of another point: ``w x r``, ``w x (w x r)``."""
     if scope.cross is None:
         return
-    plain = [one for one in scope.pieces.get(_VECTOR, {}).values() if _plain(one)]
+    plain = [one for one in scope.pieces_here(_VECTOR).values() if _plain(one)]
     names = [one for one in plain if not isinstance(one, ast.BinOp)]
-    turned = [x for x in scope.pieces.get(_VECTOR, {}).values() if _is_turned(x)]
+    turned = [x for x in scope.pieces_here(_VECTOR).values() if _is_turned(x)]
     rates = [one for one in (*names, *turned) if _begins(_last(one), _RATES)][:_FEW]
     vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
     own = ast.unparse(here.node)
@@ -125,6 +129,57 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 product = ast.Call(scope.cross, [rate, product], [])
                 new = ast.BinOp(here.node, ast.Add(), product)
                 yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _is_arm(node: ast.expr) -> bool:
+    return isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and _begins(node, _ARMS)
+
+
+def _of_levers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A lever that begins, or ends, elsewhere: ``cross(r + c, F)`` for ``cross(c, F)``."""
+    own = ast.unparse(here.node)
+    arms = [one for one in scope.pieces_here(_VECTOR).values() if _is_arm(one)]
+    for other in arms[: 2 * _FEW]:
+        if ast.unparse(other) != own:
+            for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
+                yield here.instead(ast.BinOp(here.node, op, other), "missing term", cost)
+
+
+def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The term of a velocity that goes with one of an acceleration, and is easily forgotten.
+
+    ``w x (w x r)`` with ``dw x r``, ``w x I w`` with ``I dw``, ``w x z qd`` with ``z qdd``.
+    """
+    node = here.node
+    vectors = scope.pieces_here(_VECTOR)
+    rates = [one for one in vectors.values() if _plain(one) and _begins(one, _RATES)][:_FEW]
+    inner: list[ast.expr] = []
+    own: ast.expr | None = None
+    product: ast.expr
+    if isinstance(node, ast.Call) and len(node.args) == 2 and called(node) == "cross":
+        own, vector = node.args
+        inner = [ast.Call(node.func, [rate, vector], []) for rate in rates]
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+        own = node.right
+        inner = [ast.BinOp(node.left, node.op, rate) for rate in rates]
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        sides = ((node.left, node.right), (node.right, node.left))
+        for scalar, vector in sides:
+            if isinstance(scalar, ast.Subscript) and scope.observed.shape(scalar) == ():
+                for text, other in scope.pieces_here(()).items():
+                    if text == ast.unparse(scalar) or not isinstance(other, ast.Subscript):
+                        continue
+                    if ast.dump(other.slice) == ast.dump(scalar.slice):
+                        product = ast.BinOp(other, node.op, vector)
+                        inner += [product] * len(rates)
+    if not inner or scope.cross is None:
+        return
+    for k, one in enumerate(inner):
+        rate = rates[k % len(rates)]
+        if own is None or ast.unparse(rate) != ast.unparse(own):
+            product = ast.Call(scope.cross, [rate, one], [])
+            new = ast.BinOp(node, ast.Add(), product)
+            yield here.instead(new, "missing term", 1.1)
 
 
 def _is_turned(node: ast.expr) -> bool:

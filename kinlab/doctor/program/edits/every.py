@@ -48,6 +48,7 @@ def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
         scope = Scope(trial, observed, part)
         for here in places(part, tree):
             node = here.node
+            scope.stand((*here.above, node))
             if isinstance(node, ast.expr):
                 if observed.of(node) is not None:
                     found += _expression(here, scope, observed)

@@ -47,6 +47,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(new, "operator", 1.12)
         for new in chains.squared(node):
             yield here.instead(new, "parentheses", 1.13)
+        factor = isinstance(here.parent, ast.BinOp) and not isinstance(here.parent.op, ast.Pow)
+        if factor and observed.shape(node) == ():
+            yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.12)
         for new in chains.crosswise(node):
             yield here.instead(new, "names exchanged", 1.13)
         for new in chains.called_once(node):
@@ -170,6 +173,11 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             swapped[i], swapped[j] = swapped[j], swapped[i]
             cost = 1.02 if name == "cross" else 1.05 if name in _ORDERED else 1.15
             yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
+        if name in ("arctan2", "atan2") and len(plain) == 2:
+            for one in (0, 1):  # the angle from the other axis
+                turned = [plain[1], plain[0]]
+                turned[one] = ast.UnaryOp(ast.USub(), turned[one])
+                yield here.within(node, "args", turned, "order", 1.12)
         if len(plain) == 1 and observed.shape(plain[0]) is not None and name not in ANGLES:
             yield here.instead(plain[0], "extra factor", 1.25)
         if name == "inv" and observed.shape(plain[0]) is not None:
@@ -356,7 +364,7 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     for one, other in (("real", "imag"), ("imag", "real")):
         if node.attr == one:
             yield here.within(node, "attr", other, "function", 1.05)
-    if not isinstance(node.value, ast.Name):
+    if not isinstance(node.value, ast.Name | ast.Subscript | ast.Attribute):
         return
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
@@ -387,7 +395,7 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         new = value * factor
         new = int(new) if new == int(new) else new
         yield here.within(here.node, "value", new, "factor", 1.15)
-    if isinstance(value, int):
+    if isinstance(value, int) or value in (0.0, 1.0):
         for new in (value + 1, value - 1):
             power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
             kind = "power" if power else "number"

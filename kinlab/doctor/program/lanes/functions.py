@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes, values_in
+from kinlab.doctor.program.own.calls import QUICK, REAL
 
 _OF_ONE = (
     *("sin", "cos", "tan", "arcsin", "arccos", "arctan"),
@@ -30,20 +31,21 @@ _ARRAYS = ("array", "asarray", "ascontiguousarray", "asanyarray")
 _AS_FLOAT = (float, np.float64, "float", "float64", "d", complex, "complex")
 
 
-def with_lanes(space: dict[str, Any], quick: ModuleType) -> dict[str, Any]:
+def with_lanes(space: dict[str, Any]) -> dict[str, Any]:
     """What the names of a program stand for where its numbers have lanes.
 
     Args:
         space: what they stand for now.
-        quick: what stands for numpy there.
     """
-    library = _module(quick, _NUMPY | {"linalg": _module(np.linalg, _LINEAR)})
-    known: dict[int, Any] = {id(quick): library, id(np): library}
+    library = _module(QUICK, _NUMPY | {"linalg": _module(np.linalg, _LINEAR)})
+    known: dict[int, Any] = {id(QUICK): library, id(np): library}
     known[id(np.linalg)] = library.linalg
-    known[id(math)], known[id(cmath)] = _module(math, _OF_MATH), _module(cmath, _OF_MATH)
-    for module, own in ((np, _NUMPY), (quick, _NUMPY), (np.linalg, _LINEAR)):
-        known |= {id(getattr(module, name)): new for name, new in own.items()}
-    known |= {id(getattr(math, name)): new for name, new in _OF_MATH.items() if hasattr(math, name)}
+    known[id(math)] = known[id(REAL)] = _module(REAL, _OF_MATH)
+    known[id(cmath)] = _module(cmath, _OF_MATH)
+    made = ((np, _NUMPY), (QUICK, _NUMPY), (np.linalg, _LINEAR), (math, _OF_MATH), (REAL, _OF_MATH))
+    for module, own in made:
+        known |= {id(getattr(module, name)): new for name, new in own.items()
+                  if hasattr(module, name)}  # fmt: skip
     new = {name: known[id(value)] for name, value in space.items() if id(value) in known}
     return {"float": _Float, "complex": _Complex, **new}
 
@@ -234,10 +236,10 @@ _NUMPY: dict[str, Any] = {
 }
 _OF_MATH: dict[str, Any] = {
     **{
-        name: _of_one(getattr(np, _MATH.get(name, name)), getattr(math, name, None) or
+        name: _of_one(getattr(np, _MATH.get(name, name)), getattr(REAL, name, None) or
                       getattr(cmath, name))
         for name in (*_OF_ONE, *_MATH)
-        if hasattr(math, name) or hasattr(cmath, name)
+        if hasattr(REAL, name) or hasattr(cmath, name)
     },
     **{name: _of_two(getattr(np, own), getattr(math, name)) for name, own in _MATH_OF_TWO.items()},
 }  # fmt: skip

@@ -15,10 +15,12 @@ from kinlab.doctor.program.lanes.numbers import Laned, Lanes, TooMuchError
 from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.lanes.woven import Edits, Woven
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.trial import QUICK, FailedError, FieldChange, Trial, made
+from kinlab.doctor.program.trial import FailedError, FieldChange, Trial, made
 
 _MOST = 60_000_000
 """Work of one run."""
+_FEWEST = 60
+"""Lanes of which no half is run alone."""
 
 
 class InLanes:
@@ -64,12 +66,40 @@ class InLanes:
     def answers(self, chosen: Any, count: int | None = None, most: int = _MOST) -> Array | None:
         """The numbers of the answers with these edits, (C, S, P); NaN where a lane was lost.
 
-        None where the program does something that lanes cannot follow.
+        Where one of them makes the program do what lanes cannot follow, each half is run alone.
+        None where that is of no use, or more work than may be done.
 
         Args:
             chosen: the numbers of the edits of each lane, (C, most); -1 for none.
             count: how many of the states are asked; None for all.
             most: work that may be done.
+        """
+        before = self.work
+        try:
+            return self._answered(chosen, count, most)
+        except TooMuchError:
+            return None
+        except (FailedError, TypeError, ValueError):
+            if len(chosen) <= _FEWEST:
+                return None
+        halves = np.array_split(chosen, 2)
+        found = []
+        for half in halves:
+            left = most - (self.work - before)
+            found.append(self.answers(half, count, left) if left > 0 else None)
+        size = next((one.shape[1:] for one in found if one is not None), None)
+        if size is None or any(one is not None and one.shape[1:] != size for one in found):
+            return None
+        both = zip(halves, found, strict=True)
+        lost = [np.full((len(x), *size), np.nan) if one is None else one for x, one in both]
+        return np.concatenate(lost)
+
+    def _answered(self, chosen: Any, count: int | None, most: int) -> Array:
+        """The same, all run together.
+
+        Raises:
+            FailedError: the program does something that lanes cannot follow.
+            TooMuchError: it is more work than may be done.
         """
         lanes = Lanes(chosen, most)
         stacks: list[Any] = []
@@ -80,8 +110,6 @@ class InLanes:
                     entries = np.array(answer, dtype=object).ravel()
                     stacks.append([_full(entry, lanes) for entry in entries])
                 found = np.array(stacks)
-        except (FailedError, TooMuchError, TypeError, ValueError):
-            return None
         finally:
             self.work += lanes.work
         found = found.transpose(2, 0, 1)
@@ -100,7 +128,7 @@ class InLanes:
             with trial.as_loaded():
                 for change in self._wide:
                     change.put(change.new)
-                trial.space.update(with_lanes(trial.space, QUICK))
+                trial.space.update(with_lanes(trial.space))
                 ways = Ways(lanes)
                 trial.space |= {"_pick": lanes.pick, "_kept": ways.kept}
                 trial.space |= {"_turns": ways.turns, "_sides": ways.sides}

@@ -31,6 +31,8 @@ _THIRDS = 4
 """Edits that are tried as the third of two."""
 _ALIKE = 8
 """Edits of one effect that are kept."""
+_NOWHERE = 1e3
+"""Stands for an answer that is no number, relative to the answer's size."""
 _EXCHANGED = 0.5
 """What it costs to take a term out and put another in."""
 
@@ -62,6 +64,11 @@ class Effects:
     goal: Array
     near: float
     likely: Callable[[ProgramEdit], float]
+
+    def known(self, rows: Array) -> Array:
+        """Answers, (C, P), with what stands for none where the program has none either."""
+        none = (self.own[: rows.shape[1]] == _NOWHERE) & ~np.isfinite(rows)
+        return np.where(none, _NOWHERE, rows)
 
     def beside(self, other: Effects) -> Effects:
         """More numbers of the same answers, for those edits of which they are known."""
@@ -231,24 +238,32 @@ def _meeting(sought: Array, each: Array, near: float) -> list[tuple[int, int]]:
 
 def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
     """The effects of edits that were tried; None where the program has no answer."""
-    own = search.values(search.first)
-    if own is None or not np.isfinite(own).all():
+    values = search.values(search.first)
+    if values is None:
         return None
     scale = search.scale
+    own = (values / scale).ravel()
+    lost = ~np.isfinite(own)
+    own[lost] = _NOWHERE
     kept: dict[bytes, tuple[list[ProgramEdit], Array]] = {}
     for edit, values in tried:
-        effect = ((values - own) / scale).ravel()
-        if not np.isfinite(effect).all() or np.max(np.abs(effect)) < TOLERANCES.effects_add_up:
+        row = (values / scale).ravel()
+        effect = np.where(lost & ~np.isfinite(row), _NOWHERE, row) - own
+        if not np.isfinite(effect).all():
             continue
         key = (np.round(effect, 7) + 0.0).tobytes()
+        if np.max(np.abs(effect)) < TOLERANCES.effects_add_up:
+            if not lost.any():
+                continue
+            key = str(id(edit)).encode()  # what it does to an answer that is none is not known
         kept.setdefault(key, ([], effect))[0].append(edit)
     alike = [(sorted(edits, key=search.likely)[:_ALIKE], row) for edits, row in kept.values()]
     alike.sort(key=lambda pair: search.likely(pair[0][0]))
     return Effects(
         [edits for edits, _row in alike],
         np.array([row for _edits, row in alike]).reshape(len(alike), own.size),
-        (own / scale).ravel(),
-        ((search.wanted[search.first] - own) / scale).ravel(),
+        own,
+        (search.wanted[search.first] / scale).ravel() - own,
         max(TOLERANCES.tried_further, search.allowed),
         search.likely,
     )

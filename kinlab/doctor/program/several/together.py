@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import cached_property
 from itertools import islice
 from typing import Any
 
@@ -24,6 +25,8 @@ _BLOCK = 120
 """Edits of which each is run with each of as many others at a time."""
 _EDITS = 1600
 """Edits of which any two are run together."""
+_FIRST = 2
+"""Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
 """Share of the edits that lanes must follow, for what they tell to be of use."""
 _WITHIN = 200
@@ -32,7 +35,7 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 90_000_000, 20_000_000
+_ALL, _LEAST = 90_000_000, 45_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 250_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
@@ -42,6 +45,8 @@ _BEYOND = 10_000_000
 """What one run may take beyond what is left."""
 _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
+_TO_READ = 200
+"""Work of finding where the tool is for an answer's joint positions."""
 _FOR_THREES = 4
 """Of the work the part that pairs leave to threes."""
 _NONE = -1
@@ -68,8 +73,6 @@ class TriedTogether:
         self.usable = False
         states = search.states_at(search.first)
         edits = known.alike[:_EDITS]
-        if search.case.quantity.read is not None:
-            return
         for counts in (True, False):  # whole numbers may be what something is counted by
             try:
                 self.lanes = InLanes(search.trial, search.observed, edits, states, counts)
@@ -103,17 +106,14 @@ class TriedTogether:
         before = self.lanes.work
         found = self.lanes.answers(chosen, count, _BEYOND + max(self.left, 0))
         self.left -= self.lanes.work - before
-        if found is None:
+        values = None if found is None else self.search.of_lanes(found)
+        if values is None:
             return None
-        states = self.search.first[: found.shape[1]]
-        wanted = self.search.wanted[states].reshape(len(states), -1)
-        if wanted.shape != found.shape[1:]:
-            return None
-        found = self.search.from_right_zero(found, wanted)
-        scale = self.search.scale[: len(states)].reshape(len(states), -1)
-        rows: Array = (found / scale).reshape(len(chosen), -1)
+        if self.search.case.quantity.read is not None:
+            self.left -= _TO_READ * values.shape[0] * values.shape[1]
+        rows: Array = (values / self.search.scale[: values.shape[1]]).reshape(len(chosen), -1)
         self.left -= rows.size // _NUMBERS
-        return rows - self.known.own[: rows.shape[1]]
+        return self.known.known(rows) - self.known.own[: rows.shape[1]]
 
     def _right(self, chosen: Any) -> tuple[Any, Array | None]:
         """Which of some combinations make the program right; and what all do at first."""
@@ -135,19 +135,62 @@ class TriedTogether:
         """Any two edits that make the program right, the likeliest first."""
         found: list[Chosen] = []
         before, kept = 0, 0 if self.search.stand else self.left // _FOR_THREES
-        for rank, one, other in self._blocks() if self.usable else ():
+        for rank, chosen in self._in_turn() if self.usable else ():
             if rank != before and (found or self.left <= kept):
                 break
             before = rank
-            chosen = self._apart(one, other)
-            if not len(chosen):
-                continue
             right, rows = self._right(chosen)
             if rows is None:
-                break
+                continue
             found += [(int(i), int(j)) for i, j in right]
             self._keep(chosen, rows)
         return sorted(found, key=self.known.cost)
+
+    def _in_turn(self) -> Iterator[tuple[int, Any]]:
+        """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
+        likely = True
+        for rank, one, other in self._blocks():
+            if likely and rank > _FIRST:
+                likely = False
+                yield from self._possible_pairs()
+            chosen = self._apart(one, other)
+            if not likely:
+                chosen = chosen[~self._possible_of(chosen)]
+            if len(chosen):
+                yield rank, chosen
+
+    def _possible_pairs(self) -> Iterator[tuple[int, Any]]:
+        """Pairs of which nothing speaks against them, beyond the likeliest; the likeliest first."""
+        every = [self._apart(one, other) for rank, one, other in self._blocks() if rank > _FIRST]
+        if not every:
+            return
+        pairs = np.concatenate(every)
+        pairs = pairs[self._possible_of(pairs)]
+        pairs = pairs[np.argsort((pairs + 1).prod(axis=1), kind="stable")]
+        for start in range(0, len(pairs), _BLOCK**2):
+            yield _FIRST + 1 + start, pairs[start : start + _BLOCK**2]
+
+    def _possible_of(self, pairs: Any) -> Any:
+        """Of which pairs each number that one of them changes alone is made right by it.
+
+        None may leave a wrong number as it is.
+        """
+        moved, spoilt, wrong = self._bits
+        one, other = pairs.T
+        alone = (spoilt[one] & ~moved[other]) | (spoilt[other] & ~moved[one])
+        return (alone == 0) & (wrong & ~(moved[one] | moved[other]) == 0)
+
+    @cached_property
+    def _bits(self) -> tuple[Any, Any, Any]:
+        """As bits the numbers that each edit changes, those it makes wrong, and what is wrong."""
+        bits = 1 << np.arange(min(_BITS, len(self.known.goal)), dtype=np.uint64)
+        size = len(bits)
+        moved, right = (
+            np.where(flags[:, :size], bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
+            for flags in (~self.known.still, self.known.right)
+        )
+        wrong = np.where(self.known.wrong[:size], bits, np.uint64(0)).sum(dtype=np.uint64)
+        return moved, moved & ~right, wrong
 
     def _blocks(self) -> Iterator[tuple[int, Any, Any]]:
         """Some edits and others, the likeliest first: of two slips one is mostly a likely one."""
@@ -207,14 +250,8 @@ class TriedTogether:
         None may leave a wrong number as it is; the likeliest first.
         """
         few = self.sound[:_LIKELY]
-        bits = 1 << np.arange(min(_BITS, len(self.known.goal)), dtype=np.uint64)
-        size = len(bits)
-        moved, right = (
-            np.where(flags[few][:, :size], bits, np.uint64(0)).sum(axis=1, dtype=np.uint64)
-            for flags in (~self.known.still, self.known.right)
-        )
-        wrong = np.where(self.known.wrong[:size], bits, np.uint64(0)).sum(dtype=np.uint64)
-        spoilt, found = moved & ~right, []
+        moved, spoilt, wrong = self._bits
+        moved, spoilt, found = moved[few], spoilt[few], []
         ranks = np.arange(1, len(few) + 1)
         first, second = np.triu_indices(len(few), 1)
         within = self.within[np.ix_(few, few)]

@@ -1,0 +1,75 @@
+"""What a program calls of others, as it is run here: quicker, and without end nowhere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+_LARGEST = 100_000
+"""Numbers that an array, or an outer product, may have."""
+_LONGEST = 5_000
+"""Turns that a loop over numbers may have."""
+
+
+def _cross(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
+    """numpy's cross product; of two vectors of three numbers ten times as fast."""
+    if not rest and not options:
+        a, b = np.asarray(one), np.asarray(other)
+        if a.shape == b.shape == (3,):
+            (a0, a1, a2), (b0, b1, b2) = a.tolist(), b.tolist()
+            return np.array([a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0])
+    return np.cross(one, other, *rest, **options)
+
+
+def bounded_range(*bounds: int) -> range:
+    """A range, but none that an edit made of so many turns: of 200 its square."""
+    found = range(*bounds)
+    if len(found) > _LONGEST:
+        raise ValueError("a range of so many numbers")
+    return found
+
+
+def _outer(one: Any, other: Any, *rest: Any) -> Any:
+    """numpy's outer product, but none that grows without end where an edit made it of a dot."""
+    if np.size(one) * np.size(other) > _LARGEST:
+        raise ValueError("an outer product of so many numbers")
+    return np.outer(one, other, *rest)
+
+
+def _array(*given: Any, **named: Any) -> Any:
+    """numpy's array, but none that grows without end where an edit puts rows for numbers."""
+    found = np.array(*given, **named)
+    if found.size > _LARGEST:
+        raise ValueError("an array of so many numbers")
+    return found
+
+
+QUICK = ModuleType("numpy")
+QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
+
+
+def _or_none(function: Callable[..., float]) -> Callable[..., float]:
+    """One of the standard library's functions, NaN where it raises as it has no value there."""
+
+    def asked(*given: Any) -> float:
+        try:
+            return function(*given)
+        except ValueError:
+            return math.nan
+
+    return asked
+
+
+_ROOTS = {name: _or_none(getattr(math, name)) for name in ("acos", "asin", "sqrt")}
+REAL = ModuleType("math")
+REAL.__dict__.update(vars(math), **_ROOTS)
+
+CALLS: dict[int, Any] = {id(np): QUICK, id(np.cross): _cross}
+"""What stands for modules and functions, by their identity."""
+REAL_CALLS: dict[int, Any] = {id(math): REAL}
+REAL_CALLS |= {id(getattr(math, name)): new for name, new in _ROOTS.items()}
+"""The same for programs that do not catch errors themselves."""
