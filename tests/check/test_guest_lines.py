@@ -98,7 +98,8 @@ def stuck(function):
     yield function
 
 
-def test_what_is_asked_comes_one_by_one(file):
+def test_what_is_asked_comes_one_by_one(file, monkeypatch):
+    monkeypatch.setenv("KINLAB_CHECK_SECONDS", "4")
     function = Guest(str(file)).formulas[0].function
     assert [*function.ask(counted, 2)] == [0, 1, "sign"]
     first = function.ask(counted, 2)
