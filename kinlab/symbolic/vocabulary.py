@@ -98,6 +98,8 @@ def vocabulary(table: DHTable) -> Vocabulary:
         for k, axis in enumerate(_AXES):
             if f"{which}{axis}" not in words.entries:
                 words.put(f"{which}{axis}", f"{axis}{suffix}", offset[k])
+    if not is_planar(table):
+        _of_books(words, table)
     return words
 
 
@@ -147,9 +149,43 @@ def _spatial_lengths(words: Vocabulary, table: DHTable) -> None:
         words.put(f"a{i}", f"a{i - before}", link.a)
         words.put(f"d{i}", f"d{i}", link.d)
         _inertial(words, i, link)
-    for i, link in enumerate(table.links, 1):
+
+
+def _of_books(words: Vocabulary, table: DHTable) -> None:
+    """What books call lengths, centres and moments of an arm that is not planar."""
+    before = 1 if table.convention is Convention.MODIFIED else 0
+    if before and words.entries["toolx"]:
+        words.others[f"a{table.n}"] = words.entries["toolx"]
+    for (i, link), axis in zip(enumerate(table.links, 1), _about(table), strict=True):
         behind = f"a{i + before}" if i + before <= table.n else "toolx"
         _as_in_books(words, i, link, behind, before)
+        moment = words.entries[f"inertia{i}{axis}{axis}"] if axis else ()
+        if moment:
+            words.others |= dict.fromkeys((f"I{i}", f"J{i}"), moment)
+
+
+def _about(table: DHTable) -> list[str]:
+    """The axis of each link's frame about which the link turns, where it is always the same one.
+
+    Empty where it is none: hinges that are not parallel, a frame that stands askew.
+    """
+    modified = table.convention is Convention.MODIFIED
+    turn, hinges, frames = np.eye(3), [], []
+    for link, transform in zip(table.links, table.link_transforms(np.zeros(table.n)), strict=True):
+        before, turn = turn, turn @ transform[:3, :3]
+        if link.joint == "revolute":
+            hinges.append((turn if modified else before)[:, 2])
+        frames.append(turn)
+    parallel = hinges and all(
+        np.linalg.norm(np.cross(hinges[0], one)) <= TOLERANCES.right_angle for one in hinges
+    )
+    if not parallel:
+        return [""] * table.n
+    along = [np.abs(frame.T @ hinges[0]) for frame in frames]
+    return [
+        _AXES[int(np.argmax(one))] if 1.0 - np.max(one) <= TOLERANCES.right_angle else ""
+        for one in along
+    ]
 
 
 def _inertial(words: Vocabulary, i: int, link: DHLink) -> None:

@@ -97,6 +97,7 @@ KINDS: dict[str, str] = {
     N_("names exchanged"): N_("two names are exchanged"),
     N_("columns swapped"): N_("two columns are exchanged"),
     N_("reversed"): N_("numbers stand in the reverse order"),
+    N_("shifted"): N_("numbers stand one place on"),
     N_("whole division"): N_("a division leaves the remainder out"),
     N_("missing statement"): N_("a line is missing"),
     N_("missing argument"): N_("an argument is missing"),

@@ -7,12 +7,11 @@ from types import ModuleType
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.places import Here, ProgramEdit, called, places
+from kinlab.doctor.program.places import ROUNDING, Here, ProgramEdit, called, places
 from kinlab.doctor.program.repair import LineSearch
 
 _SHORT = ("float16", "half", "float32", "single", "f2", "f4", "int16", "int32", "int64", "int")
 """Kinds of numbers with fewer digits than a float's."""
-_ROUNDING = ("round", "around", "round_", "rint", "trunc", "fix", *_SHORT)
 
 
 def cuts(search: LineSearch) -> tuple[ProgramEdit, ...]:
@@ -42,7 +41,7 @@ def _rounded(node: Any, search: LineSearch) -> ast.expr | None:
     base = function.value if isinstance(function, ast.Attribute) else None
     module = getattr(base, "id", "")
     if base is None or isinstance(search.trial.space.get(module), ModuleType):
-        return node.args[0] if name in _ROUNDING and node.args else None
+        return node.args[0] if name in (*ROUNDING, *_SHORT) and node.args else None
     if name == "astype":
         return base if any(_name(one) in _SHORT for one in node.args) else None
     return base if name == "round" else None

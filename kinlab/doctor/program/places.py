@@ -121,6 +121,10 @@ def called(node: ast.Call) -> str:
     return target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
 
 
+ROUNDING = ("round", "around", "round_", "rint", "trunc", "fix")
+"""Functions that round."""
+
+
 def number(value: Any) -> ast.expr:
     """A number as it is written."""
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)

@@ -35,7 +35,7 @@ from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_number
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed, amounts
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
+from kinlab.doctor.program.places import DATA, ROUNDING, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import OwnProgram
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, named_in, quietly
 from kinlab.doctor.program.variants import Variants
@@ -446,7 +446,13 @@ class LineSearch:
         return found
 
     def _other_arms(self) -> tuple[OtherArm | None, OtherArm | None]:
-        """An arm whose numbers are unrelated, and one that is larger as a whole."""
+        """An arm whose numbers are unrelated, and one that is larger as a whole.
+
+        A program that rounds need not be right for any other.
+        """
+        every = (node for tree in self.trial.trees for node in nodes(tree))
+        if any(isinstance(node, ast.Call) and called(node) in ROUNDING for node in every):
+            return None, None
         asked = self.case.robot, self.trial, self.observed
         return arm_apart(*asked), other_arm(*asked)
 

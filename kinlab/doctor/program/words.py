@@ -69,6 +69,7 @@ _WHAT = {
     "missing factor": N_("a factor is missing"),
     "names exchanged": N_("two names are exchanged"),
     "reversed": N_("the numbers stand in the reverse order"),
+    "shifted": N_("the numbers stand one place on"),
     "rows swapped": N_("two rows are exchanged"),
     "columns swapped": N_("two columns are exchanged"),
     "whole division": N_("the division leaves the remainder out"),
@@ -204,6 +205,7 @@ _NUMBERS = (
     "rows swapped",
     "columns swapped",
     "reversed",
+    "shifted",
 )
 _SLIPS = {
     "missing term": _LEFT_OUT,

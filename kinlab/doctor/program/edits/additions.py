@@ -6,6 +6,7 @@ import ast
 from collections.abc import Iterator, Sequence
 from math import pi
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +23,8 @@ _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
+_NEAR = 0.06
+"""The same of a matrix that stands in front of another vector of the line."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
 _UNUSED = 0.2
@@ -47,6 +50,8 @@ class Scope:
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
         addends: the terms of the sums that are set, by what is set, without its number.
+        factors: what stands in front of a product of matrices, by the statements' identities.
+        pi: how the program may write it; None where it cannot.
         cross: what gives the product of two vectors, where it is known.
         whole: names of whole numbers that are given to a function, and counters.
     """
@@ -66,6 +71,8 @@ class Scope:
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.addends: dict[str, set[str]] = {}
+        self.factors: dict[int, set[str]] = {}
+        self.pi = _pi_of(trial.space)
         self._inside: frozenset[str] = frozenset()
         self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
@@ -98,6 +105,10 @@ class Scope:
                 self._of_expression(node, observed, inner - outer)
             if isinstance(node, ast.Assign):
                 self._of_addends(node)
+            if isinstance(node, ast.Assign | ast.AugAssign | ast.Return):
+                products = (x for x in nodes(node) if isinstance(x, ast.BinOp))
+                turned = [x.left for x in products if isinstance(x.op, ast.MatMult)]
+                self.factors[id(node)] = {ast.unparse(one) for one in turned}
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
@@ -227,6 +238,17 @@ class Scope:
                 yield text, node
 
 
+def _pi_of(space: dict[str, Any]) -> ast.expr | None:
+    if isinstance(space.get("np"), ModuleType):
+        return PI
+    for name, value in space.items():
+        if isinstance(value, float) and value == pi:
+            return ast.Name(name, ast.Load())
+        if isinstance(value, ModuleType) and getattr(value, "pi", None) == pi:
+            return ast.Attribute(ast.Name(name, ast.Load()), "pi", ast.Load())
+    return None
+
+
 def _cross(calls: list[ast.Call], observed: Observed, has_numpy: bool) -> ast.expr | None:
     """The function with which a part takes products of vectors; without one numpy's."""
     for call in calls:
@@ -273,6 +295,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     product = isinstance(op, ast.MatMult)
     entry = isinstance(parent, ast.List | ast.Tuple)
     whole = isinstance(parent, ast.Assign | ast.AugAssign | ast.Return) or entry
+    whole = whole or (isinstance(parent, ast.IfExp) and here.field != "test")
     trig = isinstance(parent, ast.Call) and called(parent) in ANGLES
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
@@ -301,6 +324,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         return
     if shape == ():
         yield from _scalars(here, scope, summand or whole or below, operated)
+        if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
+            yield from _supplements(here, scope)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
 
@@ -337,9 +362,10 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         return
     if isinstance(node, ast.Name) and len(shape) > 2:
         return
+    beside = scope.factors.get(id(_statement(here.above)), set())
     for size in {shape[0], shape[-1]}:
-        for _text, matrix in scope.simple((size, size)):
-            cost = 1.02 + scope.dear(matrix)
+        for text, matrix in scope.simple((size, size)):
+            cost = 1.02 + min(scope.dear(matrix), _NEAR if text in beside else 1.0)
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue
@@ -388,6 +414,15 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _supplements(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The other angle of a triangle, or the one that is measured the other way."""
+    node, pi_ = here.node, scope.pi
+    if pi_ is not None:
+        yield here.instead(ast.BinOp(pi_, ast.Sub(), node), "missing term", 1.1)
+        for op in (ast.Sub(), ast.Add()):
+            yield here.instead(ast.BinOp(node, op, pi_), "missing term", 1.12)
 
 
 def _factors_beside(here: Here) -> set[str]:
@@ -446,9 +481,14 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                     yield here.instead(new, "missing term", 1.15)
 
 
+def _statement(above: Sequence[ast.AST]) -> ast.stmt:
+    """The innermost statement."""
+    return next(one for one in reversed(above) if isinstance(one, ast.stmt))
+
+
 def _stem(above: Sequence[ast.AST]) -> str:
     """What a statement sets, without its number or indices: ``m`` of ``m12``, ``M`` of an entry."""
-    statement = next(one for one in reversed(above) if isinstance(one, ast.stmt))
+    statement = _statement(above)
     if not isinstance(statement, ast.Assign):
         return ""
     return ast.unparse(statement.targets[0]).split("[")[0].rstrip("0123456789")

@@ -79,6 +79,10 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
             turned = tuple(FieldChange(value, k, x) for k, x in enumerate(back) if value[k] != x)
             if len(turned) > _PAIR:
                 yield _swap(turned, "reversed", name, place, (_row(value), _row(back)))
+            for on in (1, -1):  # of the frame before, or behind
+                moved = [*value[-on:], *value[:-on]]
+                turned = tuple(FieldChange(value, k, x) for k, x in enumerate(moved))
+                yield _swap(turned, "shifted", name, place, (_row(value), _row(moved)))
         return
     rows = [one for one in value if isinstance(one, list | tuple | np.ndarray)]
     flat = all(_is_plain(x) for one in rows for x in one)

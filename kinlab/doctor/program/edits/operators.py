@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
@@ -24,6 +24,10 @@ _PLACE = 3
 """Where the 1 stands in what a transform is multiplied with."""
 _FLAT = 0.1
 """What it costs more to take a number for a matrix."""
+_THREE = 3
+"""Indices of which any order is tried."""
+_PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
+"""Entries that are exchanged where they are moved on; what rows of numbers are made of."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 
@@ -260,6 +264,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         return
     keys = keys_of(node)
     yield from of_keys(here, node, 1.1)
+    yield from _in_another_order(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
         if whole_constant(key):
@@ -274,6 +279,26 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _in_another_order(here: Here) -> Iterator[ProgramEdit]:
+    """The indices of ``D[k][i, j]`` in another order."""
+    node, outer = here.node, here.node.value
+    if not isinstance(outer, ast.Subscript) or isinstance(outer.value, ast.Subscript):
+        return
+    keys = [key for one in (outer, node) for _holder, _field, key in keys_of(one)]
+    plain = all(isinstance(key, ast.Name) or whole_constant(key) for key in keys)
+    if not plain or len(keys) > _THREE:
+        return
+    count = len(keys_of(outer))
+    for order in [*permutations(keys)][1:]:
+        if [*map(ast.dump, order)] != [*map(ast.dump, keys)]:
+            first = ast.Subscript(outer.value, _key(order[:count]), ast.Load())
+            yield here.instead(ast.Subscript(first, _key(order[count:]), node.ctx), "index", 1.12)
+
+
+def _key(keys: Sequence[ast.expr]) -> ast.expr:
+    return keys[0] if len(keys) == 1 else ast.Tuple([*keys], ast.Load())
 
 
 def _of_key(here: Here, key: ast.Constant, scope: Scope) -> Iterator[ProgramEdit]:
@@ -310,8 +335,8 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
     if len(keys) == 2:
         swapped = ast.Tuple([keys[1], keys[0]], ast.Load())
         yield here.within(node, "slice", swapped, "transposed", cost)
-    if len(keys) == 3 and len({ast.dump(key) for key in keys}) > 1:
-        for order in [*permutations(range(3))][1:]:
+    if len(keys) == _THREE and len({ast.dump(key) for key in keys}) > 1:
+        for order in [*permutations(range(_THREE))][1:]:
             other = ast.Tuple([keys[k] for k in order], ast.Load())
             if ast.dump(other) != ast.dump(node.slice):
                 yield here.within(node, "slice", other, "index", 1.12)
@@ -409,6 +434,10 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
     yield from _swapped(here, here.node)
+    if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
+        for on in (1, -1):  # of the frame before, or behind
+            moved = [*elements[-on:], *elements[:-on]]
+            yield here.within(here.node, "elts", moved, "shifted", 1.13)
 
 
 def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:

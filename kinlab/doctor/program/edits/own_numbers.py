@@ -11,7 +11,7 @@ import numpy as np
 
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.additions import ANGLES
-from kinlab.doctor.program.edits.data import NumberPlace, numbers
+from kinlab.doctor.program.edits.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, Here, ProgramEdit, called, number, places
 from kinlab.doctor.program.trial import Trial
@@ -45,10 +45,13 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
-    if any(among(x, lengths) for x in typed):  # lengths are typed where they are used
+    given = {abs(float(place.value)) for place in every}
+    left_out = [x for x in lengths if not among(x, [*given])]
+    if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
+                yield from _instead_of_zero(here, trial, left_out)
 
 
 def sizes_of(table: DHTable) -> dict[str, list[float]]:
@@ -109,6 +112,17 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
             for more in (ast.Add(), ast.Sub()):
                 edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.14)
                 yield replace(edit, of_the_arm=True)
+
+
+def _instead_of_zero(here: Here, trial: Trial, lengths: Sequence[float]) -> Iterator[ProgramEdit]:
+    """A length that the program names nowhere for a zero of a row, or one that is given on."""
+    node, parent = here.node, here.parent
+    if not isinstance(node, ast.Constant) or isinstance(node.value, bool) or node.value != 0:
+        return
+    own = {part.name for part in trial.program.parts}
+    if measured(parent) or (isinstance(parent, ast.Call) and called(parent) in own):
+        for length in lengths:
+            yield replace(here.instead(number(length), "number", 1.12), of_the_arm=True)
 
 
 def may_be_gravity(value: float) -> bool:

@@ -293,6 +293,9 @@ class Laned:
     def __abs__(self) -> Laned:
         return self.of(np.abs)
 
+    def __round__(self, digits: int = 0) -> Laned:
+        return self.of(lambda values: np.round(values, digits))
+
     def conjugate(self) -> Laned:
         """As of any number."""
         return self.of(np.conjugate)

@@ -37,7 +37,7 @@ _TRIED = 2000
 """Threes that are run, of each way to tell them."""
 _ALL, _LEAST = 90_000_000, 45_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
-_LIKELY, _PRODUCT = 300, 250_000
+_LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
 _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
