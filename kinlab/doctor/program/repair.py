@@ -31,6 +31,7 @@ from kinlab.doctor.program.edits.own_numbers import of_own_numbers
 from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
+from kinlab.doctor.program.grounds.products import missing_products
 from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_numbers, own_rows
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.lanes.run import InLanes
@@ -353,6 +354,7 @@ class LineSearch:
         every = edits(self.trial, self.observed)
         every += of_table(self.trial, self.observed, self.case.robot)
         every += of_own_numbers(self.trial, self.observed, self.case.robot)
+        every += missing_products(self.trial, self.observed, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [edit for edit in every if edit.part != DATA or not sure(edit)]
         named, rows = _named_numbers(self.trial), own_rows(self.case.robot)

@@ -100,6 +100,10 @@ class Dimensions:
         """The dimension of an expression of the program as the logarithm of a factor."""
         return self._known.get(id(node))
 
+    def of_text(self, text: str) -> float | None:
+        """The same of a name or an entry, by what it is as text."""
+        return self._texts.get(text)
+
     @cached_property
     def consistent(self) -> bool:
         """Whether nothing in the program adds what cannot be added."""
