@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hand_programs import asked, searched, written
+from hand_programs import asked, repaired, searched, written
 
 import kinlab as kl
 from kinlab.doctor.program.grounds.dimensions import Dimensions
@@ -95,12 +95,101 @@ def f(q):
                           [0, sa, ca, d[i]], [0, 0, 0, 1]])
     return T
 """
+NEWTON = """
+import numpy as np
+
+m = [3.0, 2.0, 1.2]
+com = np.array([[0.2, 0.02, -0.01], [0.15, -0.01, 0.03], [0.12, 0.03, 0.01]])
+inertia = [np.diag([0.02, 0.08, 0.07]), np.diag([0.01, 0.04, 0.045]),
+           np.array([[0.004, 0.001, 0], [0.001, 0.012, 0.0005], [0, 0.0005, 0.014]])]
+p = [np.zeros(3), np.array([0.45, 0, 0]), np.array([0.35, 0, 0])]
+tilt = [0, 0, np.pi/2]
+
+def turned(alpha, t):
+    ca, sa = np.cos(alpha), np.sin(alpha)
+    return np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t)*ca, np.cos(t)*ca, -sa],
+                     [np.sin(t)*sa, np.cos(t)*sa, ca]])
+
+def f(q, qd, qdd):
+    z = np.array([0, 0, 1.0])
+    R = [turned(tilt[i], q[i]) for i in range(3)]
+    w, dw, dv = np.zeros(3), np.zeros(3), np.array([0, 0, 9.81])
+    F, N = [], []
+    for i in range(3):
+        dv = R[i].T @ (dv + np.cross(dw, p[i]) + np.cross(w, np.cross(w, p[i])))
+        w = R[i].T @ w
+        dw = R[i].T @ dw + qdd[i]*z + np.cross(w, qd[i]*z)
+        w = w + qd[i]*z
+        F.append(m[i]*(dv + np.cross(dw, com[i]) + np.cross(w, np.cross(w, com[i]))))
+        N.append(inertia[i] @ dw + np.cross(w, inertia[i] @ w))
+    force, moment, tau = np.zeros(3), np.zeros(3), np.zeros(3)
+    for i in (2, 1, 0):
+        moment = N[i] + moment + np.cross(com[i], F[i])
+        force = force + F[i]
+        tau[i] = moment @ z
+        moment = R[i] @ moment + np.cross(p[i], R[i] @ force)
+        force = R[i] @ force
+    return tau
+"""
+CHRISTOFFEL = """
+import numpy as np
+
+def M(q):
+    h = 1.5*0.5*0.2*np.cos(q[1])
+    J = 1.5*0.4**2/3
+    return np.array([[2.0*0.5**2/3 + 1.5*0.5**2 + J + 2*h, J + h], [J + h, J]])
+
+def f(q, v):
+    e = 1e-6
+    D = [(M(q + e*x) - M(q - e*x))/(2*e) for x in np.eye(2)]
+    C = np.zeros((2, 2))
+    for i in range(2):
+        for j in range(2):
+            for k in range(2):
+                C[i, j] += 0.5*(D[k][i, j] + D[j][i, k] - D[i][j, k])*v[k]
+    return C
+"""
+ROUNDS = """
+import numpy as np
+
+l, shift, lift = [0.4318, 0.0203], 0.15005, 0.4318
+
+def joint(t, d, a, alpha):
+    ca, sa = round(np.cos(alpha)), round(np.sin(alpha))
+    return np.array([[np.cos(t), -np.sin(t)*ca, np.sin(t)*sa, a*np.cos(t)],
+                     [np.sin(t), np.cos(t)*ca, -np.cos(t)*sa, a*np.sin(t)],
+                     [0, sa, ca, d], [0, 0, 0, 1]])
+
+def f(q):
+    h = np.pi/2
+    rows = [(0, 0, h), (0, l[0], 0), (shift, l[1], -h), (lift, 0, h), (0, 0, -h), (0, 0, 0)]
+    T = np.eye(4)
+    for t, row in zip(q, rows):
+        T = T @ joint(t, *row)
+    return T
+"""
+ENTRIES = """
+import numpy as np
+
+def f(q):
+    m1, m2, l1, c1, c2 = 2.0, 1.5, 0.5, 0.25, 0.2
+    I1, I2 = 2.0*0.5**2/12, 1.5*0.4**2/12
+    h, k = m2*l1*c2*np.cos(q[1]), I2 + m2*c2**2
+    m22 = k
+    m12 = m22 + h
+    m11 = I1 + m1*c1**2 + m2*l1**2 + m22 + 2*h
+    return np.array([[m11, m12], [m12, m22]])
+"""
 PROGRAMS = {
     "motion": ("planar2r_rods", "kinetic_energy", MOTION),
     "closed": ("planar2r_rods", "inverse_dynamics", CLOSED),
     "typed": ("planar2r", "fk", TYPED),
     "bodies": ("planar2r_rods", "gravity_torques", BODIES),
     "degrees": ("puma560", "fk", DEGREES),
+    "newton": ("spatial3r", "inverse_dynamics", NEWTON),
+    "christoffel": ("planar2r_rods", "coriolis_matrix", CHRISTOFFEL),
+    "rounds": ("puma560", "fk", ROUNDS),
+    "entries": ("planar2r_rods", "mass_matrix", ENTRIES),
 }
 SLIPS = [
     ("motion", "np.cross(w, coms[i])", "np.cross(v, coms[i])", "another vector in a product"),
@@ -113,6 +202,12 @@ SLIPS = [
     ("typed", "trans(0.5, 0, 0)", "trans(0.7, 0, 0)", "a length of nobody's"),
     ("bodies", "load = m[0] + m[1]", "load = m[1]", "the entry before as well"),
     ("typed", "rotz(q[0]) @ trans", "rotz(q[1]) @ trans", "an index"),
+    ("typed", "trans(0.5, 0, 0)", "trans(0, 0, 0)", "a length that is left out"),
+    ("newton", " + np.cross(w, qd[i]*z)", "", "the velocity's part of an acceleration"),
+    ("newton", " + np.cross(w, inertia[i] @ w)", "", "the gyroscopic moment"),
+    ("christoffel", "D[i][j, k]", "D[j][i, k]", "indices in another order"),
+    ("rounds", "(lift, 0, h)", "(shift, 0, h)", "a name in a program that rounds"),
+    ("entries", "m12 = m22 + h", "m12 = m22", "a term that stands in the next line"),
 ]  # fmt: skip
 
 
@@ -139,8 +234,11 @@ def test_a_slip_is_told(name, old, new) -> None:
          "twists, degrees are taken for radians"),
         ("degrees", "a = [0, 0.4318, 0.0203, 0, 0, 0]", "a = [0, 0, 0, 0.0203, 0.4318, 0]",
          "a, the numbers stand in the reverse order"),
+        ("degrees", "a = [0, 0.4318, 0.0203, 0, 0, 0]", "a = [0.4318, 0.0203, 0, 0, 0, 0]",
+         "a, the numbers stand one place on"),
     ],
-    ids=["a cross product", "a vector without its factor", "a row in degrees", "a row in reverse"],
+    ids=["a cross product", "a vector without its factor", "a row in degrees", "a row in reverse",
+         "a row moved on"],
 )  # fmt: skip
 def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
     robot, quantity, text = PROGRAMS[name]
@@ -154,6 +252,8 @@ def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
     [
         pytest.param("closed", [("J2 = I2 + m2*c2**2", "J2 = I2"), ("h*np.sin(q[1])*v[0]**2", "-h*np.sin(q[1])*v[0]**2")], id="an axis and a sign"),
         pytest.param("typed", [("trans(0.5, 0, 0)", "trans(0.7, 0, 0)"), ("@ trans(0.4, 0, 0)", "@ trans(0, 0.4, 0)")], id="a number and an order"),
+        pytest.param("newton", [(" + np.cross(w, qd[i]*z)", ""), ("moment = R[i] @ moment + np", "moment = R[i].T @ moment + np")], id="two of Newton and Euler"),
+        pytest.param("rounds", [("(0, l[0], 0)", "(0, -l[0], 0)"), ("[0, sa, ca, d]", "[0, -sa, ca, d]")], id="in a program that rounds"),
         pytest.param("bodies", [("load = m[0] + m[1]", "load = m[1]"), ("g*m[1]*c[1]*np.cos", "g*m[1]*c[1]*np.sin")], id="an entry and a function"),
     ],
 )  # fmt: skip
@@ -209,3 +309,48 @@ def test_numbers_that_may_be_several_things_tell_nothing() -> None:
     )
     assert not known.consistent
     assert not known.apart
+
+
+# -------- Inverse kinematics
+
+TRIANGLE = """
+import math
+
+l1, l2 = 0.5, 0.4
+
+def corner(a, b, c):
+    return math.acos((a*a + b*b - c*c)/(2*a*b))
+
+def f(x, y):
+    r = math.hypot(x, y)
+    inner, elbow = corner(r, l1, l2), corner(l1, l2, r)
+    out = []
+    for side in (1, -1):
+        first = math.atan2(y, x) - side*inner
+        second = side*(math.pi - elbow)
+        out.append((first, second))
+    return out
+"""
+
+
+@pytest.mark.parametrize(
+    "slips",
+    [
+        pytest.param([("+ b*b - c*c", "+ b*b + c*c")], id="no value anywhere"),
+        pytest.param([("(math.pi - elbow)", "elbow")], id="the other angle"),
+        pytest.param([("/(2*a*b)", "/(a*b)"), ("atan2(y, x)", "atan2(x, y)")], id="no value, and an order"),
+        pytest.param([("/(2*a*b)", "/(2*a)"), ("side*(math.pi - elbow)", "side*elbow")], id="a factor, and the other angle"),
+    ],
+)  # fmt: skip
+def test_slips_of_inverse_kinematics_are_told(slips) -> None:
+    assert kl.diagnose("planar2r", "inverse_kinematics_xy", written(TRIANGLE)).agrees
+    text = TRIANGLE
+    for right, wrong in slips:
+        assert text.count(right) == 1
+        text = text.replace(right, wrong)
+    found = kl.diagnose("planar2r", "inverse_kinematics_xy", written(text), samples=40)
+    assert found.causes, str(found)
+    mended = [after["f"] for after in repaired(text, found.causes[0].sentence)]
+    assert any(kl.diagnose("planar2r", "inverse_kinematics_xy", f).agrees for f in mended), str(
+        found
+    )

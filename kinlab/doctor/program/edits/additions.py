@@ -27,6 +27,8 @@ _NEAR = 0.06
 """The same of a matrix that stands in front of another vector of the line."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
+_THRICE = 3
+"""How often a name may stand in a sum of three equal links."""
 _UNUSED = 0.2
 """What it is likelier that something is missing which is set and used nowhere."""
 
@@ -310,9 +312,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
-        for value in (2, 0.5):
+        for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             times = ast.BinOp(number(value), ast.Mult(), node)
-            cost = 1.15 if trig else 1.05 + _ODD * (passed or counted)
+            cost = 1.15 if trig or value == _THRICE else 1.05 + _ODD * (passed or counted)
             yield here.instead(times, "factor", cost)
     if trig:
         yield from _angle(here, scope)
@@ -468,7 +470,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
             continue  # what an array is made of is no term of it
         used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
         beside = entry and used and not _of_a_kind(piece, node)
-        if beside and not (isinstance(piece, ast.Name) and piece.id in _entries_beside(here)):
+        if beside and text not in _entries_beside(here):
             continue
         dear = min(scope.dear(piece), _BESIDE if text in siblings else 1.0)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
@@ -501,9 +503,10 @@ def _of_a_kind(piece: ast.expr, node: ast.expr) -> bool:
 
 
 def _entries_beside(here: Here) -> set[str]:
-    """The names in the other entries of a list."""
+    """The names in the other entries of a list, and these themselves."""
     assert isinstance(here.parent, ast.List | ast.Tuple)
-    return {name for one in here.parent.elts if one is not here.node for name in names(one)}
+    others = [one for one in here.parent.elts if one is not here.node]
+    return {*(name for one in others for name in names(one)), *map(ast.unparse, others)}
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
