@@ -50,6 +50,15 @@ def link(app: Sphinx, doctree: nodes.document) -> None:
     app.env.kinlab_notebooks[name] = str(source)
 
 
+def merge(app: Sphinx, env: Any, _docnames: Any, other: Any) -> None:
+    """Takes over what another process has read."""
+    del app
+    env.kinlab_notebooks = {
+        **getattr(env, "kinlab_notebooks", {}),
+        **getattr(other, "kinlab_notebooks", {}),
+    }
+
+
 def write(app: Sphinx, error: Exception | None) -> None:
     """Writes the notebooks beside their pages."""
     if error is not None or app.builder.format != "html":
@@ -65,5 +74,6 @@ def write(app: Sphinx, error: Exception | None) -> None:
 
 def setup(app: Sphinx) -> dict[str, Any]:
     app.connect("doctree-read", link)
+    app.connect("env-merge-info", merge)
     app.connect("build-finished", write)
-    return {"version": "1", "parallel_read_safe": False, "parallel_write_safe": True}
+    return {"version": "1", "parallel_read_safe": True, "parallel_write_safe": True}

@@ -255,14 +255,14 @@ def parse(text: str, place: str = "expression") -> Node:
     try:
         parsed = ast.parse(text, mode="eval")
     except (SyntaxError, ValueError) as problem:
-        near = isinstance(problem, SyntaxError)
-        said = (
-            N_("no arithmetic near column {column}: {text}")
-            if near
-            else N_("no arithmetic: {text}")
-        )
+        column = getattr(problem, "offset", None)
+        said = N_("no arithmetic near column {column}: {text}")
+        if column is None:
+            said = N_("no arithmetic: {text}")
+        elif not 0 < column <= len(text):  # where Python has read it all
+            said = N_("no arithmetic, something is missing at the end: {text}")
         shown = f"{_short(given)}{_remedy(text)}"
-        raise refused(place, said, column=getattr(problem, "offset", 0), text=shown) from None
+        raise refused(place, said, column=column, text=shown) from None
     except (RecursionError, MemoryError):
         raise refused(place, N_("nested too deep")) from None
     if sum(1 for _ in ast.walk(parsed)) > 3 * MOST_NODES:

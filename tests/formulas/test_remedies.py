@@ -20,6 +20,7 @@ from kinlab.host.language import speaking
         ("m1*l1 + l2)*c2", "a bracket is closed too often"),
         ("l1 s1 + l2 s12", "write * between factors"),
         ("l1*s1 +", None),
+        ("l1*", "something is missing at the end: l1*"),
     ],
 )
 def test_no_arithmetic(text, remedy):
@@ -38,6 +39,7 @@ def test_a_power_is_quoted_as_it_was_typed():
     ("typed", "said"),
     [
         ("m2*g*l2*cos(q1+q2", "列附近不是算式"),
+        ("m2*g*l2*", "末尾缺了什么：m2*g*l2*"),
         ("m2*g*l2*c12 = tau2 = 3", "有 2 个等号"),
         (r"\frac{m_2", "这里应当是"),
         ("m2*g*l2*c12*w", "'w' 未知；可选："),
