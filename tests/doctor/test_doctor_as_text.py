@@ -167,6 +167,26 @@ def test_a_books_names_of_arms_that_are_not_planar():
     assert "l_1 should be d_2 in m_2 l_1" in wrong.causes[0].sentence
 
 
+def test_a_moment_is_about_the_one_axis_that_the_arm_turns_about():
+    """The hinge's axis is y of both frames, whatever the other moments are."""
+    hinge = kl.DHLink(alpha=np.pi / 2, theta=np.pi / 2, mass=2.4, com=(0, 0, 0.4),
+                      inertia=np.diag([0.11, 0.12, 0.03]))  # fmt: skip
+    slide = kl.DHLink(
+        "prismatic", lower=0.2, upper=0.9, mass=1.1, inertia=np.diag([0.05, 0.04, 0.02])
+    )
+    table = kl.DHTable("rp", "standard", [hinge, slide], gravity=(0, -9.81, 0))
+    assert kl.diagnose(table, "M11", "m1*lc1^2 + I1 + I2 + m2*d2^2").agrees
+    assert not kl.diagnose(table, "M11", "m1*lc1^2 + I1 + m2*d2^2").agrees
+
+
+def test_the_last_length_of_a_modified_table_is_the_tools():
+    rows = [kl.DHLink(d=0.44), kl.DHLink(alpha=np.pi / 2), kl.DHLink(a=0.37)]
+    tool = np.eye(4)
+    tool[0, 3] = 0.32
+    table = kl.DHTable("elbow", "modified", rows, tool=tool)
+    assert kl.diagnose(table, "z", r"d_1 + a_2 \sin\theta_2 + a_3 \sin(\theta_2 + \theta_3)").agrees
+
+
 def test_a_scaras_torque_has_few_terms():
     """Four joints, and a formula as short as of two: what is rounded away is told as that."""
     arm = kl.load("scara")
