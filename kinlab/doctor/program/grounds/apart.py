@@ -99,7 +99,7 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
-    reader = _Reader(table.n, cells, _labels(trial), found, negative)
+    reader = _Reader(table.n, cells, _labels(trial), found, negative, _summed(trial))
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -156,6 +156,7 @@ class _Reader:
         labels: the names of the numbers in a program's text.
         found: the program's numbers.
         negative: the numbers in a program's text with a minus in front.
+        summed: those in sums of nothing but numbers.
 
     Attributes:
         items: numbers, and what they may be.
@@ -172,6 +173,7 @@ class _Reader:
         labels: dict[int, tuple[list[str], list[int]]],
         found: Sequence[ProgramNumber],
         negative: set[int],
+        summed: set[int],
     ) -> None:
         self.cells, self.labels, self.negative = cells, labels, negative
         self.tied: dict[Which, Which] = {}
@@ -198,7 +200,7 @@ class _Reader:
                 else:
                     key = (label[:2], label[2][1:]) if one.alone else ()
                     unknown.setdefault((key, one.value, own), []).append((one, left))
-            elif own:
+            elif own or (may and id(one.place.node) in summed):
                 self.whole = False
             elif may:
                 if not isinstance(one.place.value, int):  # a factor, a power
@@ -297,6 +299,18 @@ class _Reader:
             ]
             if all(k is not None for _one, k in each):
                 yield tuple((one, k) for one, k in each if k is not None)
+
+
+def _summed(trial: Trial) -> set[int]:
+    """The numbers in sums of nothing but numbers, such as two moments of inertia, by identity."""
+    found: set[int] = set()
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+                sides = (node.left, node.right)
+                if all(isinstance(x, ast.Constant) or id(x) in found for x in sides):
+                    found |= {id(node), *map(id, sides)}
+    return found
 
 
 def _among(cells: Sequence[_Cell], value: float) -> bool:
