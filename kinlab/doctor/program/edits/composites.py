@@ -150,36 +150,32 @@ def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
     ``w x (w x r)`` with ``dw x r``, ``w x I w`` with ``I dw``, ``w x z qd`` with ``z qdd``.
     """
-    node = here.node
-    vectors = scope.pieces_here(_VECTOR)
-    rates = [one for one in vectors.values() if _plain(one) and _begins(one, _RATES)][:_FEW]
-    inner: list[ast.expr] = []
-    own: ast.expr | None = None
-    product: ast.expr
+    if scope.cross is None:
+        return
+    vectors = scope.pieces_here(_VECTOR).values()
+    for rate in [one for one in vectors if _plain(one) and _begins(one, _RATES)][:_FEW]:
+        for inner in _turned_with(here.node, rate, scope):
+            product = ast.Call(scope.cross, [rate, inner], [])
+            yield here.instead(ast.BinOp(here.node, ast.Add(), product), "missing term", 1.1)
+
+
+def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.expr]:
+    """What turns with a velocity, where a term is of an acceleration."""
+    own = ast.unparse(rate)
     if isinstance(node, ast.Call) and len(node.args) == 2 and called(node) == "cross":
-        own, vector = node.args
-        inner = [ast.Call(node.func, [rate, vector], []) for rate in rates]
+        if ast.unparse(node.args[0]) != own:
+            yield ast.Call(node.func, [rate, node.args[1]], [])
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
-        own = node.right
-        inner = [ast.BinOp(node.left, node.op, rate) for rate in rates]
+        if ast.unparse(node.right) != own:
+            yield ast.BinOp(node.left, node.op, rate)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
-        sides = ((node.left, node.right), (node.right, node.left))
-        for scalar, vector in sides:
+        for scalar, vector in ((node.left, node.right), (node.right, node.left)):
             if isinstance(scalar, ast.Subscript) and scope.observed.shape(scalar) == ():
-                for text, other in scope.pieces_here(()).items():
-                    if text == ast.unparse(scalar) or not isinstance(other, ast.Subscript):
+                for text, other in scope.simple(()):
+                    if not isinstance(other, ast.Subscript) or text == ast.unparse(scalar):
                         continue
                     if ast.dump(other.slice) == ast.dump(scalar.slice):
-                        product = ast.BinOp(other, node.op, vector)
-                        inner += [product] * len(rates)
-    if not inner or scope.cross is None:
-        return
-    for k, one in enumerate(inner):
-        rate = rates[k % len(rates)]
-        if own is None or ast.unparse(rate) != ast.unparse(own):
-            product = ast.Call(scope.cross, [rate, one], [])
-            new = ast.BinOp(node, ast.Add(), product)
-            yield here.instead(new, "missing term", 1.1)
+                        yield ast.BinOp(other, node.op, vector)
 
 
 def _is_turned(node: ast.expr) -> bool:
