@@ -158,10 +158,24 @@ def _of_books(words: Vocabulary, table: DHTable) -> None:
         words.others[f"a{table.n}"] = words.entries["toolx"]
     for (i, link), axis in zip(enumerate(table.links, 1), _about(table), strict=True):
         behind = f"a{i + before}" if i + before <= table.n else "toolx"
+        _rod(words, i, link, behind)
         _as_in_books(words, i, link, behind, before)
         moment = words.entries[f"inertia{i}{axis}{axis}"] if axis else ()
         if moment:
             words.others |= dict.fromkeys((f"I{i}", f"J{i}"), moment)
+
+
+def _rod(words: Vocabulary, i: int, link: DHLink, along: str) -> None:
+    """The centre of a link in the middle of its length: it is called so, and has no other name."""
+    length, com = words.entries[along], np.asarray(link.com)
+    if len(length) != 1 or not com[0] or com[1:].any():
+        return
+    ((_one, name),) = length
+    whole = words.values[name]
+    if abs(2 * com[0]) == abs(whole):
+        share = Fraction(1, 2) if com[0] * whole > 0 else Fraction(-1, 2)
+        words.values.pop(f"cx{i}")
+        words.entries[f"com{i}x"] = words.others[f"cx{i}"] = ((share, name),)
 
 
 def _about(table: DHTable) -> list[str]:

@@ -179,6 +179,20 @@ def test_a_moment_is_about_the_one_axis_that_the_arm_turns_about():
     assert not kl.diagnose(table, "M11", "m1*lc1^2 + I1 + m2*d2^2").agrees
 
 
+def test_the_centre_of_a_rod_in_space_is_half_its_length():
+    """Books write a2/2 there, though the table has a number for it."""
+    rows = [kl.DHLink(alpha=np.pi / 2, mass=1.0),
+            kl.DHLink(a=0.4, mass=1.2, com=(-0.2, 0, 0)),
+            kl.DHLink(a=0.3, mass=0.9, com=(-0.15, 0, 0))]  # fmt: skip
+    table = kl.DHTable("rods", "standard", rows)
+    text = "m2*g*a2/2*cos(q2) + m3*g*(a2*cos(q2) + a3/2*cos(q2 + q3))"
+    right = kl.diagnose(table, "g2", text)
+    assert right.agrees and not right.remarks
+    wrong = kl.diagnose(table, "g2", text.replace("+ a3/2", "- a3/2").replace("a2/2", "a2"))
+    assert wrong.causes[0].kinds == ("factor", "sign"), str(wrong)
+    assert kl.diagnose(table, "g3", "m3*g*(a3 + cx3)*cos(q2 + q3)").agrees
+
+
 def test_the_last_length_of_a_modified_table_is_the_tools():
     rows = [kl.DHLink(d=0.44), kl.DHLink(alpha=np.pi / 2), kl.DHLink(a=0.37)]
     tool = np.eye(4)

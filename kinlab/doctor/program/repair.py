@@ -158,6 +158,8 @@ class LineSearch:
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self.work, self.most = 0, _WORK
         self.trial = Trial(self.program)
+        every = (node for tree in self.trial.trees for node in nodes(tree))
+        self._whole = {id(node) for node in every if type(getattr(node, "value", None)) is int}
         size = int(np.prod(wanted.shape[1:], initial=1))
         self.first = list(range(max(1, -(-_NUMBERS // size))))
         self.watched = [*self.first, len(self.first)][:_WATCHED]
@@ -460,10 +462,8 @@ class LineSearch:
 
     def _arms(self, several: tuple[ProgramEdit, ...]) -> tuple[OtherArm | None, OtherArm | None]:
         """The same for the program as it stands now, with these edits in it."""
-        sets = any(
-            one.part == DATA or one.numbers is not None or one.of_the_arm
-            for one in (*self.stand, *several)
-        )
+        told = [one for one in (*self.stand, *several) if not self._counts(one)]
+        sets = any(one.part == DATA or one.of_the_arm or one.numbers is not None for one in told)
         return self._other_arms() if sets and any(self._others) else self._others
 
     def _holds(self, other: OtherArm) -> bool:
@@ -495,11 +495,15 @@ class LineSearch:
         free = any(edit.numbers is not None and _is_free(edit.numbers[1]) for edit in several)
         return (whole or free) and not (larger is not None and self._holds(larger))
 
+    def _counts(self, edit: ProgramEdit) -> bool:
+        """Whether an edit is of a whole number in the text, a factor: of none of the arm's."""
+        return id(edit.node) in self._whole
+
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
         if edit.part == DATA or edit.of_the_arm:
             return True
-        return edit.numbers is not None and self.is_own(edit.numbers[1])
+        return edit.numbers is not None and not self._counts(edit) and self.is_own(edit.numbers[1])
 
     def _at_arm(self, other: OtherArm) -> LineSearch | None:
         """The search for what is right of another arm, made when it is first asked for."""
@@ -734,9 +738,12 @@ def _at_best(edit: ProgramEdit) -> float:
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
     """Whether numbers that stand as the robot has them would be exchanged in their row."""
     row = edit.node
-    if edit.kind != "entries swapped" or not isinstance(row, ast.List | ast.Tuple):
+    if edit.kind not in ("entries swapped", "reversed", "shifted"):
         return False
-    values = [getattr(one, "value", None) for one in row.elts]
+    if edit.part == DATA:
+        values = edit.changes[0].holder if isinstance(edit.changes[0].holder, list) else []
+    else:
+        values = [getattr(one, "value", None) for one in getattr(row, "elts", ())]
     if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
         return False
     written = np.array(values, dtype=float)

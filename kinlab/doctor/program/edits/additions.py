@@ -54,6 +54,7 @@ class Scope:
         addends: the terms of the sums that are set, by what is set, without its number.
         factors: what stands in front of a product of matrices, by the statements' identities.
         pi: how the program may write it; None where it cannot.
+        root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
         whole: names of whole numbers that are given to a function, and counters.
     """
@@ -79,6 +80,7 @@ class Scope:
         self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
         self.cross = _cross(calls, observed, self.has_numpy)
+        self.root = _root(calls, trial.space)
         inner, outer = set[str](), set[str]()
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
@@ -251,6 +253,17 @@ def _pi_of(space: dict[str, Any]) -> ast.expr | None:
     return None
 
 
+def _root(calls: list[ast.Call], space: dict[str, Any]) -> ast.expr | None:
+    """The function with which a part takes roots, or with which it may."""
+    own = next((call.func for call in calls if called(call) == "sqrt"), None)
+    if own is not None or "sqrt" in space:
+        return own or ast.Name("sqrt", ast.Load())
+    for name, value in space.items():
+        if isinstance(value, ModuleType) and hasattr(value, "sqrt"):
+            return ast.Attribute(ast.Name(name, ast.Load()), "sqrt", ast.Load())
+    return None
+
+
 def _cross(calls: list[ast.Call], observed: Observed, has_numpy: bool) -> ast.expr | None:
     """The function with which a part takes products of vectors; without one numpy's."""
     for call in calls:
@@ -326,6 +339,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         return
     if shape == ():
         yield from _scalars(here, scope, summand or whole or below, operated)
+        if scope.root is not None and _has_squares(node):
+            yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
     if whole or summand or argument or product:
@@ -416,6 +431,14 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _has_squares(node: ast.expr) -> bool:
+    """Whether it is a sum with a square in it, of which the root may be meant."""
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Add | ast.Sub):
+        return False
+    powers = [one.op for one in _summands(node) if isinstance(one, ast.BinOp)]
+    return any(isinstance(op, ast.Pow) for op in powers)
 
 
 def _supplements(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -33,6 +33,8 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
         if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
             if _begins(node, _MOMENTS) and (term or isinstance(op, ast.Mult)):
                 yield from _parallel_axes(here, scope)
+            if isinstance(node, ast.Subscript) and _begins(node, _MASSES):
+                yield from _from_there_on(here, scope.observed)
             yield from _next_entry(here, scope.observed)
         return
     factor = isinstance(op, ast.MatMult)
@@ -82,6 +84,15 @@ def _digits(node: ast.expr) -> str:
     """The number of a link: ``2`` of ``m2``, and of ``m[1]`` its index."""
     text = ast.unparse(node)
     return "".join(letter for letter in text if letter.isdigit())
+
+
+def _from_there_on(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
+    """The sum of an entry and all behind it, as of the masses that a joint carries."""
+    node = here.node
+    if len(observed.shape(node.value) or ()) == 1 and not isinstance(node.slice, ast.Slice):
+        rest = ast.Subscript(node.value, ast.Slice(node.slice, None, None), ast.Load())
+        total = ast.Call(ast.Name("sum", ast.Load()), [rest], [])
+        yield here.instead(total, "missing term", 1.15)
 
 
 def _next_entry(here: Here, observed: Observed) -> Iterator[ProgramEdit]:

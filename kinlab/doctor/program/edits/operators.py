@@ -395,6 +395,10 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if other != node.attr and known == shape:
             cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
             yield here.within(node, "attr", other, "name", cost)
+    for _text, piece in scope.simple(shape):
+        if isinstance(piece, ast.Attribute) and ast.dump(piece.value) != ast.dump(node.value):
+            cost = 1.12 if piece.attr == node.attr else 1.15  # of another object
+            yield here.instead(piece, "name", cost)
     for other, known in scope.shapes.items():
         if known == shape and other not in scope.counters and shape == ():
             cost = 1.2 if other[:1].lower() == node.attr[:1].lower() else 1.25

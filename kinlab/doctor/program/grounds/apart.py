@@ -178,7 +178,7 @@ class _Reader:
         self.cells, self.labels, self.negative = cells, labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
-        told = [self._label(one) for one in found]
+        told = self._by_owners(found, [self._label(one) for one in found], count)
         self.from_zero = {name for name, digits, _at in told if digits == 0}
         last: dict[str, int] = {}
         for name, _digits, at in told:
@@ -216,6 +216,31 @@ class _Reader:
         self.whole = self.whole and unsure < 2
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
+
+    def _by_owners(
+        self, found: Sequence[ProgramNumber], told: Sequence[_Label], count: int
+    ) -> list[_Label]:
+        """Of numbers that several objects have under one name, those of each are a link's."""
+        owners: dict[str, list[str]] = {}
+        of = [self._owner(one) for one in found]
+        for owner, (name, digits, at) in zip(of, told, strict=True):
+            if owner and digits is None and not at and owner not in owners.setdefault(name, []):
+                owners[name].append(owner)
+        self.whole = self.whole and all(len(x) in (1, count) for x in owners.values())
+        kept: list[_Label] = []
+        for owner, label in zip(of, told, strict=True):
+            some = owners.get(label[0], [])
+            each = len(some) == count > 1 and owner in some and label[1] is None and not label[2]
+            kept.append((*label[:2], (some.index(owner),)) if each else label)
+        return kept
+
+    def _owner(self, one: ProgramNumber) -> str:
+        """The object or dictionary that a number is in."""
+        place = one.place
+        if place.part == DATA:
+            return str(place.node) if any(isinstance(key, str) for key in place.place) else ""
+        names, _at = self.labels.get(id(place.node), ([""], []))
+        return names[0] if len(names) > 1 else ""
 
     def _look_at_names(self, named: Sequence[tuple[ProgramNumber, _Label]]) -> None:
         """Which numbers the arm has as they are called, and whether any is odd among these."""

@@ -140,6 +140,8 @@ class Ways:
             before = _nothing_of(value) if old is None else old()
         except (NameError, KeyError, IndexError, AttributeError):
             before = _nothing_of(value)  # it was nothing before, and is read by nobody
+        if type(before) is tuple and isinstance(value, list | np.ndarray):
+            value = tuple(value)  # names that are set to the entries of a row
         return lanes.joined(before, [(only, value)])
 
 
