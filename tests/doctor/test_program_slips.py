@@ -180,6 +180,43 @@ def f(q):
     m11 = I1 + m1*c1**2 + m2*l1**2 + m22 + 2*h
     return np.array([[m11, m12], [m12, m22]])
 """
+OBJECTS = """
+from math import cos
+
+class Link:
+    def __init__(self, m, l, r):
+        self.m, self.l, self.r = m, l, r
+
+A, B = Link(m=2.0, l=0.5, r=0.5), Link(m=1.5, l=0.4, r=0.4)
+
+def f(q):
+    outer = B.m*9.81*B.r*cos(q[0] + q[1])
+    return [(A.m*A.l + B.m*A.l)*9.81*cos(q[0]) + outer, outer]
+"""
+VECTORS = """
+import numpy as np
+
+def f(q):
+    s1, c1 = np.sin(q[0]), np.cos(q[0])
+    s12, c12 = np.sin(q[0] + q[1]), np.cos(q[0] + q[1])
+    J = np.zeros((6, 2))
+    J[:2, 1] = [-0.4*s12, 0.4*c12]
+    J[:2, 0] = [-0.5*s1 - 0.4*s12, 0.5*c1 + 0.4*c12]
+    J[5, :] = 1
+    return J
+"""
+CARRIED = """
+import numpy as np
+
+m = [3.0, 2.0, 1.0]
+L = [0.5, 0.4, 0.25]
+
+def f(q):
+    t = np.cumsum(q)
+    lever = [(sum(m[i:]) - m[i]/2)*L[i] for i in range(3)]
+    each = [9.81*lever[i]*np.cos(t[i]) for i in range(3)]
+    return np.array([sum(each[i:]) for i in range(3)])
+"""
 PROGRAMS = {
     "motion": ("planar2r_rods", "kinetic_energy", MOTION),
     "closed": ("planar2r_rods", "inverse_dynamics", CLOSED),
@@ -190,6 +227,9 @@ PROGRAMS = {
     "christoffel": ("planar2r_rods", "coriolis_matrix", CHRISTOFFEL),
     "rounds": ("puma560", "fk", ROUNDS),
     "entries": ("planar2r_rods", "mass_matrix", ENTRIES),
+    "objects": ("planar2r", "gravity_torques", OBJECTS),
+    "vectors": ("planar2r", "jacobian", VECTORS),
+    "carried": ("planar3r", "gravity_torques", CARRIED),
 }
 SLIPS = [
     ("motion", "np.cross(w, coms[i])", "np.cross(v, coms[i])", "another vector in a product"),
@@ -208,6 +248,10 @@ SLIPS = [
     ("christoffel", "D[i][j, k]", "D[j][i, k]", "indices in another order"),
     ("rounds", "(lift, 0, h)", "(shift, 0, h)", "a name in a program that rounds"),
     ("entries", "m12 = m22 + h", "m12 = m22", "a term that stands in the next line"),
+    ("objects", "B.m*A.l", "B.m*B.r", "a field of another object"),
+    ("vectors", "[-0.4*s12, 0.4*c12]", "[0.4*s12, -0.4*c12]", "a vector with the other sign"),
+    ("vectors", "[-0.4*s12, 0.4*c12]", "[-0.4*c12, 0.4*s12]", "sines and cosines of a line"),
+    ("carried", "(sum(m[i:]) - ", "(m[i] - ", "the load from a joint on"),
 ]  # fmt: skip
 
 

@@ -478,6 +478,20 @@ class LineSearch:
                 return True
         return False
 
+    def fits(self, several: tuple[ProgramEdit, ...]) -> bool:
+        """Whether edits make the program right at every state, be it for this arm alone."""
+        try:
+            with quietly(), changed(self.trial, several):
+                return self.error(range(len(self.wanted))) <= self.allowed
+        except NoProgramError:
+            return False
+
+    def holds_elsewhere(self, several: tuple[ProgramEdit, ...]) -> bool:
+        """Whether edits make it right for another arm, too, for which it is understood wholly."""
+        with quietly(), changed(self.trial, several):
+            known = [arm for arm in self._arms(several) if arm is not None and arm.whole]
+            return any(self._at_arm(arm) is not None and self._holds(arm) for arm in known)
+
     def _only_here(self, several: tuple[ProgramEdit, ...]) -> bool:
         """Whether edits hold for this arm alone, where a program that is right holds for others."""
         if self.case.quantity.read is not None:

@@ -434,10 +434,16 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
 
 
 def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
-    """Whether each of several edits is of the user's program, and the others alone do not do."""
+    """Whether each of several edits is of the user's program, and the others alone do not do.
+
+    Where they do for this arm alone, all together must hold for another one.
+    """
     for edit in repair.edits:
         own = edit.part == DATA or _inside(edit.node, search.trial.trees[edit.part])
-        if not own or _right(tuple(one for one in repair.edits if one is not edit), search):
+        others = tuple(one for one in repair.edits if one is not edit)
+        if not own or _right(others, search):
+            return False
+        if search.fits(others) and not search.holds_elsewhere(repair.edits):
             return False
     return True
 

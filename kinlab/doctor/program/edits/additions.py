@@ -343,6 +343,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):
             yield from _supplements(here, scope)
+        given = isinstance(parent, ast.Call) and called(parent) in scope.functions
+        if (entry or given) and isinstance(node, ast.Name | ast.Subscript):
+            yield from _quarters(here, scope)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
 
@@ -448,6 +451,14 @@ def _supplements(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         yield here.instead(ast.BinOp(pi_, ast.Sub(), node), "missing term", 1.1)
         for op in (ast.Sub(), ast.Add()):
             yield here.instead(ast.BinOp(node, op, pi_), "missing term", 1.12)
+
+
+def _quarters(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The angle at which a joint stands in its zero position."""
+    if scope.pi is not None:
+        for op in (ast.Add(), ast.Sub()):
+            quarter = ast.BinOp(scope.pi, ast.Div(), number(2))
+            yield here.instead(ast.BinOp(here.node, op, quarter), "missing term", 1.14)
 
 
 def _factors_beside(here: Here) -> set[str]:

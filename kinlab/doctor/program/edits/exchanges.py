@@ -29,7 +29,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         shapes[text] = observed.shape(found[0])
     names = [text for text in uses if shapes[text] is not None and text not in scope.counters]
     for one, other in combinations(names[:_MOST], 2):
-        if shapes[one] == shapes[other] and one[0] == other[0]:
+        if shapes[one] == shapes[other] and _go_together(one, other):
             both = _Renamed({one: uses[other][0], other: uses[one][0]})
             cost = 1.08 + 0.02 * (len(uses[one]) + len(uses[other]))
             yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
@@ -64,6 +64,11 @@ def of_repeated(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
                     yield here.within(node, "args", [other, other], "name", 1.16)
                 else:
                     yield here.instead(ast.BinOp(other, node.op, other), "name", 1.16)
+
+
+def _go_together(one: str, other: str) -> bool:
+    """Whether names may be taken for one another: ``l1`` and ``l2``, ``s12`` and ``c12``."""
+    return one[0] == other[0] or (one[0] + other[0] in ("sc", "cs") and one[1:] == other[1:])
 
 
 def _plain(node: ast.Name | ast.Subscript) -> bool:

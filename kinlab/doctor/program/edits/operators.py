@@ -438,10 +438,22 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
     yield from _swapped(here, here.node)
+    turned = [_opposite(one) for one in elements]
+    if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
+        yield here.within(here.node, "elts", turned, "sign", 1.1)
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for on in (1, -1):  # of the frame before, or behind
             moved = [*elements[-on:], *elements[:-on]]
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
+
+
+def _opposite(node: ast.expr) -> ast.expr:
+    """A number with the other sign; a zero, and what is no single number, as it is."""
+    if isinstance(node, ast.UnaryOp):
+        return node.operand if isinstance(node.op, ast.USub) else node
+    if isinstance(node, ast.List | ast.Tuple) or not getattr(node, "value", 1):
+        return node
+    return ast.UnaryOp(ast.USub(), node)
 
 
 def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:

@@ -99,7 +99,8 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     cells = _cells(table, float(np.linalg.norm(robot.model.gravity.linear)))
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
-    reader = _Reader(table.n, cells, _labels(trial), found, negative, _summed(trial))
+    names = {name: k for k, name in enumerate(trial.program.space)}
+    reader = _Reader(table.n, cells, _labels(trial), found, negative, _summed(trial), names)
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -120,7 +121,8 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     changed = tuple(tuple(together(put)) for put in puts if put)
     if not changed:
         return None
-    whole = reader.whole and len(ways) <= _WAYS and _stays(trial, puts[0])
+    named = any(hasattr(trial.space.get(name), "_fields") for name in trial.program.held)
+    whole = reader.whole and not named and len(ways) <= _WAYS and _stays(trial, puts[0])
     return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
 
 
@@ -157,6 +159,7 @@ class _Reader:
         found: the program's numbers.
         negative: the numbers in a program's text with a minus in front.
         summed: those in sums of nothing but numbers.
+        names: of the program, in the order in which they are defined.
 
     Attributes:
         items: numbers, and what they may be.
@@ -174,11 +177,12 @@ class _Reader:
         found: Sequence[ProgramNumber],
         negative: set[int],
         summed: set[int],
+        names: dict[str, int],
     ) -> None:
         self.cells, self.labels, self.negative = cells, labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
-        told = self._by_owners(found, [self._label(one) for one in found], count)
+        told = self._by_owners(found, [self._label(one) for one in found], count, names)
         self.from_zero = {name for name, digits, _at in told if digits == 0}
         last: dict[str, int] = {}
         for name, _digits, at in told:
@@ -218,7 +222,11 @@ class _Reader:
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
     def _by_owners(
-        self, found: Sequence[ProgramNumber], told: Sequence[_Label], count: int
+        self,
+        found: Sequence[ProgramNumber],
+        told: Sequence[_Label],
+        count: int,
+        names: dict[str, int],
     ) -> list[_Label]:
         """Of numbers that several objects have under one name, those of each are a link's."""
         owners: dict[str, list[str]] = {}
@@ -227,11 +235,13 @@ class _Reader:
             if owner and digits is None and not at and owner not in owners.setdefault(name, []):
                 owners[name].append(owner)
         self.whole = self.whole and all(len(x) in (1, count) for x in owners.values())
+        for some in owners.values():
+            some.sort(key=lambda owner: names.get(owner, len(names)))
         kept: list[_Label] = []
         for owner, label in zip(of, told, strict=True):
-            some = owners.get(label[0], [])
-            each = len(some) == count > 1 and owner in some and label[1] is None and not label[2]
-            kept.append((*label[:2], (some.index(owner),)) if each else label)
+            among = owners.get(label[0], [])
+            each = len(among) == count > 1 and owner in among and label[1] is None and not label[2]
+            kept.append((*label[:2], (among.index(owner),)) if each else label)
         return kept
 
     def _owner(self, one: ProgramNumber) -> str:

@@ -88,7 +88,10 @@ class _Several:
         if found:
             return self._settled(search, found)
         together = TriedTogether(search, known)
-        found = tried.likeliest(known, together.pairs())
+        for some in together.pairs():  # what holds for this arm alone is not told, others may be
+            found = tried.likeliest(known, some)
+            if found:
+                break
         if not found and together.usable and not search.stand:
             found = tried.likeliest(known, known.adding_up(3) + together.threes())
             found = found or tried.likeliest(known, together.any_three())
@@ -199,7 +202,7 @@ class _Tried:
         Beside one that makes it right others are looked at: what has the same effects, what comes
         next, and pairs that explain as much.
         """
-        most = self.search.most // 4
+        most, before = self.search.most // 4, self.search.work
         fitting: list[Way] = []
         for turn, chosen in enumerate(ranked):
             few = [*known.edits(chosen, _SIBLINGS if turn < _VERIFIED else 1)]
@@ -212,7 +215,7 @@ class _Tried:
                 if self._repair(way) is not None:
                     fitting = [way]
                     break
-            if fitting or most < 0:
+            if fitting or most < 0 or self.search.work - before > self.search.most:
                 break
         if not fitting:
             return []

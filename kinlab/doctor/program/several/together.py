@@ -131,12 +131,15 @@ class TriedTogether:
 
     # -------- Two
 
-    def pairs(self) -> list[Chosen]:
-        """Any two edits that make the program right, the likeliest first."""
+    def pairs(self) -> Iterator[list[Chosen]]:
+        """Any two edits that make the program right, some at a time, the likeliest first."""
         found: list[Chosen] = []
         before, kept = 0, 0 if self.search.stand else self.left // _FOR_THREES
         for rank, chosen in self._in_turn() if self.usable else ():
-            if rank != before and (found or self.left <= kept):
+            if rank != before and found:
+                yield sorted(found, key=self.known.cost)
+                found = []
+            if rank != before and self.left <= kept:
                 break
             before = rank
             right, rows = self._right(chosen)
@@ -144,7 +147,8 @@ class TriedTogether:
                 continue
             found += [(int(i), int(j)) for i, j in right]
             self._keep(chosen, rows)
-        return sorted(found, key=self.known.cost)
+        if found:
+            yield sorted(found, key=self.known.cost)
 
     def _in_turn(self) -> Iterator[tuple[int, Any]]:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
