@@ -135,12 +135,17 @@ def _planar_lengths(words: Vocabulary, table: DHTable) -> None:
 def _centre(words: Vocabulary, i: int, centre: float, length: float) -> Linear:
     """The centre's distance from joint i as l_i, l_i/2, or a name of its own."""
     for part in (Fraction(1), Fraction(1, 2)):
-        if length and abs(centre - part * length) <= TOLERANCES.same_length * abs(length):
+        if length and _is_part(centre, part, length):
             return ((part, f"l{i}"),)
     if abs(centre) <= TOLERANCES.same_length * abs(length):
         return ()
     words.values[f"lc{i}"] = centre
     return ((Fraction(1), f"lc{i}"),)
+
+
+def _is_part(value: float, part: Fraction, length: float) -> bool:
+    """Whether a number is a part of a length, but for how decimals are kept."""
+    return bool(abs(value - part * length) <= TOLERANCES.same_length * abs(length))
 
 
 def _spatial_lengths(words: Vocabulary, table: DHTable) -> None:
@@ -171,11 +176,10 @@ def _rod(words: Vocabulary, i: int, link: DHLink, along: str) -> None:
     if len(length) != 1 or not com[0] or com[1:].any():
         return
     ((_one, name),) = length
-    whole = words.values[name]
-    if abs(2 * com[0]) == abs(whole):
-        share = Fraction(1, 2) if com[0] * whole > 0 else Fraction(-1, 2)
-        words.values.pop(f"cx{i}")
-        words.entries[f"com{i}x"] = words.others[f"cx{i}"] = ((share, name),)
+    for share in (Fraction(1, 2), Fraction(-1, 2)):
+        if _is_part(com[0], share, words.values[name]):
+            words.values.pop(f"cx{i}")
+            words.entries[f"com{i}x"] = words.others[f"cx{i}"] = ((share, name),)
 
 
 def _about(table: DHTable) -> list[str]:

@@ -24,6 +24,7 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, meanings
+from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
@@ -353,10 +354,11 @@ class LineSearch:
 
     def _weighed(self, below: float) -> list[ProgramEdit]:
         """Every edit in the order in which it is tried."""
-        every = edits(self.trial, self.observed)
+        scopes = [Scope(self.trial, self.observed, k) for k in range(len(self.trial.trees))]
+        every = edits(self.trial, self.observed, scopes)
         every += of_table(self.trial, self.observed, self.case.robot)
         every += of_own_numbers(self.trial, self.observed, self.case.robot)
-        every += missing_products(self.trial, self.observed, self.dimensions)
+        every += missing_products(self.trial, self.observed, scopes, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [edit for edit in every if edit.part != DATA or not sure(edit)]
         named, rows = _named_numbers(self.trial), own_rows(self.case.robot)

@@ -152,7 +152,7 @@ class Scope:
     def _of_addends(self, statement: ast.Assign) -> None:
         known = self.addends.setdefault(_stem([statement]), set())
         literal = isinstance(statement.value, ast.List | ast.Tuple | ast.Call)
-        for value in entries(statement.value) if literal else (statement.value,):
+        for value in _entries(statement.value) if literal else (statement.value,):
             for one in _summands(value) if isinstance(value, ast.BinOp) else ():
                 bare = without_numbers(one)
                 known |= {ast.unparse(one)} if bare is None else {ast.unparse(bare)}
@@ -350,13 +350,13 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _terms(here, scope, shape, whole)
 
 
-def entries(value: ast.expr) -> Iterator[ast.expr]:
+def _entries(value: ast.expr) -> Iterator[ast.expr]:
     """The entries of what is written as rows: ``np.array([[a, b], [c, d]])``."""
     inner = value.args[:1] if isinstance(value, ast.Call) else getattr(value, "elts", None)
     if inner is None:
         yield value
     for one in inner or ():
-        yield from entries(one) if isinstance(one, ast.List | ast.Tuple) else (one,)
+        yield from _entries(one) if isinstance(one, ast.List | ast.Tuple) else (one,)
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

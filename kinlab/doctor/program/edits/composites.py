@@ -149,9 +149,9 @@ def _is_arm(node: ast.expr) -> bool:
 def _of_levers(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A lever that begins, or ends, elsewhere: ``cross(r + c, F)`` for ``cross(c, F)``."""
     own = ast.unparse(here.node)
-    arms = [one for one in scope.pieces_here(_VECTOR).values() if _is_arm(one)]
-    for other in arms[: 2 * _FEW]:
-        if ast.unparse(other) != own:
+    arms = [(text, one) for text, one in scope.simple(_VECTOR) if _begins(one, _ARMS)]
+    for text, other in arms[: 2 * _FEW]:
+        if text != own:
             for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
                 yield here.instead(ast.BinOp(here.node, op, other), "missing term", cost)
 

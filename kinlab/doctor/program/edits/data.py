@@ -79,8 +79,7 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
             turned = tuple(FieldChange(value, k, x) for k, x in enumerate(back) if value[k] != x)
             if len(turned) > _PAIR:
                 yield _swap(turned, "reversed", name, place, (_row(value), _row(back)))
-            for on in (1, -1):  # of the frame before, or behind
-                moved = [*value[-on:], *value[:-on]]
+            for moved in moved_on(value):
                 turned = tuple(FieldChange(value, k, x) for k, x in enumerate(moved))
                 yield _swap(turned, "shifted", name, place, (_row(value), _row(moved)))
         return
@@ -104,6 +103,11 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
         if not np.array_equal(rows[i], rows[j]):
             changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
             yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
+
+
+def moved_on(row: Any) -> list[list[Any]]:
+    """A row one place on, either way: the numbers of the frame before, or behind."""
+    return [[*row[-on:], *row[:-on]] for on in (1, -1)]
 
 
 def _members(value: Any) -> list[tuple[Any, Any]]:

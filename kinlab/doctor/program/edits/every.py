@@ -7,7 +7,7 @@ a term too many. An edit costs what it is far-fetched; nothing that never ran is
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import pi
 
 import numpy as np
@@ -41,11 +41,11 @@ from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
 
 
-def edits(trial: Trial, observed: Observed) -> list[ProgramEdit]:
-    """Every single edit of a program, the likeliest first."""
+def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[ProgramEdit]:
+    """Every single edit of a program, of whose parts these are the scopes; the likeliest first."""
     found: list[ProgramEdit] = []
     for part, tree in enumerate(trial.trees):
-        scope = Scope(trial, observed, part)
+        scope = scopes[part]
         for here in places(part, tree):
             node = here.node
             scope.stand((*here.above, node))

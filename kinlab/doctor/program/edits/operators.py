@@ -9,7 +9,7 @@ from typing import Any
 
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
-from kinlab.doctor.program.edits.data import measured
+from kinlab.doctor.program.edits.data import measured, moved_on
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
@@ -442,8 +442,7 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         yield here.within(here.node, "elts", turned, "sign", 1.1)
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
-        for on in (1, -1):  # of the frame before, or behind
-            moved = [*elements[-on:], *elements[:-on]]
+        for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
 
 

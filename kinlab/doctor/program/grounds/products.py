@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
@@ -20,16 +20,19 @@ _UNUSED, _USED = 1.14, 1.22
 """What a product is far-fetched with a name that is used nowhere else, and without one."""
 
 
-def missing_products(trial: Trial, observed: Observed, known: Dimensions) -> Iterator[ProgramEdit]:
+def missing_products(
+    trial: Trial, observed: Observed, scopes: Sequence[Scope], known: Dimensions
+) -> Iterator[ProgramEdit]:
     """A product of two names, or of one and another's square, that a sum may lack.
 
     Args:
         trial: a program.
         observed: its expressions.
+        scopes: those of its parts.
         known: their dimensions.
     """
     for part, tree in enumerate(trial.trees):
-        scope = Scope(trial, observed, part)
+        scope = scopes[part]
         for here in places(part, tree):
             size = known.of(here.node) if _is_whole(here) else None
             if size and observed.shape(here.node) == ():
