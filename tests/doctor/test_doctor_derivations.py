@@ -138,6 +138,7 @@ def test_two_steps_at_once() -> None:
     assert "origin" in found.causes[0].sentence
 
 
+@pytest.mark.usefixtures("without_lines")
 def test_an_entry_of_the_links_matrix() -> None:
     def pose(q):
         T = np.eye(4)

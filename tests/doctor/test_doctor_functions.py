@@ -124,6 +124,7 @@ def test_a_number_of_the_robot_is_another(columns, words) -> None:
     assert words in found.sentence
 
 
+@pytest.mark.usefixtures("without_lines")
 def test_statics_from_link_to_link() -> None:
     rows, tool = ARM.table.links, np.asarray(ARM.table.tool)
 

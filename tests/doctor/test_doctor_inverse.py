@@ -79,6 +79,7 @@ SLIPS = [
 ]
 
 
+@pytest.mark.usefixtures("without_lines")
 @pytest.mark.parametrize(("spoilt", "words"), SLIPS)
 def test_a_slip_of_the_cosine_law_is_named(spoilt: dict[str, Any], words: str) -> None:
     found = kl.diagnose("planar2r", XY, both(elbow_arm_of(**spoilt)), samples=60)
@@ -87,6 +88,7 @@ def test_a_slip_of_the_cosine_law_is_named(spoilt: dict[str, Any], words: str) -
     assert found.causes[0].error_after <= 1e-9
 
 
+@pytest.mark.usefixtures("without_lines")
 def test_one_branch_right_and_the_other_not() -> None:
     def mixed(x: float, y: float) -> Any:
         one, two = both(elbow_arm_of())(x, y)
@@ -106,6 +108,7 @@ def test_one_branch_right_and_the_other_not() -> None:
     assert "solution 2: right at 0 of 60 targets" in found.proved
 
 
+@pytest.mark.usefixtures("without_lines")
 def test_degrees_none_and_an_acos_without_a_value() -> None:
     solve = elbow_arm_of()
     found = kl.diagnose("planar2r", XY, lambda x, y: np.degrees(solve(x, y, 1.0)), samples=60)
@@ -169,6 +172,7 @@ def turned_hand(x: float, y: float, z: float, asin: bool = False) -> Any:
     return rows
 
 
+@pytest.mark.usefixtures("without_lines")
 @pytest.mark.parametrize(
     ("robot", "name", "right", "wrong", "words"),
     [
@@ -395,6 +399,7 @@ def test_one_sign_of_a_sum_is_one_slip() -> None:
     assert "q1 + q2 with the opposite sign in the angle q3" in found.sentence
 
 
+@pytest.mark.usefixtures("without_lines")
 def test_a_constant_that_is_forgotten_in_one_joint() -> None:
     def flipped(pose: Any) -> Any:
         q = np.array(puma(pose)[0])

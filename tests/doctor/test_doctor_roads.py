@@ -7,6 +7,7 @@ import pytest
 
 import kinlab as kl
 
+pytestmark = pytest.mark.usefixtures("without_lines")
 ARM = kl.load("spatial3r")
 LINKS = ARM.table.links
 

@@ -262,9 +262,11 @@ def test_what_wraps_a_function_is_not_left_out(student) -> None:
         "itertools.count()",
         "(yield)",
         "yield from q",
-        "global l1",
-        "try:\n        pass\n    finally:\n        pass",
-        "with np.errstate():\n        pass",
+        "global l1\n    l1 = 0.5",
+        "while q[0]:\n        try:\n            pass\n        finally:\n            pass",
+        "with open('x'):\n        pass",
+        "with cached:\n        pass",
+        "time.sleep(1)",
     ],
 )
 def test_what_reaches_out_is_not_tried(use, student) -> None:

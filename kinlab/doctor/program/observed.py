@@ -13,7 +13,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.trial import FieldChange, Trial, made, quietly
+from kinlab.doctor.program.trial import FieldChange, Trial, quietly
 
 _KEPT = 64
 """Values of one expression that are kept."""
@@ -56,8 +56,8 @@ class Observed:
         self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]
         trial.space["_see"] = self._see
         try:
-            for k, (tree, part) in enumerate(zip(trial.trees, parts, strict=True)):
-                trial.place(k, made(_watched(tree, k), part, trial.space))
+            for k, tree in enumerate(trial.trees):
+                trial.place(k, trial.made(_watched(tree, k), k))
             with quietly(), trial.as_loaded():
                 for state in states:
                     trial.load()
@@ -168,7 +168,8 @@ def _watched(tree: ast.FunctionDef, part: int) -> ast.FunctionDef:
     """A copy in which every expression tells its value."""
     own = copied(tree)
     numbers = {id(node): number for number, node in enumerate(nodes(own))}
-    for parent in nodes(own):
+    kept = {id(x) for node in nodes(own) if isinstance(node, ast.pattern) for x in nodes(node)}
+    for parent in [node for node in nodes(own) if id(node) not in kept]:
         for name, value in ast.iter_fields(parent):
             holder, keys = (
                 (value, range(len(value))) if isinstance(value, list) else (parent, [name])

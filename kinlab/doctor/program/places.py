@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
+from kinlab.doctor.program.own.definitions import ByDefault
 from kinlab.doctor.program.trial import FieldChange
 
 DATA = -1
@@ -63,11 +64,13 @@ class Here:
 def places(part: int, tree: ast.AST, above: tuple[ast.AST, ...] = ()) -> Iterator[Here]:
     inside = (*above, tree)
     for name, value in ast.iter_fields(tree):
-        if name in ("annotation", "returns", "decorator_list"):
+        if name in ("annotation", "returns", "decorator_list", "pattern"):
             continue
         if isinstance(value, list):
             for k, node in enumerate(value):
-                if isinstance(node, ast.AST):
+                if isinstance(node, ByDefault):
+                    yield from _of_default(part, node, inside)
+                elif isinstance(node, ast.AST):
                     yield Here(part, node, tree, value, k, inside)
                     yield from places(part, node, inside)
         elif isinstance(value, ast.AST):
@@ -75,6 +78,16 @@ def places(part: int, tree: ast.AST, above: tuple[ast.AST, ...] = ()) -> Iterato
             yield from places(part, value, inside)
 
 
+def _of_default(part: int, given: ByDefault, above: tuple[ast.AST, ...]) -> Iterator[Here]:
+    """The places of what an argument is by default."""
+    choice: Any = given.value
+    inside = (*above, given, choice)
+    yield Here(part, choice.body, choice, choice, "body", inside)
+    yield from places(part, choice.body, inside)
+
+
+BLOCKS = ("body", "orelse", "cases", "handlers", "finalbody")
+"""Fields in which a statement keeps others."""
 Spot = tuple[ast.AST, str, int | None]
 """Where a node hangs: in which, in which field, at which place of a list there."""
 

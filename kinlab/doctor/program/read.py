@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 import copy
+import functools
 import inspect
 import sys
 import textwrap
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from itertools import dropwhile
 from pathlib import Path
 from types import FunctionType, MethodType, ModuleType
 from typing import Any
@@ -16,6 +18,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.recover import recovered
+from kinlab.doctor.bytecode.syntax import names
+from kinlab.doctor.program.own.definitions import ByDefault, with_defaults_inside
 from kinlab.doctor.program.own.loaded import drawing, felt, of_module, setting
 from kinlab.doctor.program.own.plain import (
     CACHE,
@@ -24,6 +28,7 @@ from kinlab.doctor.program.own.plain import (
     harmless,
     is_plain,
     owners_in,
+    plain_function,
     remembers,
     used_in,
     written,
@@ -105,9 +110,7 @@ class OwnProgram:
 
 def read(function: Callable[..., Any]) -> OwnProgram | None:
     """The program behind a function; None where its source cannot be had for certain."""
-    bound: tuple[Any, ...] = ()
-    if isinstance(function, MethodType):
-        bound, function = (function.__self__,), function.__func__
+    bound, function = _given(function)
     if not isinstance(function, FunctionType) or function.__code__.co_flags & inspect.CO_GENERATOR:
         return None
     modules = _own_modules(function)
@@ -126,6 +129,47 @@ def read(function: Callable[..., Any]) -> OwnProgram | None:
     if whole.plain is not None:
         before = replace(whole.plain, plain=program, making=made)
     return replace(whole, plain=before, making=made)
+
+
+def _given(function: Any) -> tuple[tuple[Any, ...], Any]:
+    """What is given to a function before the state, and the function itself.
+
+    Of a method, of an object that is called, of a partial whose keywords become defaults.
+    """
+    bound: tuple[Any, ...] = ()
+    while not isinstance(function, FunctionType):
+        if isinstance(function, MethodType):
+            bound, function = (function.__self__, *bound), function.__func__
+        elif isinstance(function, functools.partial):
+            bound, function = (*function.args, *bound), _by_default(function)
+        elif isinstance(called := getattr(type(function), "__call__", None), FunctionType):  # noqa: B004
+            bound, function = (function, *bound), called
+        elif (inner := plain_function(function)) is not function:
+            function = inner
+        else:
+            return bound, None
+    return bound, function
+
+
+def _by_default(given: functools.partial[Any]) -> Any:
+    """The function of a partial, with what that gives it by name as defaults."""
+    inner: Any = given.func
+    if not given.keywords or not isinstance(inner, FunctionType):
+        return inner
+    asked = [*inspect.signature(inner).parameters.values()]
+    plain = [p for p in asked if p.kind is p.POSITIONAL_OR_KEYWORD]
+    values = {p.name: given.keywords.get(p.name, p.default) for p in asked}
+    last = [*dropwhile(lambda p: values[p.name] is inspect.Parameter.empty, plain)]
+    if any(values[p.name] is inspect.Parameter.empty for p in last):
+        return None
+    defaults = tuple(values[p.name] for p in last)
+    other = FunctionType(
+        inner.__code__, inner.__globals__, inner.__name__, defaults, inner.__closure__
+    )
+    named = [p.name for p in asked if p.kind is p.KEYWORD_ONLY]
+    only = {name: values[name] for name in named if values[name] is not inspect.Parameter.empty}
+    other.__kwdefaults__, other.__module__ = only or None, inner.__module__
+    return other
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,9 +219,7 @@ def _all_read(program: OwnProgram) -> bool:
         for name in ("__new__", "__init__", "__post_init__"):
             kept = vars(owner).get(name)
             method = getattr(kept, "__func__", kept)
-            written_ = (
-                isinstance(method, FunctionType) and _GENERATED not in method.__code__.co_qualname
-            )
+            written_ = isinstance(method, FunctionType) and not generated(method)
             if written_ and method not in read:
                 return False
     return True
@@ -237,9 +279,9 @@ class _Reader:
     def program(self) -> OwnProgram | None:
         """All of it; None where something cannot be read, or may not be tried."""
         name, bound = self.function.__name__, self.asked.bound
-        owner = type(bound[0]) if bound else None
         first = name if name.isidentifier() else "function"
-        self.waiting.append((owner, first, self.function, FunctionType))
+        owner, kept = _owner(self.function, bound)
+        self.waiting.append((owner, first, self.function, kept))
         sets: frozenset[str] = frozenset()
         for label, value in self.asked.given.items():
             if self.space.setdefault(label, value) is not value or not self._value(label, value):
@@ -263,8 +305,11 @@ class _Reader:
                 return None
             if self._may_stay(name, owner) and not self._harmless_all(one):
                 continue
+            tree = with_defaults_inside(tree, one)
             self.parts[one] = OwnFunction(name, tree, one, owner, [(owner, name)], kept)
-            if not self._names_of(one, [*used_in(one.__code__)]):
+            given = [line for line in tree.body if isinstance(line, ByDefault)]
+            used = {*names(ast.Module([*given], []), ast.Load)} & one.__globals__.keys()
+            if not self._names_of(one, [*used_in(one.__code__), *sorted(used)]):
                 return None
         parts = [*self.parts.values()]
         if self.lines is not None:
@@ -302,16 +347,16 @@ class _Reader:
             value = closed(one).get(label, one.__globals__.get(label))
             if label in one.__globals__ and self.space.setdefault(label, value) is not value:
                 return False
-            if isinstance(value, CACHE) and isinstance(value.__wrapped__, FunctionType):
-                value = value.__wrapped__
-            if not self._value(label, value):
+            if not self._value(label, plain_function(value)):
                 return False
         self.owners |= {part.owner: None for part in self.parts.values() if part.owner}
         self.used |= {*used}
         for owner in self.owners:
             for name, held in vars(owner).items():
                 method, kept = _unwrapped(held)
-                if method is not None and (name in self.used or _implied(name, method)):
+                if method is None or generated(method):
+                    continue
+                if name in self.used or _implied(name, method):
                     self._wait(owner, name, method, kept)
         return True
 
@@ -348,6 +393,17 @@ class _Reader:
             self.waiting.append((owner, name, function, kept))
 
 
+def _owner(function: FunctionType, bound: tuple[Any, ...]) -> tuple[type | None, type]:
+    """The class that a function is a method of, if it is one's, and what it is wrapped in there."""
+    first = bound[0] if bound else None
+    owner = first if isinstance(first, type) else type(first)
+    for held in (x for one in owner.__mro__ for x in vars(one).values()):
+        method, kept = _unwrapped(held)
+        if method is function:
+            return owner, kept
+    return None, FunctionType
+
+
 def _is_record(value: Any) -> bool:
     """A tuple whose entries have names: it is made otherwise than a tuple."""
     return isinstance(value, tuple) and type(value) is not tuple
@@ -371,9 +427,12 @@ def _unwrapped(held: Any) -> tuple[FunctionType | None, type]:
 
 def _implied(name: str, method: FunctionType) -> bool:
     """Whether a method is called without its name: to make an object, to multiply two."""
-    code = method.__code__
-    written = _GENERATED not in code.co_qualname and "__class__" not in code.co_freevars
-    return name == "__call__" or (implied(name) and written)
+    return name == "__call__" or (implied(name) and "__class__" not in method.__code__.co_freevars)
+
+
+def generated(method: FunctionType) -> bool:
+    """Whether a dataclass has written a method itself."""
+    return _GENERATED in method.__code__.co_qualname
 
 
 def implied(name: str) -> bool:
@@ -408,15 +467,16 @@ def _out_of_reach(value: Any) -> Any:
         view = value.view()
         view.flags.writeable = False
         return view
-    return copy.deepcopy(value) if isinstance(value, list | dict) and _numbers(value) else value
+    held = isinstance(value, list | tuple | dict) and of_numbers(value)
+    return copy.deepcopy(value) if held else value
 
 
-def _numbers(value: Any) -> bool:
+def of_numbers(value: Any) -> bool:
     """Whether there is nothing but numbers in it."""
     if isinstance(value, dict):
         value = [*value.values()]
     if isinstance(value, list | tuple):
-        return all(_numbers(one) for one in value)
+        return all(of_numbers(one) for one in value)
     return isinstance(value, int | float | np.ndarray)
 
 

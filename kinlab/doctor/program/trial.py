@@ -20,6 +20,7 @@ from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.kept import Contents
 from kinlab.doctor.program.own.calls import CALLS, REAL_CALLS, bounded_range
 from kinlab.doctor.program.own.definitions import (
+    DEFAULT,
     FIELDS,
     META,
     ClassBody,
@@ -28,8 +29,8 @@ from kinlab.doctor.program.own.definitions import (
     names_by_class,
     with_defaults,
 )
-from kinlab.doctor.program.own.plain import closed, functions_in, written
-from kinlab.doctor.program.read import OwnFunction, OwnProgram, implied
+from kinlab.doctor.program.own.plain import alike, attributes, closed, functions_in, written
+from kinlab.doctor.program.read import OwnProgram, implied
 
 
 class NoProgramError(Exception):
@@ -73,8 +74,10 @@ class FieldChange:
         """Puts something there."""
         if is_data(self.holder):
             self.holder[self.field] = value
-        else:
+        elif isinstance(self.holder, type):
             setattr(self.holder, self.field, value)
+        else:  # a frozen object, too: it is a copy of the user's
+            object.__setattr__(self.holder, self.field, value)
 
 
 class Trial:
@@ -121,7 +124,7 @@ class Trial:
         self.trees = [
             bounded(part.tree, None if part.sets else part.function) for part in program.parts
         ]
-        self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range}
+        self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range, DEFAULT: DEFAULT}
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
@@ -151,9 +154,9 @@ class Trial:
             entry = self._entry()
         held = closed(entry) if isinstance(entry, FunctionType) else {}
         was, making = self.program.space, self.program.making
-        same = all(_alike(self.space.get(name), was[name]) for name in self.sets)
+        same = all(alike(self.space.get(name), was[name]) for name in self.sets)
         before = {} if making is None else making.closed
-        return same and all(name in held and _alike(held[name], x) for name, x in before.items())
+        return same and all(name in held and alike(held[name], x) for name, x in before.items())
 
     def _entry(self) -> Any:
         """The function that is asked: the first part, or what that makes."""
@@ -178,12 +181,14 @@ class Trial:
             return self._own_list(value)
         if type(value) not in self.classes:
             try:
-                return copy.deepcopy(value)
+                self._copies[id(value)] = copy.deepcopy(value)
             except TypeError:  # a module, an iterator: nothing that a program writes into
                 return value
+            return self._copies[id(value)]
         new: Any = object.__new__(self.classes[type(value)])
         self._copies[id(value)] = new
-        new.__dict__.update({k: self._own(v) for k, v in getattr(value, "__dict__", {}).items()})
+        for name, held in attributes(value).items():
+            object.__setattr__(new, name, self._own(held))
         return new
 
     def _asking(self, k: int) -> Any:
@@ -203,9 +208,45 @@ class Trial:
             new += [self._own(one) for one in value]
         return new
 
+    def made(self, tree: ast.FunctionDef, k: int) -> FunctionType:
+        """A function of a definition, with the defaults that the user's own part has.
+
+        Raises:
+            NoProgramError: it cannot be compiled.
+        """
+        part, space = self.program.parts[k], self.space
+        module = ast.Module(tree.body if part.sets else [tree], [])
+        try:
+            code = compile(module, "<formula>", "exec")
+        except (SyntaxError, ValueError, TypeError) as problem:
+            raise NoProgramError(str(problem)) from problem
+        if part.sets:
+            return FunctionType(code, space)
+        defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
+        defaults = None if defaults is None else tuple(map(self._own, defaults))
+        keywords = keywords and {name: self._own(x) for name, x in keywords.items()}
+        if not tree.args.defaults and not any(tree.args.kw_defaults):
+            own = next(one for one in code.co_consts if isinstance(one, CodeType))
+            function = FunctionType(own, space, part.name, defaults)
+            function.__kwdefaults__ = keywords
+            return function
+        defined: dict[str, Any] = {}
+        try:
+            exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
+        except Exception as problem:
+            raise NoProgramError(str(problem)) from problem
+        function = defined[tree.name]
+        assert isinstance(function, FunctionType)
+        function.__defaults__ = _filled(function.__defaults__, defaults)
+        named, old = function.__kwdefaults__ or {}, keywords or {}
+        function.__kwdefaults__ = {
+            name: _or(named.get(name, ...), x) for name, x in old.items()
+        } or None
+        return function
+
     def _compiled(self, k: int) -> FunctionType:
         """One part as its tree stands now."""
-        return made(self.trees[k], self.program.parts[k], self.space)
+        return self.made(self.trees[k], k)
 
     def placed(self, k: int) -> Any:
         """The function that stands for a part now."""
@@ -254,7 +295,7 @@ class Trial:
         finally:
             self.space.update(before)
             for owner, held in owned:
-                for name in self._bodies[owner.__name__]:
+                for name in self._bodies[owner.__name__] & held.keys():
                     setattr(owner, name, held[name])
             for one, init in inits:
                 setattr(one, "__init__", init)  # noqa: B010
@@ -340,8 +381,9 @@ def _numbers_only(value: Any) -> bool:
 
 
 def is_data(value: Any) -> bool:
-    """Whether numbers are kept in it by keys or indices."""
-    return isinstance(value, list | dict | np.ndarray)
+    """Whether numbers are kept in it by keys or indices, and others can be put there."""
+    read_only = isinstance(value, np.ndarray) and not value.flags.writeable
+    return isinstance(value, list | dict | np.ndarray) and not read_only
 
 
 @contextmanager
@@ -380,36 +422,6 @@ def quietly() -> Iterator[None]:
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         yield
-
-
-def made(tree: ast.FunctionDef, part: OwnFunction, space: dict[str, Any]) -> FunctionType:
-    """A function of a definition, with the defaults that the user's own has."""
-    module = ast.Module(tree.body if part.sets else [tree], [])
-    try:
-        code = compile(module, "<formula>", "exec")
-    except (SyntaxError, ValueError, TypeError) as problem:
-        raise NoProgramError(str(problem)) from problem
-    if part.sets:
-        return FunctionType(code, space)
-    defaults, keywords = part.function.__defaults__, part.function.__kwdefaults__
-    if not tree.args.defaults and not any(tree.args.kw_defaults):
-        own = next(one for one in code.co_consts if isinstance(one, CodeType))
-        function = FunctionType(own, space, part.name, defaults)
-        function.__kwdefaults__ = keywords
-        return function
-    defined: dict[str, Any] = {}
-    try:
-        exec(code, space, defined)  # noqa: S102  a definition with numbers for its defaults
-    except Exception as problem:
-        raise NoProgramError(str(problem)) from problem
-    function = defined[tree.name]
-    assert isinstance(function, FunctionType)
-    function.__defaults__ = _filled(function.__defaults__, defaults)
-    named, old = function.__kwdefaults__ or {}, keywords or {}
-    function.__kwdefaults__ = {
-        name: _or(named.get(name, ...), x) for name, x in old.items()
-    } or None
-    return function
 
 
 def _filled(new: tuple[Any, ...] | None, own: tuple[Any, ...] | None) -> tuple[Any, ...] | None:
@@ -500,30 +512,6 @@ def _key(value: Any) -> Any:
     if value is None or isinstance(value, str | int | float | complex | np.number):
         return (type(value).__name__, value)
     raise TypeError(type(value).__name__)
-
-
-def _alike(one: Any, other: Any, depth: int = 6) -> bool:
-    """Whether what a line gives anew is what is there; of functions nothing is asked."""
-    if depth == 0 or callable(one):
-        return callable(one) == callable(other)
-    if isinstance(one, int | float | complex | np.ndarray | np.number):
-        try:
-            close = np.allclose(one, other, rtol=1e-12, atol=0.0, equal_nan=True)
-        except (TypeError, ValueError):
-            return False
-        return bool(close) and np.shape(one) == np.shape(other)
-    if isinstance(one, list | tuple):
-        same = isinstance(other, list | tuple) and len(one) == len(other)
-        return same and all(_alike(a, b, depth - 1) for a, b in zip(one, other, strict=True))
-    if not isinstance(one, dict):
-        if type(one).__name__ != type(other).__name__:
-            return False
-        if not hasattr(one, "__dict__"):
-            return bool(one == other)
-        one, other = vars(one), vars(other)
-    if not isinstance(other, dict) or one.keys() != other.keys():
-        return False
-    return all(_alike(value, other[key], depth - 1) for key, value in one.items())
 
 
 def _located(new: Any) -> None:

@@ -13,8 +13,8 @@ from types import FunctionType
 from typing import Any
 
 from kinlab.doctor.bytecode.syntax import nodes, shallow
-from kinlab.doctor.program.places import DATA, ProgramEdit, hanging, with_other
-from kinlab.doctor.program.trial import NoProgramError, Trial, made
+from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, hanging, with_other
+from kinlab.doctor.program.trial import NoProgramError, Trial
 
 _TOGETHER = 64
 """Edits that are compiled together."""
@@ -80,8 +80,7 @@ class Variants:
             instead[id(old)] = ast.If(asked, [new], [instead.get(id(old), old)], **_AT)
         tree = _with_instead(self.trial.trees[part], instead)
         try:
-            own = self.trial.program.parts[part]
-            function = made(tree, own, self.trial.space)
+            function = self.trial.made(tree, part)
         except NoProgramError:
             half = len(branches) // 2
             self._compile(part, branches[:half])
@@ -144,7 +143,7 @@ class _Part:
 def _with_instead(tree: Any, instead: dict[int, ast.stmt]) -> Any:
     """A copy of a definition, or of a block's statement, with other statements in it."""
     other = shallow(tree)
-    for name in ("body", "orelse"):
+    for name in BLOCKS:
         block = getattr(tree, name, None)
         if isinstance(block, list):
             setattr(other, name, [_placed(statement, instead) for statement in block])
@@ -154,4 +153,5 @@ def _with_instead(tree: Any, instead: dict[int, ast.stmt]) -> Any:
 def _placed(statement: ast.stmt, instead: dict[int, ast.stmt]) -> ast.stmt:
     if id(statement) in instead:
         return instead[id(statement)]
-    return _with_instead(statement, instead) if hasattr(statement, "body") else statement
+    blocks = any(hasattr(statement, name) for name in BLOCKS)
+    return _with_instead(statement, instead) if blocks else statement

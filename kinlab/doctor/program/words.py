@@ -19,6 +19,7 @@ from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
 from kinlab.doctor.program.named import named
+from kinlab.doctor.program.own.definitions import DEFAULT
 from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
@@ -404,6 +405,7 @@ def _text(node: ast.AST) -> str:
     if isinstance(node, ast.If) and getattr(node.test, "value", None) is True:  # a line and another
         return "; ".join(map(_text, node.body))
     text = ast.unparse(node).replace("_turn() and ", "")  # what ends loops is not the user's
+    text = re.sub(rf" if (\w+) is {DEFAULT} else \1", "", text)
     return _typed(text.partition("\n")[0].rstrip(":"))
 
 

@@ -66,7 +66,7 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
     """Two numbers of a row, two rows, or two columns of a table for one another."""
     for key, one in _members(value):
         yield from _exchanged(name, one, (*place, key))
-    if not isinstance(value, list | np.ndarray) or not 1 < len(value) <= _ROWS:
+    if isinstance(value, dict) or not is_data(value) or not 1 < len(value) <= _ROWS:
         return
     if all(_is_plain(one) for one in value):
         for i, j in combinations(range(len(value)), 2):
@@ -272,7 +272,7 @@ def _below(value: Any, name: str, place: tuple[Any, ...]) -> Iterator[NumberPlac
         for k, one in value.items() if isinstance(value, dict) else enumerate(value):
             yield from _within(value, k, one, name, (*place, k), ())
     elif isinstance(value, np.ndarray):
-        if value.dtype.kind == "f" and value.size <= _TABLE:
+        if value.dtype.kind == "f" and value.size <= _TABLE and value.flags.writeable:
             for index in np.ndindex(value.shape):
                 entry = (*place, *index)
                 yield NumberPlace(float(value[index]), DATA, value, index, name, entry)

@@ -25,6 +25,7 @@ from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
 from kinlab.doctor.program.grounds.scaled import (
     OtherArm,
     ProgramNumber,
+    holds_an_arm,
     may_be_of_one_arm,
     moments,
     named_at_will,
@@ -121,8 +122,9 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     changed = tuple(tuple(together(put)) for put in puts if put)
     if not changed:
         return None
-    named = any(hasattr(trial.space.get(name), "_fields") for name in trial.program.held)
-    whole = reader.whole and not named and len(ways) <= _WAYS and _stays(trial, puts[0])
+    named = any(hasattr(type(trial.space.get(n)), "_fields") for n in trial.program.held)
+    whole = reader.whole and not (named or holds_an_arm(trial)) and len(ways) <= _WAYS
+    whole = whole and _stays(trial, puts[0])
     return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
 
 

@@ -16,12 +16,14 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.own.plain import attributes, home
 from kinlab.doctor.program.places import DATA, ProgramEdit, called
+from kinlab.doctor.program.read import of_numbers
 from kinlab.doctor.program.trial import Trial
 from kinlab.errors import KinlabError, already_said
 from kinlab.model.dh import DHLink, DHTable
@@ -107,14 +109,14 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     twisted = twisted_by(table, found)
     kinds = _kinds(robot, table, twisted)
     meant = _alike(found, [_meant(kinds, one.value) for one in found])
-    names = vocabulary(table).values
+    letters = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True
     choices: dict[Any, tuple[list[ProgramNumber], list[float]]] = {}
     for one, some in zip(found, meant, strict=True):
         own = may_be_of_one_arm(one.value)
         if (one.alone or own or one.given) and some:
-            plain = not own and not one.place.place and one.place.node not in names
+            plain = not own and not one.place.place and one.place.node not in letters
             factors = sorted({factor for _kind, factor in some}.union([1.0] * plain))
             choices.setdefault((_key(one), *factors), ([], factors))[0].append(one)
         elif own or (some and not one.alone):
@@ -135,7 +137,16 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     larger = _scaled(table, twisted)
     if larger is None:
         return None
-    return OtherArm(larger, tuple(ways[:_WAYS]), whole and len(ways) <= _WAYS)
+    whole = whole and len(ways) <= _WAYS and not holds_an_arm(trial)
+    return OtherArm(larger, tuple(ways[:_WAYS]), whole)
+
+
+def holds_an_arm(trial: Trial) -> bool:
+    """Whether a program asks an arm itself, or this package, where no other can be put."""
+    used = {name for tree in trial.trees for name in names(tree)}
+    held = [value for name, value in trial.program.space.items() if name in used]
+    held += [x for one in trial.program.bound for x in attributes(one).values()]
+    return any(home(x) in ("kinlab", "pinocchio") for x in held)
 
 
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
@@ -226,8 +237,9 @@ def _defaults(trial: Trial) -> Iterator[NumberPlace]:
 def unused(trial: Trial) -> list[str]:
     """Names of numbers of the module that a slip has left unused: a repair may use them again."""
     used = {*trial.program.data, *trial.sets}
-    known = trial.program.space.items()
-    return [name for name, x in known if name not in used and type(x) in (int, float, list, tuple)]
+    kinds = (int, float, list, tuple)
+    known = [(name, x) for name, x in trial.program.space.items() if type(x) in kinds]
+    return [name for name, x in known if name not in used and of_numbers(x)]
 
 
 def _scaled(table: DHTable, twisted: float) -> DHTable | None:

@@ -15,7 +15,7 @@ from kinlab.doctor.program.lanes.numbers import Laned, Lanes, TooMuchError
 from kinlab.doctor.program.lanes.ways import Ways
 from kinlab.doctor.program.lanes.woven import Edits, Woven
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.trial import FailedError, FieldChange, Trial, made
+from kinlab.doctor.program.trial import FailedError, FieldChange, Trial
 
 _MOST = 60_000_000
 """Work of one run."""
@@ -55,8 +55,7 @@ class InLanes:
         self.counts = counts and bool(whole)
         self.placed = self.woven.placed - (set() if counts else whole)
         self._functions = [
-            made(self.woven.tree(tree), part, trial.space)
-            for tree, part in zip(trial.trees, trial.program.parts, strict=True)
+            trial.made(self.woven.tree(tree), k) for k, tree in enumerate(trial.trees)
         ]
         data = [one for one in self.woven.data if one[0] in self.placed]
         data.sort(key=lambda one: _depth(one[1].now))  # a row is made anew with what is in it

@@ -18,7 +18,15 @@ import numpy as np
 from kinlab.doctor.bytecode.syntax import nodes, shallow
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, Spot, called, hanging, with_other
+from kinlab.doctor.program.places import (
+    BLOCKS,
+    DATA,
+    ProgramEdit,
+    Spot,
+    called,
+    hanging,
+    with_other,
+)
 from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
 
 _SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
@@ -259,6 +267,10 @@ class Woven:
                 found.append(statement)
             elif isinstance(statement, _SIMPLE):
                 found += self._statement(statement, alone)
+            elif isinstance(statement, ast.match_case | ast.ExceptHandler):
+                one: Any = shallow(statement)
+                one.body = self._body(statement.body, alone)
+                found.append(one)
             else:
                 found += self._block(statement, alone)
         return found
@@ -272,7 +284,7 @@ class Woven:
             asked: dict[Key, Any] = {}
             other.iter = self._expression((statement, "iter", None), (), asked)
             found += [one for one, _name, _given in asked.values()]
-        for name in ("body", "orelse", "finalbody"):
+        for name in BLOCKS:
             block = getattr(statement, name, None)
             if isinstance(block, list):
                 setattr(other, name, self._body(block, alone or bool(ways)))

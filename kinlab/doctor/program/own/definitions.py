@@ -5,12 +5,14 @@ from __future__ import annotations
 import ast
 import copy
 from collections.abc import Iterable, Sequence
-from types import FunctionType
+from dataclasses import MISSING, Field
+from types import FunctionType, MemberDescriptorType
 from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
+from kinlab.doctor.program.own.plain import alike, closed
 
 
 def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
@@ -20,7 +22,78 @@ def _written(nodes_: Sequence[Any], values: Sequence[Any]) -> list[Any]:
     told = [(_literal(node), value) for node, value in zip(nodes_, values, strict=True)]
     same = [new is not None and type(new) is type(own) and new == own for new, own in told]
     pairs = zip(nodes_, same, strict=True)
-    return [n if own or n is None else ast.Constant(...) for n, own in pairs] if any(same) else []
+    kept = any(same) or any(map(_is_mark, nodes_))
+    return [n if own or _is_mark(n) else ast.Constant(...) for n, own in pairs] if kept else []
+
+
+def _is_mark(node: ast.expr | None) -> bool:
+    return node is None or (isinstance(node, ast.Name) and node.id == DEFAULT)
+
+
+class ByDefault(ast.Assign):
+    """Sets an argument that is not given to what it is by default."""
+
+
+DEFAULT = "_default"
+"""What stands for an argument that is not given: it is set in the first lines."""
+_KNOWN = (
+    *(ast.Name, ast.Attribute, ast.Subscript, ast.Constant, ast.UnaryOp, ast.BinOp, ast.Call),
+    *(ast.Dict, ast.List, ast.Tuple, ast.expr_context, ast.operator, ast.unaryop),
+)
+"""Of what a default may be made that is reckoned anew in each call."""
+_MAKING = ("array", "asarray", "diag", "eye", "zeros", "ones", "radians", "deg2rad")
+"""What may be called for it."""
+
+
+def with_defaults_inside(tree: ast.FunctionDef, function: FunctionType) -> ast.FunctionDef:
+    """A definition that sets what is no plain number by default itself: ``l = LENGTHS``.
+
+    Only where that is what the function has.
+    """
+    args = tree.args
+    asked = [*args.posonlyargs, *args.args]
+    named = function.__kwdefaults__ or {}
+    plain = function.__defaults__ or ()
+    if len(plain) != len(args.defaults):
+        return tree
+    last = zip(asked[len(asked) - len(plain) :], args.defaults, plain, strict=True)
+    only = zip(args.kwonlyargs, args.kw_defaults, strict=True)
+    every = [*last, *((arg, node, named.get(arg.arg)) for arg, node in only if node is not None)]
+    inside = {
+        id(node): _given(arg.arg, node)
+        for arg, node, value in every
+        if _literal(node) is None and _is(node, value, function)
+    }
+    if not inside:
+        return tree
+    own = shallow(tree)
+    own.args = shallow(args)
+    mark = ast.Name(DEFAULT, ast.Load())
+    own.args.defaults = [mark if id(one) in inside else one for one in args.defaults]
+    own.args.kw_defaults = [mark if id(one) in inside else one for one in args.kw_defaults]
+    own.body = [*inside.values(), *tree.body]
+    return ast.fix_missing_locations(own)
+
+
+def _given(name: str, node: ast.expr) -> ByDefault:
+    mark = ast.Compare(ast.Name(name, ast.Load()), [ast.Is()], [ast.Name(DEFAULT, ast.Load())])
+    value = ast.IfExp(mark, node, ast.Name(name, ast.Load()))
+    return ast.copy_location(ByDefault([ast.Name(name, ast.Store())], value), node)
+
+
+def _is(node: ast.expr, value: Any, function: FunctionType) -> bool:
+    """Whether a default is what its expression gives now."""
+    made = [one for one in nodes(node) if isinstance(one, ast.Call)]
+    if not all(isinstance(one, _KNOWN) for one in nodes(node)):
+        return False
+    if any(ast.unparse(one.func).rpartition(".")[2] not in _MAKING for one in made):
+        return False
+    try:
+        code = compile(ast.fix_missing_locations(ast.Expression(node)), "<default>", "eval")
+        now = eval(code, {**function.__globals__, **closed(function)})  # noqa: S307  names, numbers
+    except Exception:  # noqa: BLE001  names that have gone
+        return False
+    return now is value or (value is not None and alike(now, value))
 
 
 def _literal(node: ast.expr | None) -> Any:
@@ -57,10 +130,15 @@ def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.Functio
     return ast.fix_missing_locations(own)
 
 
+_TELLING = ("print", "display", "debug", "info", "warning", "error", "critical", "warn")
+"""Functions and methods that only tell something."""
+
+
 class _Quiet(ast.NodeTransformer):
     def visit_Expr(self, node: ast.Expr) -> ast.stmt:
         called = node.value.func if isinstance(node.value, ast.Call) else None
-        silent = isinstance(called, ast.Name) and called.id in ("print", "display")
+        name = getattr(called, "id", None) or getattr(called, "attr", None)
+        silent = name in _TELLING
         return ast.copy_location(ast.Pass(), node) if silent else node
 
     def visit_While(self, node: ast.While) -> ast.While:
@@ -71,9 +149,11 @@ class _Quiet(ast.NodeTransformer):
 
 
 def class_like(owner: type) -> type:
-    """A class like another, whose methods can be changed."""
+    """A class like another, whose methods can be changed; what has slots keeps a dictionary."""
     own: dict[str, Any] = {}
     for name, value in vars(owner).items():
+        if name == "__slots__" or isinstance(value, MemberDescriptorType):
+            continue
         data = isinstance(value, list | dict | np.ndarray) and name[:2] != "__"
         own[name] = copy.deepcopy(value) if data else value
     own.pop("__dict__", None)
@@ -98,6 +178,10 @@ class ClassBody:
 
     def __call__(self, _name: str, _bases: Any, space: dict[str, Any]) -> type:
         for name, value in space.items():
+            if isinstance(value, Field):  # a dataclass keeps what it is by default, if that
+                value = value.default
+            if value is MISSING:
+                continue
             if name[:2] != "__" and value is not vars(self.owner).get(name):
                 setattr(self.owner, name, value)
         return self.owner
@@ -112,10 +196,12 @@ def names_by_class(trees: Iterable[ast.AST]) -> dict[str, set[str]]:
 def with_defaults(owner: Any) -> None:
     """Gives the method that makes objects of a dataclass the defaults that stand in the class."""
     init = vars(owner)["__init__"]
-    given = [name for name in getattr(owner, FIELDS) if name in vars(owner)]
+    fields = getattr(owner, FIELDS).items()
+    given = [name for name, f in fields if name in vars(owner) or f.default_factory is not MISSING]
     if not isinstance(init, FunctionType) or len(init.__defaults__ or ()) != len(given):
         return
-    values = tuple(vars(owner)[name] for name in given)
+    old = zip(given, init.__defaults__ or (), strict=True)
+    values = tuple(vars(owner).get(name, default) for name, default in old)
     code, space, closure = init.__code__, init.__globals__, init.__closure__
     made = FunctionType(code, space, init.__name__, values, closure)
     made.__kwdefaults__ = init.__kwdefaults__

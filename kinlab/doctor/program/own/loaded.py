@@ -13,7 +13,7 @@ import functools
 import inspect
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from types import FunctionType, MethodType, ModuleType
+from types import BuiltinMethodType, FunctionType, MethodType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -167,7 +167,7 @@ _SMALL = 1000
 
 def drawing(value: Any) -> bool:
     """Whether asking a value changes it: an iterator, a source of random numbers."""
-    source = getattr(value, "__self__", value)
+    source = value.__self__ if isinstance(value, MethodType | BuiltinMethodType) else value
     kinds = (value, source, type(source))
     homes = (getattr(one, "__module__", None) or "" for one in kinds)
     return isinstance(value, Iterator) or any(str(x).startswith("numpy.random") for x in homes)

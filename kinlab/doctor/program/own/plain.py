@@ -8,10 +8,22 @@ import functools
 import inspect
 import itertools
 from collections.abc import Iterator
-from types import BuiltinFunctionType, CodeType, FunctionType, MethodType, ModuleType
+from contextlib import suppress
+from types import (
+    BuiltinFunctionType,
+    CodeType,
+    FunctionType,
+    MemberDescriptorType,
+    MethodType,
+    ModuleType,
+)
 from typing import Any
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.model.dh import DHLink, DHTable
+from kinlab.model.robot import Robot
 
 CACHE = type(functools.lru_cache(len))
 _HEAP = 1 << 9
@@ -36,9 +48,20 @@ _ARITHMETIC = frozenset(
         "dataclasses",
         "typing",
         "__future__",
+        "abc",
+        "argparse",
+        "contextlib",
+        "copy",
+        "enum",
+        "logging",
+        "numbers",
+        "time",
+        "warnings",
     ]
 )
 """Modules that a program may use if it is to be tried with edits in it."""
+_LINEAR = ("scipy", "scipy.linalg", "scipy.spatial", "scipy.spatial.transform", "scipy.constants")
+"""Of a large package the modules of which the same is true."""
 _REACHING_OUT = frozenset(
     [
         "open",
@@ -64,6 +87,12 @@ _REACHING_OUT = frozenset(
         "memmap",
         "fromfile",
         "ctypeslib",
+        "io",
+        "sleep",
+        "view",
+        "basicConfig",
+        "parse_args",
+        "parse_known_args",
     ]
 )
 """Functions that reach beyond arithmetic."""
@@ -77,16 +106,24 @@ _KEEPING = frozenset(
 
 def is_plain(tree: ast.AST, function: FunctionType) -> bool:
     """Whether a definition asks for nothing but arithmetic."""
+    set_ = {*names(tree, ast.Store)}
+    catches = any(isinstance(node, ast.Try) for node in nodes(tree))
     for node in nodes(tree):
         if isinstance(node, _BEYOND):
             return False
+        if isinstance(node, ast.While) and catches:
+            return False  # it might catch what ends it
+        if isinstance(node, ast.With) and not all(map(_settles, node.items)):
+            return False
+        if isinstance(node, ast.Global) and not set_.isdisjoint(node.names):
+            return False  # it keeps something from one call to the next
         if isinstance(node, ast.Nonlocal) and not {*node.names}.isdisjoint(
             function.__code__.co_freevars
         ):
             return False  # it keeps something from one call to the next
-        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
-        names += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
-        if any(name.partition(".")[0] not in _ARITHMETIC for name in names):
+        modules = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        modules += [node.module or ""] if isinstance(node, ast.ImportFrom) else []
+        if not all(map(_arithmetic, modules)):
             return False
         if isinstance(node, ast.Name) and node.id in _REACHING_OUT:
             return False
@@ -97,11 +134,22 @@ def is_plain(tree: ast.AST, function: FunctionType) -> bool:
     return True
 
 
+def _arithmetic(module: str) -> bool:
+    """Whether all that a module holds is arithmetic."""
+    public = module.partition("._")[0]  # scipy.linalg._matfuncs
+    return module.partition(".")[0] in _ARITHMETIC or public in _LINEAR
+
+
+def _settles(item: ast.withitem) -> bool:
+    """Whether what stands behind ``with`` only settles how numbers are reckoned, or told."""
+    node = item.context_expr
+    return isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in _SETTLING
+
+
+_SETTLING = ("errstate", "printoptions", "catch_warnings", "suppress")
 _BEYOND = (
-    ast.Global,
     ast.Await,
-    ast.With,
-    ast.Try,
+    ast.AsyncWith,
     ast.TryStar,
 )
 """What a program of plain arithmetic has not."""
@@ -153,13 +201,67 @@ _MAKING = ("__new__", "__init__", "__prepare__")
 _STANDARD = ("abc", "enum", "typing", "dataclasses")
 
 
+def home(value: Any) -> str:
+    """The package that a value comes from, or what made it."""
+    if isinstance(value, ModuleType):
+        return value.__name__.partition(".")[0]
+    owner = value if isinstance(value, FunctionType | type) else type(value)
+    return (owner.__module__ or "").partition(".")[0]
+
+
+def plain_function(value: Any) -> Any:
+    """The function behind one that remembers its answers, or that is compiled; others as they are.
+
+    What is compiled by numba is the same arithmetic.
+    """
+    inner = value.__wrapped__ if isinstance(value, CACHE) else None
+    if home(value) == "numba":
+        inner = getattr(value, "py_func", None)
+    return inner if isinstance(inner, FunctionType) else value
+
+
+def attributes(value: Any) -> dict[str, Any]:
+    """What an object keeps, by name; what it has no slot filled for is not there."""
+    kept: dict[str, Any] = {}
+    for kind in type(value).__mro__:
+        for name, slot in vars(kind).items():
+            if isinstance(slot, MemberDescriptorType) and name[:2] != "__":
+                with suppress(AttributeError):
+                    kept[name] = slot.__get__(value)
+    return {**kept, **getattr(value, "__dict__", {})}
+
+
+def alike(one: Any, other: Any, depth: int = 6) -> bool:
+    """Whether what a line gives anew is what is there; of functions nothing is asked."""
+    if depth == 0 or callable(one):
+        return callable(one) == callable(other)
+    if isinstance(one, int | float | complex | np.ndarray | np.number):
+        try:
+            close = np.allclose(one, other, rtol=1e-12, atol=0.0, equal_nan=True)
+        except (TypeError, ValueError):
+            return False
+        return bool(close) and np.shape(one) == np.shape(other)
+    if isinstance(one, list | tuple):
+        same = isinstance(other, list | tuple) and len(one) == len(other)
+        return same and all(alike(a, b, depth - 1) for a, b in zip(one, other, strict=True))
+    if not isinstance(one, dict):
+        if type(one).__name__ != type(other).__name__:
+            return False
+        if not attributes(one):
+            return bool(one == other)
+        one, other = attributes(one), attributes(other)
+    if not isinstance(other, dict) or one.keys() != other.keys():
+        return False
+    return all(alike(value, other[key], depth - 1) for key, value in one.items())
+
+
 def owners_in(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> Iterator[type]:
     """The program's own classes of which objects are kept in a value: in lists, in one another."""
     owner = value if isinstance(value, type) else type(value)
     inner: list[Any] = []
     if written(owner, modules) and not issubclass(owner, tuple | enum.Enum):
         yield owner
-        inner = [] if isinstance(value, type) else [*getattr(value, "__dict__", {}).values()]
+        inner = [] if isinstance(value, type) else [*attributes(value).values()]
     elif isinstance(value, list | tuple | dict):
         inner = [*value.values()] if isinstance(value, dict) else [*value]
     for one in inner[:_MOST] if depth else ():
@@ -173,7 +275,7 @@ def harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> 
     else a program may reach are not to be tried in vain.
     """
     if isinstance(value, ModuleType):
-        return value.__name__.partition(".")[0] in _ARITHMETIC
+        return _arithmetic(value.__name__)
     if isinstance(value, MethodType | functools.partial):
         inside = (
             (value.__self__, value.__func__)
@@ -191,15 +293,14 @@ def harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> 
         inner = [*value.values()] if isinstance(value, dict) else [*value]
         return depth > 0 and all(harmless(one, modules, depth - 1) for one in inner[:_MOST])
     if isinstance(value, BuiltinFunctionType):
-        return (value.__module__ or "").partition(".")[0] in _ARITHMETIC
+        return _arithmetic(value.__module__ or "")
     if registers(value if isinstance(value, type) else type(value)):
         return False  # a copy of the class would be felt
     if isinstance(value, FunctionType | type):
         of = value.__module__
-        return of in modules or (of or "").partition(".")[0] in _ARITHMETIC
-    home = type(value).__module__ or ""
+        return of in modules or _arithmetic(of or "")
     if written(type(value), modules):
-        held = [*getattr(value, "__dict__", {}).values()]
+        held = [*attributes(value).values()]
         for method in vars(type(value)).values():
             if not isinstance(method, FunctionType):
                 continue
@@ -207,7 +308,8 @@ def harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> 
             if space.get("__name__") != "dataclasses":  # with what one prints itself
                 held += [space.get(name) for name in used_in(method.__code__)]
         return depth > 0 and all(harmless(one, modules, depth - 1) for one in held)
-    return home.partition(".")[0] in _ARITHMETIC
+    described = isinstance(value, Robot | DHTable | DHLink)  # asked for its numbers
+    return described or _arithmetic(type(value).__module__ or "")
 
 
 def closed(function: FunctionType) -> dict[str, Any]:
