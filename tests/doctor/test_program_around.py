@@ -76,8 +76,7 @@ KEPT = {
         EACH,
     ),
     "attributes that are looked up": (
-        "class P:\n    def __getattr__(self, name):\n"
-        f"        return dict({EQUAL})[name]\np = P()",
+        f"class P:\n    def __getattr__(self, name):\n        return dict({EQUAL})[name]\np = P()",
         EACH,
     ),
     "an object that is not to be written to": (

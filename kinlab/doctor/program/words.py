@@ -243,7 +243,7 @@ _SLIPS = {
     "tool": _NUMBERS,
     "mass": (*_NUMBERS, "index"),
     "row shift": (*_NUMBERS, "index"),
-    "centre": (*_NUMBERS, "index", "name", "missing factor"),
+    "centre": (*_NUMBERS[:2], *_NUMBERS[3:], "index", "name", "missing factor"),
     "gravity axis": (*_NUMBERS, "index"),
     "alpha sign": ("sign", "number"),
     "a sign": ("sign", "number"),

@@ -12,6 +12,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.chains import without_numbers
+from kinlab.doctor.program.edits.data import is_object
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired
 from kinlab.doctor.program.trial import Trial
@@ -19,6 +20,8 @@ from kinlab.doctor.program.trial import Trial
 ANGLES = ("sin", "cos", "tan")
 ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan")
 PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
+_SQUARES = {(2, 2), (3, 3), (4, 4)}
+"""Shapes of matrices to which the unit matrix may be added."""
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _ODD = 0.04
@@ -143,11 +146,32 @@ class Scope:
                 self.pieces.setdefault(shape, {}).setdefault(name, plain)
             if shape and (name in self.unused or len(shape) > 1):
                 self.lists.setdefault(name, shape[1:])
+        self._of_siblings(trial)
+        if self.has_numpy:
+            for size in _SQUARES & self.pieces.keys():
+                unit = ast.parse(f"np.eye({size[0]})", mode="eval").body
+                self.pieces[size].setdefault(ast.unparse(unit), unit)
         for name, shape in self.lists.items():
             for counter in self.counters:
                 counted = ast.Name(counter, ast.Load())
                 entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+
+    def _of_siblings(self, trial: Trial) -> None:
+        """What other objects of the module have where one has it: ``two.m`` beside ``one.m``."""
+        kinds: dict[str, set[str]] = {}
+        known = [node for some in self.pieces.values() for node in some.values()]
+        kept = {name: trial.space.get(name) for name in (*trial.program.data, *trial.sets)}
+        objects = {name: value for name, value in kept.items() if is_object(value)}
+        for node in known:
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                kinds.setdefault(type(objects.get(node.value.id)).__name__, set()).add(node.attr)
+        for name, value in objects.items():
+            for attr in sorted(kinds.get(type(value).__name__, ())):
+                shape = _shape(vars(value).get(attr))
+                if shape is not None:
+                    one = ast.Attribute(ast.Name(name, ast.Load()), attr, ast.Load())
+                    self.pieces.setdefault(shape, {}).setdefault(ast.unparse(one), one)
 
     def _of_addends(self, statement: ast.Assign) -> None:
         known = self.addends.setdefault(_stem([statement]), set())
@@ -498,7 +522,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     siblings = scope.addends.get(_stem(here.above), set()) if whole else set()
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
-        if text == own or not (whole or named or isinstance(piece, ast.Attribute)):
+        one = isinstance(piece, ast.Call) and called(piece) == "eye"
+        if text == own or not (whole or named or one or isinstance(piece, ast.Attribute)):
             continue
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
@@ -509,6 +534,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         dear = min(scope.dear(piece), _BESIDE if text in siblings else 1.0)
         for op, cost in ((ast.Add(), 1.06), (ast.Sub(), 1.08)):
             yield here.instead(ast.BinOp(node, op, piece), "missing term", cost + dear)
+        if one:
+            yield here.instead(ast.BinOp(piece, ast.Sub(), node), "missing term", 1.1)
         if whole and shape == () and not dear:
             for factor, other in scope.simple(()):
                 product = ast.BinOp(piece, ast.Mult(), other)

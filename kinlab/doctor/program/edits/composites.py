@@ -163,6 +163,10 @@ def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """
     if scope.cross is None:
         return
+    node = here.node
+    if isinstance(node, ast.Call) and called(node) == "cross" and _begins(node.args[0], _RATES):
+        twice = ast.Call(node.func, [node.args[0], node], [])
+        yield here.instead(twice, "missing factor", 1.09)
     vectors = scope.pieces_here(_VECTOR).values()
     for rate in [one for one in vectors if _plain(one) and _begins(one, _RATES)][:_FEW]:
         for inner in _turned_with(here.node, rate, scope):

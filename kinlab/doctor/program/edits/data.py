@@ -40,6 +40,8 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
             for other in _RIGHT_ANGLES:
                 if other != leaf.value:
                     yield leaf.edit(other, "number", 1.12)
+    for leaf in _whole_entries(trial):
+        yield leaf.edit(-leaf.value, "sign", 1.05)
     for name in trial.program.data:
         value = trial.space[name]
         for new, kind in _whole(value):
@@ -48,6 +50,20 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
     for held in trial.bound:
         yield from _exchanged("self", held, ())
     yield from _names_exchanged(trial)
+
+
+def _whole_entries(trial: Trial) -> Iterator[NumberPlace]:
+    """Entries of arrays of whole numbers, such as axes: none of an arm's numbers."""
+    for name in trial.program.data:
+        value = trial.space[name]
+        listed = enumerate(value) if isinstance(value, list | tuple) else [(None, value)]
+        for k, one in listed:
+            if not isinstance(one, np.ndarray) or one.dtype.kind != "i" or one.size > _TABLE:
+                continue
+            for index in np.ndindex(one.shape if one.flags.writeable else (0,)):
+                if one[index]:
+                    place = index if k is None else (k, *index)
+                    yield NumberPlace(int(one[index]), DATA, one, index, name, place)
 
 
 def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
@@ -115,13 +131,13 @@ def _members(value: Any) -> list[tuple[Any, Any]]:
     if isinstance(value, dict):
         return [*value.items()]
     if isinstance(value, list):
-        return [(k, x) for k, x in enumerate(value) if isinstance(x, dict) or _is_object(x)]
-    if not _is_object(value):
+        return [(k, x) for k, x in enumerate(value) if isinstance(x, dict) or is_object(x)]
+    if not is_object(value):
         return []
     return [(f".{k}", x) for k, x in vars(value).items() if not k.startswith("__")]
 
 
-def _is_object(value: Any) -> bool:
+def is_object(value: Any) -> bool:
     plain = isinstance(value, np.ndarray | list | tuple | str) or callable(value)
     return hasattr(value, "__dict__") and not (plain and not isinstance(value, type))
 

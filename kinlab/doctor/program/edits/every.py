@@ -114,8 +114,9 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     counts = whole and isinstance(node, ast.Name | ast.BinOp)
     if index or counts:
         if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not shifted(node):
+            limits = isinstance(here.parent, ast.Compare) and not _equal(here.parent)
             for step in (1, -1):
-                yield here.instead(plus(node, step), "index", 1.1)
+                yield here.instead(plus(node, step), "index", 1.25 if limits else 1.1)
         return
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
@@ -209,6 +210,10 @@ class _Moved(ast.NodeTransformer):
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return plus(node, self.step) if node.id == self.counter else node
+
+
+def _equal(test: ast.Compare) -> bool:
+    return isinstance(test.ops[0], ast.Eq | ast.NotEq)
 
 
 def _comparison_of(here: Here, test: ast.expr) -> Iterator[ProgramEdit]:

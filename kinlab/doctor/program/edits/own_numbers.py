@@ -38,15 +38,15 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     kinds, summed = sizes_of(table), _from_the_joint(table)
     weight = float(np.linalg.norm(table.gravity))
     every = [*numbers(trial, observed)]
+    given = [abs(float(place.value)) for place in every]
     for place in every:
         if not isinstance(place.value, float):
             continue
-        for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed):
+        for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed, given):
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
-    given = {abs(float(place.value)) for place in every}
-    left_out = [x for x in lengths if not among(x, [*given])]
+    left_out = [x for x in lengths if not among(x, given)]
     if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
@@ -73,14 +73,19 @@ def _from_the_joint(table: DHTable) -> list[float]:
 
 
 def _meant(
-    place: NumberPlace, kinds: dict[str, list[float]], summed: Sequence[float]
+    place: NumberPlace,
+    kinds: dict[str, list[float]],
+    summed: Sequence[float],
+    given: Sequence[float],
 ) -> Iterator[tuple[float, float]]:
     """Numbers that may be meant, and how far-fetched each is."""
     size = abs(float(place.value))
     own = [known for known in kinds.values() if among(size, known)]
     if own:
-        if place.part == DATA and not place.place:
-            return  # a name for one of the arm's numbers
+        if place.part == DATA and not place.place:  # a name for one of the arm's numbers
+            kinds = {kind: [x for x in some if not among(x, given)] for kind, some in kinds.items()
+                     if some in own}  # fmt: skip
+            own = [*kinds.values()]
     elif size in _PLAIN or may_be_gravity(size) or size <= TOLERANCES.may_be_step:
         return
     cost = 1.12 if own else 1.1

@@ -204,7 +204,8 @@ def _key(one: ProgramNumber) -> Any:
     """Numbers of one list are of one kind, and equal ones that are given on; others each alone."""
     if one.given:
         return one.value
-    return one.place.node if one.place.part == DATA and one.place.place else id(one)
+    listed = one.place.part == DATA and one.place.place
+    return (one.place.node, *_names_down(one.place)) if listed else id(one)
 
 
 def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
@@ -335,10 +336,12 @@ def _as_called(
     """Of what a number may be what its name says, and of the link at whose place it stands."""
     if place.part != DATA:
         return left
-    kind = _LETTERS.get(place.node[:1].lower())
+    name = [place.node, *_names_down(place)][-1].lstrip(".")
+    kind = _LETTERS.get(name[:1].lower())
     left = {x for x in left if x[0] == kind} or left
-    digits = place.node.lstrip("".join(set(place.node) - set("0123456789")))
-    at = place.place[0] if place.place else int(digits) - 1 if digits.isdigit() else None
+    digits = name.lstrip("".join(set(name) - set("0123456789")))
+    own = int(digits) - 1 if digits.isdigit() else None
+    at = next((one for one in place.place if isinstance(one, int)), own)
     return {x for x in left if at is not None and x[1] in (-1, at)} or left
 
 
@@ -348,7 +351,13 @@ _LETTERS |= {"i": "moment", "j": "moment", "g": "kept"}
 
 
 def _groups(place: NumberPlace) -> list[Any]:
-    return [place.node, (place.node, *place.place[-1:])] if place.part == DATA else []
+    list_ = (place.node, *_names_down(place))
+    return [list_, (*list_, *place.place[-1:])] if place.part == DATA else []
+
+
+def _names_down(place: NumberPlace) -> list[str]:
+    """The attributes and keys down to a number."""
+    return [one for one in place.place if isinstance(one, str)]
 
 
 def _may_be_step(value: float) -> bool:

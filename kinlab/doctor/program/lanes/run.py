@@ -19,8 +19,10 @@ from kinlab.doctor.program.trial import FailedError, FieldChange, Trial
 
 _MOST = 60_000_000
 """Work of one run."""
-_FEWEST = 60
+_FEWEST = 2
 """Lanes of which no half is run alone."""
+_HALVED = 80
+"""Times that lanes of one question are halved."""
 
 
 class InLanes:
@@ -60,7 +62,7 @@ class InLanes:
         data = [one for one in self.woven.data if one[0] in self.placed]
         data.sort(key=lambda one: _depth(one[1].now))  # a row is made anew with what is in it
         self._wide, self._data = _of_objects(trial, data)
-        self.work = 0
+        self.work = self._left = 0
 
     def answers(self, chosen: Any, count: int | None = None, most: int = _MOST) -> Array | None:
         """The numbers of the answers with these edits, (C, S, P); NaN where a lane was lost.
@@ -73,19 +75,25 @@ class InLanes:
             count: how many of the states are asked; None for all.
             most: work that may be done.
         """
+        self._left = _HALVED
+        return self._in_halves(chosen, count, most)
+
+    def _in_halves(self, chosen: Any, count: int | None, most: int) -> Array | None:
+        """The same; where it fails each half alone, as often as that may be done."""
         before = self.work
         try:
             return self._answered(chosen, count, most)
         except TooMuchError:
             return None
         except (FailedError, TypeError, ValueError):
-            if len(chosen) <= _FEWEST:
+            self._left -= 1
+            if len(chosen) <= _FEWEST or self._left < 0:
                 return None
         halves = np.array_split(chosen, 2)
         found = []
         for half in halves:
             left = most - (self.work - before)
-            found.append(self.answers(half, count, left) if left > 0 else None)
+            found.append(self._in_halves(half, count, left) if left > 0 else None)
         size = next((one.shape[1:] for one in found if one is not None), None)
         if size is None or any(one is not None and one.shape[1:] != size for one in found):
             return None

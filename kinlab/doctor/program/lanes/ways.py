@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.lanes.numbers import Laned, LaneGroup, Lanes
+from kinlab.doctor.program.lanes.numbers import Laned, LaneGroup, Lanes, is_number
 
 _BODY = ast.Assign | ast.AugAssign | ast.If | ast.For | ast.Pass
 """Statements that may run for some lanes alone."""
@@ -136,6 +136,8 @@ class Ways:
             value = new()
         finally:
             lanes.here, self.only = here, only
+        if not isinstance(value, list | tuple | np.ndarray) and not is_number(value):
+            return value  # a link of several: who takes part next sets its own
         try:
             before = _nothing_of(value) if old is None else old()
         except (NameError, KeyError, IndexError, AttributeError):

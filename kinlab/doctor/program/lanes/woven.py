@@ -209,6 +209,8 @@ class Woven:
 
     def _follows(self, parent: ast.AST, name: str, node: Any) -> bool:
         """Whether a node may have lanes where it stands."""
+        if isinstance(node, ast.keyword):
+            return called(parent) not in _COUNTS if isinstance(parent, ast.Call) else False
         if not isinstance(node, ast.expr) or isinstance(getattr(node, "ctx", None), ast.Store):
             return False
         inner = ast.Subscript | ast.Slice | ast.Attribute | ast.Starred | ast.comprehension
