@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from math import pi
 from types import ModuleType
 from typing import Any
@@ -24,6 +24,8 @@ _SQUARES = {(2, 2), (3, 3), (4, 4)}
 """Shapes of matrices to which the unit matrix may be added."""
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
+_SHORT = 7
+"""Entries of a row of which any may be meant."""
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
 _NEAR = 0.06
@@ -67,6 +69,7 @@ class Scope:
         self.observed = observed
         parts = trial.program.parts
         self.functions = {p.name: len(p.tree.args.args) for p in parts[1:] if p.owner is None}
+        self.angular = {name for name in ANGLES if callable(trial.space.get(name))}
         self.has_numpy = isinstance(trial.space.get("np"), ModuleType)
         self.shapes: dict[str, Shape] = {}
         self.lists: dict[str, Shape] = {}
@@ -134,6 +137,14 @@ class Scope:
                 known = _shape(value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
+        self.sines = {
+            name
+            for node in nodes(tree)
+            if isinstance(node, ast.Assign)
+            for target in node.targets
+            for name, value in _set(target, node.value)
+            if isinstance(value, ast.Call) and called(value) in ANGLES
+        }
         self.turned = {name for one in self.angles.values() for name in names(one)}
         self.unused = {
             name for name in self.shapes if name not in (here if name in local else every)
@@ -147,6 +158,7 @@ class Scope:
             if shape and (name in self.unused or len(shape) > 1):
                 self.lists.setdefault(name, shape[1:])
         self._of_siblings(trial)
+        self._of_idle_joints(trial, part)
         if self.has_numpy:
             for size in _SQUARES & self.pieces.keys():
                 unit = ast.parse(f"np.eye({size[0]})", mode="eval").body
@@ -172,6 +184,27 @@ class Scope:
                 if shape is not None:
                     one = ast.Attribute(ast.Name(name, ast.Load()), attr, ast.Load())
                     self.pieces.setdefault(shape, {}).setdefault(ast.unparse(one), one)
+
+    def _of_idle_joints(self, trial: Trial, part: int) -> None:
+        """Sine and cosine of a joint's position that the function uses nowhere."""
+        tree = trial.trees[part]
+        func = _sine(trial.space)
+        if part or func is None:
+            return
+        given = [one.arg for one in tree.args.args][len(trial.bound) :]
+        name = given[0] if given else ""
+        entries = [x for x in nodes(tree) if isinstance(x, ast.Subscript)]
+        used = [k for k in (_entry_of(x, name) for x in entries) if k is not None]
+        rows = (self.shapes.get(one, ()) for one in given)  # of as many joints
+        sizes = next((one for one in rows if len(one) == 1), ())
+        alone = names(tree).count(name) == len(used)
+        idle = {*range(sizes[0] if sizes else 0)}.difference(used)
+        for k in sorted(idle) if alone else ():
+            entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
+            one: Any = ast.Call(copied(func), [entry], [])
+            known = self.pieces.setdefault((), {})
+            for made in (entry, one, Turned().visit(copied(one))):
+                known.setdefault(ast.unparse(made), made)
 
     def _of_addends(self, statement: ast.Assign) -> None:
         known = self.addends.setdefault(_stem([statement]), set())
@@ -222,12 +255,35 @@ class Scope:
         if not inner.isdisjoint(names(node)) or len(text) > _LONG:
             return
         known = self.pieces.setdefault(seen.shape, {})
+        for other in (*_entries_of_the_row(node, observed), *self._of_the_object(node, seen.shape)):
+            known.setdefault(ast.unparse(other), other)
         own = known[text] = known.get(text) or copied(node)
         bare = without_numbers(node) if seen.shape == () else None
         if bare is not None:
             known.setdefault(ast.unparse(bare), copied(bare))
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
+            turned = Turned().visit(copied(own))
+            if isinstance(turned.func, ast.Attribute) or turned.func.id in self.angular:
+                known.setdefault(ast.unparse(turned), turned)
+
+    def _of_the_object(self, node: ast.expr, shape: Shape) -> Iterator[ast.expr]:
+        """What else an object or a dictionary has: ``link.length`` beside ``link.centre``."""
+        if isinstance(node, ast.Attribute) and node.attr in self.attributes:
+            owner = node.value
+            owners = [owner]
+            if isinstance(owner, ast.Subscript) and isinstance(owner.slice, ast.Name):
+                counters = (ast.Name(one, ast.Load()) for one in self.counters)
+                owners = [ast.Subscript(owner.value, one, ast.Load()) for one in counters]
+            for one in owners:
+                for name, own in self.attributes.items():
+                    if own == shape:
+                        yield ast.Attribute(copied(one), name, ast.Load())
+        key = node.slice if isinstance(node, ast.Subscript) else None
+        if isinstance(node, ast.Subscript) and isinstance(key, ast.Constant):
+            for name, own in self.keys.items() if key.value in self.keys else ():
+                if own == shape and name != key.value:
+                    yield ast.Subscript(copied(node.value), ast.Constant(name), ast.Load())
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
@@ -275,6 +331,15 @@ def _pi_of(space: dict[str, Any]) -> ast.expr | None:
         if isinstance(value, ModuleType) and getattr(value, "pi", None) == pi:
             return ast.Attribute(ast.Name(name, ast.Load()), "pi", ast.Load())
     return None
+
+
+def _sine(space: dict[str, Any]) -> ast.expr | None:
+    """How a program may call the sine; None where it cannot."""
+    if callable(space.get("sin")) and callable(space.get("cos")):
+        return ast.Name("sin", ast.Load())
+    known = [name for name, x in space.items() if isinstance(x, ModuleType) and hasattr(x, "sin")]
+    name = "np" if "np" in known else next(iter(known), None)
+    return None if name is None else ast.Attribute(ast.Name(name, ast.Load()), "sin", ast.Load())
 
 
 def _root(calls: list[ast.Call], space: dict[str, Any]) -> ast.expr | None:
@@ -520,6 +585,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     own = ast.unparse(node)
     entry = isinstance(here.parent, ast.List | ast.Tuple)
     siblings = scope.addends.get(_stem(here.above), set()) if whole else set()
+    if shape == ():
+        yield from _turned_terms(here, scope, siblings)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
@@ -542,6 +609,43 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
                 if factor != text:
                     new = ast.BinOp(node, ast.Add(), product)
                     yield here.instead(new, "missing term", 1.15)
+
+
+def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
+    """What stands in the line beside, with cosines for sines: of x what is there of y."""
+    own = {ast.unparse(one) for one in _summands(here.node)}
+    for text in sorted(siblings):
+        piece = Turned(scope.shapes).visit(ast.parse(text, mode="eval").body)
+        turned = ast.unparse(piece)
+        if turned != text and turned not in own and isinstance(piece, ast.BinOp):
+            for op, cost in ((ast.Add(), 1.1), (ast.Sub(), 1.12)):
+                yield here.instead(ast.BinOp(here.node, op, piece), "missing term", cost)
+
+
+class Turned(ast.NodeTransformer):
+    """Sine for cosine and cosine for sine.
+
+    Args:
+        known: names; ``c12`` is taken for ``s12`` where both are among them.
+    """
+
+    def __init__(self, known: Container[str] = ()) -> None:
+        self.known = known
+
+    def visit_Call(self, node: ast.Call) -> ast.expr:
+        self.generic_visit(node)
+        other = {"sin": "cos", "cos": "sin"}.get(called(node))
+        if other is not None:
+            if isinstance(node.func, ast.Attribute):
+                node.func.attr = other
+            else:
+                node.func = ast.Name(other, ast.Load())
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        other = {"s": "c", "c": "s"}.get(node.id[:1], "") + node.id[1:]
+        both = node.id in self.known and other in self.known
+        return ast.Name(other, ast.Load()) if both else node
 
 
 def _statement(above: Sequence[ast.AST]) -> ast.stmt:
@@ -583,6 +687,24 @@ def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
                     if seen is not None and seen.shape is not None and not seen.whole:
                         found.setdefault(name, seen.shape)
     return found
+
+
+def _entries_of_the_row(node: ast.expr, observed: Observed) -> Iterator[ast.expr]:
+    """The other entries of a row of which one is used: ``v[1]`` beside ``v[0]``."""
+    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
+        return
+    if type(node.slice.value) is not int:
+        return
+    sizes = observed.shape(node.value) or ()
+    for k in range(sizes[0] if len(sizes) == 1 and sizes[0] <= _SHORT else 0):
+        yield ast.Subscript(copied(node.value), ast.Constant(k), ast.Load())
+
+
+def _entry_of(node: ast.Subscript, name: str) -> int | None:
+    """Which entry of a row it is; None where it is none."""
+    own = isinstance(node.value, ast.Name) and node.value.id == name
+    index = node.slice.value if own and isinstance(node.slice, ast.Constant) else None
+    return index if type(index) is int else None
 
 
 def _is_number(value: object) -> bool:

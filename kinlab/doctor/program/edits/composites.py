@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from functools import reduce
 
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
@@ -15,7 +17,9 @@ _MASSES, _MOMENTS, _LENGTHS = ("m", "M"), ("I", "J", "i"), ("l", "L", "r", "R", 
 """How names of masses, of moments of inertia, and of lengths begin."""
 _ARMS = ("p", "P", "r", "c", "C", "l", "d", "s", "o", "v")
 """How names of what leads from one point to another begin, and of velocities."""
-_VECTOR = (3,)
+_NO_ARMS = ("R", "T", "I", "J", "A", "E")
+"""How names of matrices begin that are no arm's."""
+_VECTOR, _TENSOR = (3,), (3, 3)
 _FEW = 8
 """Angular velocities that are tried; twice as many arms."""
 
@@ -36,15 +40,24 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
             if isinstance(node, ast.Subscript) and _begins(node, _MASSES):
                 yield from _from_there_on(here, scope.observed)
             yield from _next_entry(here, scope.observed)
+        yield from _spread(here, scope)
+        yield from _squares(here, scope)
         return
     factor = isinstance(op, ast.MatMult)
+    if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
+        yield from _of_list_from_there_on(here, scope)
+    if shape == _TENSOR and term:
+        yield from _parallel_axes_of_tensors(here, scope)
     sum_ = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+    sum_ = sum_ and here.field != "right"  # which stands in parentheses
     if (term or factor) and not sum_:
         yield from _times_scalars(here, scope)
     if shape == _VECTOR and (term or (factor and here.field == "right")):
         yield from _cross_products(here, scope)
     if shape == _VECTOR:
         yield from _of_turning(here, scope)
+        if isinstance(parent, ast.Assign | ast.AugAssign | ast.Return):
+            yield from _carried_on(here, scope)
         if isinstance(parent, ast.Call) and called(parent) == "cross" and _is_arm(node):
             yield from _of_levers(here, scope)
 
@@ -78,6 +91,89 @@ def _parallel_axes(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             new = ast.BinOp(here.node, ast.Add(), ast.BinOp(mass, ast.Mult(), square))
             near = _digits(mass) in ("", _digits(here.node)) and _digits(length) == _digits(mass)
             yield here.instead(new, "missing term", 1.1 if near else 1.2)
+
+
+def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The same of a tensor, with a vector or its matrix: ``I + m*S @ S.T``."""
+    node = here.node
+    inner = [x for x in nodes(node) if isinstance(x, ast.Name | ast.Attribute | ast.Subscript)]
+    if not any(_begins(one, _MOMENTS) for one in inner):
+        return
+    masses = [one for _text, one in scope.simple(()) if _begins(one, _MASSES)][:_FEW]
+    arms = [one for _text, one in scope.simple(_VECTOR) if _begins(one, _ARMS)][:_FEW]
+    crossing = [one for _text, one in scope.simple(_TENSOR) if not _begins(one, _NO_ARMS)][:_FEW]
+    added: list[ast.expr] = []
+    for one in crossing:
+        turned = ast.Attribute(one, "T", ast.Load())
+        added.append(ast.BinOp(one, ast.MatMult(), turned))
+    for one in arms if scope.has_numpy else ():
+        text = ast.unparse(one)
+        squares = f"({text} @ {text}*np.eye(3) - np.outer({text}, {text}))"
+        added.append(ast.parse(squares, mode="eval").body)
+    for mass in masses:
+        for one in added:
+            first = isinstance(one.op, ast.MatMult) if isinstance(one, ast.BinOp) else False
+            times: ast.expr = ast.BinOp(mass, ast.Mult(), one)
+            if first and isinstance(one, ast.BinOp):  # as it is typed: m*S @ S.T
+                times = ast.BinOp(ast.BinOp(mass, ast.Mult(), one.left), one.op, one.right)
+            yield here.instead(ast.BinOp(node, ast.Add(), times), "missing term", 1.14)
+
+
+def _spread(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A factor of a sum that belongs to one of its terms: ``a*x + b*c`` for ``(a + b)*c``."""
+    parts = [*_factors(here.node)]
+    if len(parts) == 1 or _is_product(here.parent):
+        return
+    for k, total in enumerate(parts):
+        if not isinstance(total, ast.BinOp) or not isinstance(total.op, ast.Add | ast.Sub):
+            continue
+        for n, factor in enumerate(parts):
+            if n == k or not isinstance(factor, ast.Name | ast.Subscript | ast.Attribute):
+                continue
+            for text, other in scope.simple(()):
+                if text == ast.unparse(factor) or text in scope.counters:
+                    continue
+                for first, last in ((other, factor), (factor, other)):
+                    left = ast.BinOp(total.left, ast.Mult(), first)
+                    right = ast.BinOp(total.right, ast.Mult(), last)
+                    sum_ = ast.BinOp(left, total.op, right)
+                    rest = [*(x for m, x in enumerate(parts) if m not in (k, n)), sum_]
+                    new = reduce(lambda one, x: ast.BinOp(one, ast.Mult(), x), rest)
+                    yield here.instead(new, "parentheses", 1.2)
+
+
+def _squares(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The square of another coordinate as well: ``x**2 + y**2`` for ``y**2``."""
+    node = here.node
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Pow):
+        return
+    own = getattr(node.left, "id", "")
+    others = {own.replace(one, other) for one in "xyz" for other in "xyz" if one in own} - {own}
+    for text, other in scope.simple(()):
+        if text in others or (text in scope.unused and isinstance(node.left, ast.Name)):
+            square = ast.BinOp(other, ast.Pow(), number(2))
+            yield here.instead(ast.BinOp(square, ast.Add(), node), "missing term", 1.1)
+
+
+def _is_product(node: ast.AST) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)
+
+
+def _factors(node: ast.expr) -> Iterator[ast.expr]:
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        yield from _factors(node.left)
+        yield from _factors(node.right)
+    else:
+        yield node
+
+
+def _of_list_from_there_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The sum of an entry of a list and all behind it, as of the forces on the links outward."""
+    node = here.node
+    if isinstance(node.value, ast.Name) and node.value.id in scope.lists:
+        rest = ast.Subscript(node.value, ast.Slice(node.slice, None, None), ast.Load())
+        total = ast.Call(ast.Name("sum", ast.Load()), [rest], [])
+        yield here.instead(total, "missing term", 1.16)
 
 
 def _digits(node: ast.expr) -> str:
@@ -140,6 +236,17 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 product = ast.Call(scope.cross, [rate, product], [])
                 new = ast.BinOp(here.node, ast.Add(), product)
                 yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _carried_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """What comes from the link before, turned: ``R @ n`` of ``n = R @ n + ...``."""
+    own = [n.id for n in nodes(here.parent) if isinstance(n, ast.Name)][:1]
+    vectors = [x for text, x in scope.simple(_VECTOR) if text in own or text in scope.unused]
+    for _text, matrix in [*scope.simple(_TENSOR)][:_FEW]:
+        for one in (matrix, ast.Attribute(matrix, "T", ast.Load())):
+            for vector in vectors[:_FEW]:
+                turned = ast.BinOp(one, ast.MatMult(), vector)
+                yield here.instead(ast.BinOp(here.node, ast.Add(), turned), "missing term", 1.15)
 
 
 def _is_arm(node: ast.expr) -> bool:

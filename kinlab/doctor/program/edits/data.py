@@ -46,7 +46,7 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         value = trial.space[name]
         for new, kind in _whole(value):
             yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
-        yield from _exchanged(name, value, ())
+        yield from _exchanged(name, value, (), trial.space, name)
     for held in trial.bound:
         yield from _exchanged("self", held, ())
     yield from _names_exchanged(trial)
@@ -78,10 +78,15 @@ def _names_exchanged(trial: Trial) -> Iterator[ProgramEdit]:
             yield ProgramEdit(DATA, changes, "entries swapped", 1.12, one, exchanged=told)
 
 
-def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[ProgramEdit]:
+def _exchanged(
+    name: str, value: Any, place: tuple[Any, ...], holder: Any = None, field: Any = None
+) -> Iterator[ProgramEdit]:
     """Two numbers of a row, two rows, or two columns of a table for one another."""
     for key, one in _members(value):
-        yield from _exchanged(name, one, (*place, key))
+        inner = key if isinstance(value, dict | list) else key[1:]
+        yield from _exchanged(name, one, (*place, key), value, inner)
+    if type(value) is tuple and holder is not None:
+        yield from _of_tuple(name, value, place, holder, field)
     if isinstance(value, dict) or not is_data(value) or not 1 < len(value) <= _ROWS:
         return
     if all(_is_plain(one) for one in value):
@@ -119,6 +124,21 @@ def _exchanged(name: str, value: Any, place: tuple[Any, ...]) -> Iterator[Progra
         if not np.array_equal(rows[i], rows[j]):
             changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
             yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
+
+
+def _of_tuple(
+    name: str, value: tuple[Any, ...], place: tuple[Any, ...], holder: Any, field: Any
+) -> Iterator[ProgramEdit]:
+    """The same of a tuple, which is made anew."""
+    rows = [*value]
+    for edit in _exchanged(name, rows, place):
+        new = [*rows]
+        for change in edit.changes:
+            if change.holder is rows:
+                new[change.field] = change.new
+        if any(change.holder is rows for change in edit.changes):
+            edit = replace(edit, changes=(FieldChange(holder, field, tuple(new)),))
+        yield edit
 
 
 def moved_on(row: Any) -> list[list[Any]]:

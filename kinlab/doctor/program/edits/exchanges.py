@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.edits.additions import ANGLES, Scope
+from kinlab.doctor.program.edits.additions import ANGLES, Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
 
@@ -42,7 +42,7 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     turns = {called(n) for n in nodes(value) if isinstance(n, ast.Call)} & {"sin", "cos"}
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
-        yield here.within(here.node, "value", _Turned().visit(copied(value)), "sin/cos", 1.1)
+        yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
 
 
 def of_repeated(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
@@ -96,18 +96,4 @@ class _Renamed(ast.NodeTransformer):
         if other is not None:
             return copied(other)
         self.generic_visit(node)
-        return node
-
-
-class _Turned(ast.NodeTransformer):
-    """Sine for cosine and cosine for sine."""
-
-    def visit_Call(self, node: ast.Call) -> ast.expr:
-        self.generic_visit(node)
-        other = {"sin": "cos", "cos": "sin"}.get(called(node))
-        if other is not None:
-            if isinstance(node.func, ast.Attribute):
-                node.func.attr = other
-            else:
-                node.func = ast.Name(other, ast.Load())
         return node

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
 from kinlab.doctor.program.edits.data import measured, moved_on
@@ -264,6 +265,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         return
     keys = keys_of(node)
     yield from of_keys(here, node, 1.1)
+    yield from _other_slices(here)
     yield from _in_another_order(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
@@ -279,6 +281,16 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
         column = ast.Tuple([ast.Slice(None, None, None), key], ast.Load())
         yield here.within(node, "slice", column, "transposed", 1.15)
+
+
+def _other_slices(here: Here) -> Iterator[ProgramEdit]:
+    """The part of a row that is taken of another one in the same line."""
+    line = next(one for one in reversed(here.above) if isinstance(one, ast.stmt))
+    known = {ast.dump(one): one for one in nodes(line) if isinstance(one, ast.Slice)}
+    for holder, field, key in keys_of(here.node):
+        for text, other in known.items() if isinstance(key, ast.Slice) else ():
+            if text != ast.dump(key):
+                yield here.within(holder, field, copied(other), "index", 1.09)
 
 
 def _in_another_order(here: Here) -> Iterator[ProgramEdit]:
@@ -440,7 +452,8 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     yield from _swapped(here, here.node)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
-        yield here.within(here.node, "elts", turned, "sign", 1.1)
+        unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
+        yield here.within(here.node, "elts", turned, "sign", 1.25 if unpacked else 1.1)
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)

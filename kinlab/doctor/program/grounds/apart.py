@@ -437,7 +437,8 @@ def _apart(table: DHTable, carried: set[Which], tied: dict[Which, Which], turned
                 moved[0] = factor(which, k) * (link.a + x) - a
             else:
                 moved[axis] = factor(which, k) * x
-        if longer == 1.0 and "com0" in told[k] and _close(2 * abs(com[0]), abs(length)):
+        half = _close(2 * abs(com[0]), abs(length))
+        if half and longer == 1.0 and {"com0", "m"} <= told[k]:
             longer = factor("com0", k)  # a rod, of which the program has half the length
         grown = factor("I", k) if "I" in has else factor("m", k) * longer**2
         links.append(

@@ -215,7 +215,10 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
     idle = (leaf for name in unused(trial) for leaf in leaves_of(trial, name))
+    directions = _directions(trial)
     for place in (*numbers(trial, observed), *_defaults(trial), *idle):
+        if id(place.holder) in directions:
+            continue
         whole = below.get(id(place.node))
         if place.value and whole is not None:
             yield ProgramNumber(place, np.pi / place.value, True, below=True)
@@ -225,6 +228,31 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
             yield ProgramNumber(
                 place, value, alone, id(place.node) in given and not may_be_of_one_arm(value)
             )
+
+
+def _directions(trial: Trial) -> set[int]:
+    """What holds nothing but 0, 1 and -1, with a zero: the numbers of axes, and of no arm."""
+    held: list[Any] = [trial.space.get(name) for name in trial.program.data]
+    inner = [x for one in held if isinstance(one, list | tuple) for x in one]
+    found = {id(one) for one in (*held, *inner) if _is_direction(one)}
+    for tree in trial.trees:
+        for node in nodes(tree):
+            if isinstance(node, ast.List | ast.Tuple):
+                entries = [x.operand if isinstance(x, ast.UnaryOp) else x for x in node.elts]
+                if _is_direction([getattr(x, "value", None) for x in entries]):
+                    found |= {*map(id, entries)}
+    return found
+
+
+def _is_direction(value: Any) -> bool:
+    if not isinstance(value, list | tuple | np.ndarray):
+        return False
+    try:
+        numbers = np.abs(np.asarray(value, dtype=float))
+    except (TypeError, ValueError):
+        return False
+    some = numbers.ndim > 0 and numbers.size > 1 and (numbers == 0).any()
+    return bool(some and np.isin(numbers, (0.0, 1.0)).all())
 
 
 def _defaults(trial: Trial) -> Iterator[NumberPlace]:

@@ -46,6 +46,8 @@ class LaneGroup:
     @property
     def edits(self) -> dict[int, Any]:
         """The edits that any lane here has, with these lanes."""
+        if self._edits is None and not self.size:
+            self._edits = {}
         if self._edits is None:
             chosen = self._chosen if self.which is None else self._chosen[self.which]
             which = np.arange(self.size) if self.which is None else self.which

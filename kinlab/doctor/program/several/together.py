@@ -39,6 +39,8 @@ _ALL, _LEAST = 70_000_000, 36_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
+_GAINING = 30
+"""Edits that make numbers right, with which any other is run."""
 _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
 _BEYOND = 10_000_000
@@ -157,6 +159,7 @@ class TriedTogether:
             if likely and rank > _FIRST:
                 likely = False
                 yield from self._possible_pairs()
+                yield from self._beside_gains()
             chosen = self._apart(one, other)
             if not likely:
                 chosen = chosen[~self._possible_of(chosen)]
@@ -173,6 +176,18 @@ class TriedTogether:
         pairs = pairs[np.argsort((pairs + 1).prod(axis=1), kind="stable")]
         for start in range(0, len(pairs), _BLOCK**2):
             yield _FIRST + 1 + start, pairs[start : start + _BLOCK**2]
+
+    def _beside_gains(self) -> Iterator[tuple[int, Any]]:
+        """What makes most numbers right alone, with any other that was not tried with it."""
+        first = _FIRST * _BLOCK
+        for turn, gain in enumerate(self.known.gaining[:_GAINING]):
+            if gain in self.sound:
+                others = self.sound[self.sound != gain]
+                others = others[first:] if gain < _BLOCK else others
+                pairs = self._apart(np.array([gain]), others)
+                pairs = pairs[~self._possible_of(pairs)]
+                if len(pairs):
+                    yield -1 - turn, pairs
 
     def _possible_of(self, pairs: Any) -> Any:
         """Of which pairs each number that one of them changes alone is made right by it.
