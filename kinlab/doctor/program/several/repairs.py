@@ -37,7 +37,7 @@ _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
 """Edits that make numbers right from which is gone on."""
-_SHARE = 3
+_SHARE = 2
 """Tenths of the work for single edits that may be done for several."""
 _LOOKING = 1_500_000
 """What watching a program anew amounts to, beside running it."""
