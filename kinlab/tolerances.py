@@ -125,6 +125,9 @@ class Tolerances:
     """Relative error that several repairs of one program may leave, where one may leave what
     formulas differ by: with so many of them something nearly right is found by accident."""
 
+    left_of_three: float = 1e-8
+    """The same of three, in a function that takes derivatives by central differences."""
+
     finite_differences: float = 1e-5
     """Relative error that derivatives by differences may leave in a function once a slip is
     undone: forward differences with steps of 1e-5, central ones up to 1e-3."""

@@ -37,6 +37,8 @@ _NAMED = 2
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
 """Share of a number below which another one is rather the step of a difference."""
+_PAIR = 2
+"""Repairs of which two may leave what differences leave."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -424,6 +426,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         if sum(edit.kind == "missing term" for edit in own) > 1:
             return None
     exact = repair.error <= TOLERANCES.left_of_several or search.differences
+    if len(repair.edits) > _PAIR and repair.error > TOLERANCES.left_of_three:
+        return None
     if len(repair.edits) > 1 and not (exact and _needed(repair, search)):
         return None
     edits = []
