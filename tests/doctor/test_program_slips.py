@@ -217,6 +217,80 @@ def f(q):
     each = [9.81*lever[i]*np.cos(t[i]) for i in range(3)]
     return np.array([sum(each[i:]) for i in range(3)])
 """
+ENERGIES = """
+import numpy as np
+m, l, c = (2.0, 1.5), (0.5, 0.4), (0.25, 0.2)
+
+def f(q, qd):
+    w2 = qd[0] + qd[1]
+    vx = -l[0]*np.sin(q[0])*qd[0] - c[1]*np.sin(q[0] + q[1])*w2
+    vy = l[0]*np.cos(q[0])*qd[0] + c[1]*np.cos(q[0] + q[1])*w2
+    first = (m[0]*c[0]**2 + m[0]*l[0]**2/12)*qd[0]**2
+    return 0.5*(first + m[1]*(vx**2 + vy**2) + m[1]*l[1]**2/12*w2**2)
+"""
+ROWS = """
+import numpy as np
+L = np.array([0.5, 0.4, 0.25])
+
+def f(q):
+    phi = np.cumsum(q)
+    J = np.ones((3, 3))
+    for j in range(3):
+        J[0, j] = -np.sum(L[j:]*np.sin(phi[j:]))
+        J[1, j] = np.sum(L[j:]*np.cos(phi[j:]))
+    return J
+"""
+SCREWS = """
+import numpy as np
+AXES = [np.array([0, 0, 1]), np.array([0, 0, 1]), np.array([0, 0, 1])]
+POINTS = [np.zeros(3), np.array([0.5, 0, 0]), np.array([0.9, 0, 0])]
+TOOL = np.array([1.15, 0, 0])
+
+def f(q):
+    R, p, J = np.eye(3), np.zeros(3), np.zeros((6, 3))
+    axes, points = [], []
+    for w, r, t in zip(AXES, POINTS, q):
+        K = np.array([[0, -w[2], w[1]], [w[2], 0, -w[0]], [-w[1], w[0], 0]])
+        turn = np.eye(3) + np.sin(t)*K + (1 - np.cos(t))*K @ K
+        axes.append(R @ w)
+        points.append(R @ r + p)
+        p = R @ ((np.eye(3) - turn) @ r) + p
+        R = R @ turn
+    x = R @ TOOL + p
+    for k in range(3):
+        J[:3, k], J[3:, k] = np.cross(axes[k], x - points[k]), axes[k]
+    return J
+"""
+LOOPS = """
+import numpy as np
+
+class Link:
+    def __init__(self, length, mass, centre):
+        self.length, self.mass, self.centre = length, mass, centre
+
+ARM = [Link(0.5, 2.0, 0.25), Link(0.4, 1.5, 0.2)]
+G = 9.81
+
+def f(q):
+    tau = np.zeros(2)
+    for j in range(2):
+        for k in range(j, 2):
+            arm = 0.0
+            for i in range(j, k):
+                arm += ARM[i].length*np.cos(sum(q[:i + 1]))
+            arm += ARM[k].centre*np.cos(sum(q[:k + 1]))
+            tau[j] += ARM[k].mass*G*arm
+    return tau
+"""
+WEIGHTS = """
+import numpy as np
+m1, m2, l1, c1, c2, g = 2.0, 1.5, 0.5, 0.25, 0.2, 9.81
+
+def f(q):
+    c12 = np.cos(q[0] + q[1])
+    first = (m1*c1 + m2*l1)*g*np.cos(q[0]) + m2*g*c2*c12
+    return np.array([first, m2*g*c2*c12])
+"""
 PROGRAMS = {
     "motion": ("planar2r_rods", "kinetic_energy", MOTION),
     "closed": ("planar2r_rods", "inverse_dynamics", CLOSED),
@@ -230,6 +304,11 @@ PROGRAMS = {
     "objects": ("planar2r", "gravity_torques", OBJECTS),
     "vectors": ("planar2r", "jacobian", VECTORS),
     "carried": ("planar3r", "gravity_torques", CARRIED),
+    "energies": ("planar2r_rods", "kinetic_energy", ENERGIES),
+    "rows": ("planar3r", "planar_jacobian", ROWS),
+    "screws": ("planar3r", "jacobian", SCREWS),
+    "loops": ("planar2r_rods", "gravity_torques", LOOPS),
+    "weights": ("planar2r_rods", "gravity_torques", WEIGHTS),
 }
 SLIPS = [
     ("motion", "np.cross(w, coms[i])", "np.cross(v, coms[i])", "another vector in a product"),
@@ -252,6 +331,17 @@ SLIPS = [
     ("vectors", "[-0.4*s12, 0.4*c12]", "[0.4*s12, -0.4*c12]", "a vector with the other sign"),
     ("vectors", "[-0.4*s12, 0.4*c12]", "[-0.4*c12, 0.4*s12]", "sines and cosines of a line"),
     ("carried", "(sum(m[i:]) - ", "(m[i] - ", "the load from a joint on"),
+    ("energies", "(vx**2 + vy**2)", "vx**2", "the square of another coordinate"),
+    ("energies", " + c[1]*np.cos(q[0] + q[1])*w2", "", "of y what is there of x"),
+    ("energies", "l[0]*np.cos(q[0])*qd[0]", "l[0]*qd[0]", "a cosine where there is a sine"),
+    ("closed", "2*v[0]*v[1] + v[1]**2", "2*v[0] + v[1]**2", "another entry of a row"),
+    ("rows", "-np.sum(L[j:]*", "-np.sum(L[:3 - j]*", "another part of a row"),
+    ("screws", "[0, 0, 1])]\nPOINTS", "[0, 0, -1])]\nPOINTS", "an axis of whole numbers"),
+    ("screws", "(np.eye(3) - turn) @ r", "turn @ r", "the unit matrix"),
+    ("loops", "arm += ARM[i].length*np", "arm += np", "an attribute of a link"),
+    ("weights", "(m1*c1 + m2*l1)*g", "(m1 + m2)*l1*g", "a factor of one term"),
+    ("weights", "[first, m2*g*c2*c12]", "[first, 0.0*g]", "a term of three names and a cosine"),
+    ("newton", "moment = R[i] @ moment + np", "moment = np", "what comes from the link before"),
 ]  # fmt: skip
 
 
@@ -280,9 +370,10 @@ def test_a_slip_is_told(name, old, new) -> None:
          "a, the numbers stand in the reverse order"),
         ("degrees", "a = [0, 0.4318, 0.0203, 0, 0, 0]", "a = [0.4318, 0.0203, 0, 0, 0, 0]",
          "a, the numbers stand one place on"),
+        ("energies", "(0.25, 0.2)", "(0.2, 0.25)", "c, two entries are exchanged: `0.2, 0.25`"),
     ],
     ids=["a cross product", "a vector without its factor", "a row in degrees", "a row in reverse",
-         "a row moved on"],
+         "a row moved on", "two numbers of a tuple"],
 )  # fmt: skip
 def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
     robot, quantity, text = PROGRAMS[name]
@@ -298,6 +389,8 @@ def test_a_slip_is_told_in_these_words(name, old, new, said) -> None:
         pytest.param("typed", [("trans(0.5, 0, 0)", "trans(0.7, 0, 0)"), ("@ trans(0.4, 0, 0)", "@ trans(0, 0.4, 0)")], id="a number and an order"),
         pytest.param("newton", [(" + np.cross(w, qd[i]*z)", ""), ("moment = R[i] @ moment + np", "moment = R[i].T @ moment + np")], id="two of Newton and Euler"),
         pytest.param("rounds", [("(0, l[0], 0)", "(0, -l[0], 0)"), ("[0, sa, ca, d]", "[0, -sa, ca, d]")], id="in a program that rounds"),
+        pytest.param("loops", [("range(j, 2)", "range(j + 1, 2)"), ("ARM[k].centre*np", "ARM[k].length*np")], id="a loop and an attribute"),
+        pytest.param("screws", [("(np.eye(3) - turn) @ r", "turn @ r"), ("x - points[k]", "x + points[k]")], id="the unit matrix and a sign"),
         pytest.param("bodies", [("load = m[0] + m[1]", "load = m[1]"), ("g*m[1]*c[1]*np.cos", "g*m[1]*c[1]*np.sin")], id="an entry and a function"),
     ],
 )  # fmt: skip

@@ -27,6 +27,13 @@ def names(tree: ast.AST, context: type[ast.expr_context] = ast.expr_context) -> 
     return [node.id for node in found if isinstance(node.ctx, context)]
 
 
+def factors(node: ast.expr) -> list[ast.expr]:
+    """Those of a product, from the left; what is none is its own."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        return [*factors(node.left), *factors(node.right)]
+    return [node]
+
+
 def copied(tree: Tree) -> Tree:
     """What :func:`copy.deepcopy` gives of a tree; what holds nothing stays."""
     other = type(tree)()

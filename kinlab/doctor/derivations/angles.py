@@ -10,7 +10,7 @@ import ast
 import re
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import factors, nodes
 from kinlab.doctor.derivations.operations import Make
 from kinlab.doctor.derivations.walk import Program, Step, again
 from kinlab.doctor.derivations.words import is_sum, minus, name_of, spelt, times
@@ -86,22 +86,14 @@ def at_difference(node: ast.BinOp, step: Make) -> Iterator[Step]:
         and not is_sum(node.right)
     ):
         new: ast.expr = node.left
-        factors = list(_factors(node.right))
-        for k, factor in enumerate(factors):
+        below = factors(node.right)
+        for k, factor in enumerate(below):
             new = ast.BinOp(new, ast.Mult() if k else ast.Div(), factor)
-        if len(factors) > 1:
+        if len(below) > 1:
             does = _("has {new} for {old} (parentheses)")
             yield step(
                 "parentheses", does.format(new=spelt(new), old=spelt(node)), 1.05, (node, new)
             )
-
-
-def _factors(node: ast.expr) -> Iterator[ast.expr]:
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
-        yield from _factors(node.left)
-        yield from _factors(node.right)
-    else:
-        yield node
 
 
 def exchanged(of: Program) -> Iterator[Step]:

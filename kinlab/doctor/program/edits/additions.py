@@ -122,14 +122,7 @@ class Scope:
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
-        self.arcs = {
-            name
-            for node in nodes(tree)
-            if isinstance(node, ast.Assign)
-            for target in node.targets
-            for name, value in _set(target, node.value)
-            if isinstance(value, ast.Call) and called(value) in ARCS
-        }
+        self.arcs, self.sines = _set_by(tree, ARCS), _set_by(tree, ANGLES)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
         for name, value in trial.program.space.items():
@@ -137,14 +130,6 @@ class Scope:
                 known = _shape(value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
-        self.sines = {
-            name
-            for node in nodes(tree)
-            if isinstance(node, ast.Assign)
-            for target in node.targets
-            for name, value in _set(target, node.value)
-            if isinstance(value, ast.Call) and called(value) in ANGLES
-        }
         self.turned = {name for one in self.angles.values() for name in names(one)}
         self.unused = {
             name for name in self.shapes if name not in (here if name in local else every)
@@ -584,9 +569,11 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     node = here.node
     own = ast.unparse(node)
     entry = isinstance(here.parent, ast.List | ast.Tuple)
-    siblings = scope.addends.get(_stem(here.above), set()) if whole else set()
+    stem = _stem(here.above)
+    siblings = scope.addends.get(stem, set()) if whole else set()
     if shape == ():
-        yield from _turned_terms(here, scope, siblings)
+        across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
+        yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
@@ -620,6 +607,11 @@ def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[Prog
         if turned != text and turned not in own and isinstance(piece, ast.BinOp):
             for op, cost in ((ast.Add(), 1.1), (ast.Sub(), 1.12)):
                 yield here.instead(ast.BinOp(here.node, op, piece), "missing term", cost)
+
+
+def _of_the_other_axis(stem: str) -> list[str]:
+    """What a coordinate's name is for another one: ``vy`` for ``vx``."""
+    return [stem.replace(one, other) for one, other in ("xy", "yx", "xz", "zx") if one in stem]
 
 
 class Turned(ast.NodeTransformer):
@@ -752,6 +744,13 @@ def _set(target: ast.expr, value: ast.expr) -> Iterator[tuple[str, ast.expr]]:
     for one, part in paired(target, value):
         if isinstance(one, ast.Name):
             yield one.id, part
+
+
+def _set_by(tree: ast.AST, functions: Container[str]) -> set[str]:
+    """The names that are set to what one of some functions gives."""
+    lines = [node for node in nodes(tree) if isinstance(node, ast.Assign)]
+    pairs = (pair for one in lines for target in one.targets for pair in _set(target, one.value))
+    return {name for name, x in pairs if isinstance(x, ast.Call) and called(x) in functions}
 
 
 def _unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:

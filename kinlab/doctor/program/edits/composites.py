@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 from functools import reduce
 
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import factors, nodes
 from kinlab.doctor.program.edits.additions import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
@@ -121,7 +121,7 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
 
 def _spread(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A factor of a sum that belongs to one of its terms: ``a*x + b*c`` for ``(a + b)*c``."""
-    parts = [*_factors(here.node)]
+    parts = factors(here.node)
     if len(parts) == 1 or _is_product(here.parent):
         return
     for k, total in enumerate(parts):
@@ -157,14 +157,6 @@ def _squares(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _is_product(node: ast.AST) -> bool:
     return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult)
-
-
-def _factors(node: ast.expr) -> Iterator[ast.expr]:
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
-        yield from _factors(node.left)
-        yield from _factors(node.right)
-    else:
-        yield node
 
 
 def _of_list_from_there_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
