@@ -451,6 +451,7 @@ _SLIPS = (_sign, _sign, _function, _digit, _index, _shifted, _power, _transpose,
 
 # -------- What is said, put into the text
 
+_LINE = re.compile(r"after line (?P<line>\d+)(?: \(in \w+\))?, a line is missing: `(?P<new>[^`]*)`")
 _SAID = re.compile(
     r"line (?P<line>\d+)(?: of \S+)?(?: \(in (?P<part>\w+)\))?, "
     r"(?:[^`:]*: `(?P<old>[^`]*)` should be `(?P<new>[^`]*)`"
@@ -481,6 +482,8 @@ def repaired(text: str, sentence: str):
     trees = [ast.parse(text)]
     for found in _SAID.finditer(sentence):
         trees = [after for tree in trees for after in _with(tree, found)]
+    for found in _LINE.finditer(sentence):
+        trees = [after for tree in trees for after in _with_line(tree, found)]
     for tree in trees:
         space = {"__name__": "repaired"}
         exec(compile(ast.fix_missing_locations(tree), "<repaired>", "exec"), space)  # noqa: S102  texts of the tests
@@ -516,6 +519,22 @@ def _with(tree: ast.Module, found: re.Match[str]):
             _replace(fresh, node, ast.copy_location(ast.Pass(), node))
             if found["moved"] is None or _put(fresh, node, found["side"], int(found["to"])):
                 yield fresh
+
+
+def _with_line(tree: ast.Module, found: re.Match[str]):
+    """The trees in which a line stands that was missing: behind another one, or first in a loop."""
+    number = int(found["line"])
+    for k in range(len([*ast.walk(tree)])):
+        fresh = copy.deepcopy(tree)
+        node = [*ast.walk(fresh)][k]
+        line = ast.parse(found["new"]).body[0]
+        for name in ("body", "orelse"):
+            block = getattr(node, name, None)
+            for j, one in enumerate(block if isinstance(block, list) else []):
+                if one.end_lineno == number or (j == 0 and getattr(node, "lineno", 0) == number):
+                    block.insert(j + (one.end_lineno == number), line)
+                    yield fresh
+                    break
 
 
 def _parsed(text: str, node: ast.AST) -> ast.AST | None:

@@ -47,10 +47,16 @@ class Seen:
 
 
 class Observed:
-    """The expressions of a program by their nodes in the trees of a trial."""
+    """The expressions of a program by their nodes in the trees of a trial.
+
+    Attributes:
+        given: the shapes of its arguments.
+    """
 
     def __init__(self, trial: Trial, states: Sequence[tuple[Any, ...]]) -> None:
         self._seen: dict[int, Seen] = {}
+        given = [_numbers(one) for one in states[0]] if states else []
+        self.given = [None if one is None else one.shape for one in given]
         parts = trial.program.parts
         originals = [trial.placed(k) for k in range(len(parts))]
         self._by_number = [dict(enumerate(nodes(tree))) for tree in trial.trees]

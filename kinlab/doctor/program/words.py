@@ -432,7 +432,7 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
         return None
     edits = []
     for edit in repair.edits:
-        if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair):
+        if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair, search):
             return None
         edits.append(_branch(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
@@ -445,7 +445,8 @@ def _needed(repair: ProgramRepair, search: LineSearch) -> bool:
     Where they do for this arm alone, all together must hold for another one.
     """
     for edit in repair.edits:
-        own = edit.part == DATA or _inside(edit.node, search.trial.trees[edit.part])
+        own = edit.part == DATA or edit.kind == "missing statement"
+        own = own or _inside(edit.node, search.trial.trees[edit.part])
         others = tuple(one for one in repair.edits if one is not edit)
         if not own or _right(others, search):
             return False
@@ -477,18 +478,27 @@ def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:
     return False
 
 
-def _a_step(edit: ProgramEdit, repair: ProgramRepair) -> bool:
+def _a_step(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> bool:
     """Whether a number is made small until only the noise of differences is left.
 
     Or a step is multiplied, which makes up for a factor elsewhere.
     """
     if edit.kind == "factor" and edit.part != DATA:
-        inside = (getattr(node, "value", None) for node in nodes(edit.node))
+        inside = [getattr(node, "value", None) for node in nodes(edit.node)]
+        seen = search.observed.of(edit.node)
+        if isinstance(edit.node, ast.Name) and seen is not None and seen.shape == ():
+            inside += [float(value) for value in seen.values[:1] if not _divides(edit, search)]
         return any(isinstance(x, float) and 0 < abs(x) <= TOLERANCES.is_step for x in inside)
     if edit.numbers is None or repair.error <= TOLERANCES.formula_agrees:
         return False
     old, new = map(abs, edit.numbers)
     return bool(0 < new < _STEP * old)
+
+
+def _divides(edit: ProgramEdit, search: LineSearch) -> bool:
+    every = nodes(search.trial.trees[edit.part])
+    below = [x.right for x in every if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Div)]
+    return any(_inside(edit.node, one) for one in below)
 
 
 def _branch(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> ProgramEdit | None:

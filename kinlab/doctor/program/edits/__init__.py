@@ -15,6 +15,7 @@ module            what it holds
 ``every``         What could stand in a place of a program instead
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement
+``forgotten``     What is forgotten as one writes: a term of two names, a vector behind its number
 ``own_numbers``   The arm's own numbers: one for another, one for a number of nobody's, one that is
                   missing
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,

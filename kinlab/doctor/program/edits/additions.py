@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Container, Iterator, Sequence
 from math import pi
-from types import ModuleType
+from types import FunctionType, ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.data import is_object
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired
+from kinlab.doctor.program.read import read
 from kinlab.doctor.program.trial import Trial
 
 ANGLES = ("sin", "cos", "tan")
@@ -22,6 +23,10 @@ ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan"
 PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
 _SQUARES = {(2, 2), (3, 3), (4, 4)}
 """Shapes of matrices to which the unit matrix may be added."""
+_VECTOR, _MATRIX = (3,), (3, 3)
+ENTRIES = ast.Name | ast.Subscript | ast.Attribute
+_JOINTS = 7
+"""Entries of a row that nothing uses up to which each is tried."""
 _LONG = 60
 """Letters up to which an expression is tried in other places."""
 _SHORT = 7
@@ -57,6 +62,8 @@ class Scope:
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
         addends: the terms of the sums that are set, by what is set, without its number.
+        idle: calls that nothing makes, of functions or for joints that are used nowhere, by shape.
+        inner: the terms of the sums that are factors, without their numbers.
         factors: what stands in front of a product of matrices, by the statements' identities.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
@@ -80,6 +87,8 @@ class Scope:
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.addends: dict[str, set[str]] = {}
+        self.idle: list[tuple[Shape, ast.expr]] = []
+        self.inner: set[str] = set()
         self.factors: dict[int, set[str]] = {}
         self.pi = _pi_of(trial.space)
         self._inside: frozenset[str] = frozenset()
@@ -113,6 +122,8 @@ class Scope:
         for node in nodes(tree):
             if isinstance(node, ast.expr):
                 self._of_expression(node, observed, inner - outer)
+                if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+                    self._of_factors(node, observed)
             if isinstance(node, ast.Assign):
                 self._of_addends(node)
             if isinstance(node, ast.Assign | ast.AugAssign | ast.Return):
@@ -142,8 +153,13 @@ class Scope:
                 self.pieces.setdefault(shape, {}).setdefault(name, plain)
             if shape and (name in self.unused or len(shape) > 1):
                 self.lists.setdefault(name, shape[1:])
+            if name in self.unused and len(shape) == 1 and shape[0] <= _JOINTS:
+                for k in range(shape[0]):
+                    entry = ast.Subscript(copied(plain), ast.Constant(k), ast.Load())
+                    self.pieces.setdefault((), {}).setdefault(ast.unparse(entry), entry)
         self._of_siblings(trial)
         self._of_idle_joints(trial, part)
+        self._of_idle_functions(trial, part)
         if self.has_numpy:
             for size in _SQUARES & self.pieces.keys():
                 unit = ast.parse(f"np.eye({size[0]})", mode="eval").body
@@ -184,12 +200,29 @@ class Scope:
         sizes = next((one for one in rows if len(one) == 1), ())
         alone = names(tree).count(name) == len(used)
         idle = {*range(sizes[0] if sizes else 0)}.difference(used)
+        calls = [x for x in nodes(tree) if isinstance(x, ast.Call) and called(x) in self.functions]
         for k in sorted(idle) if alone else ():
             entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
             one: Any = ast.Call(copied(func), [entry], [])
             known = self.pieces.setdefault((), {})
             for made in (entry, one, Turned().visit(copied(one))):
                 known.setdefault(ast.unparse(made), made)
+            for call in calls:
+                args = [entry if _is_entry_of(x, name) else x for x in call.args]
+                made = ast.Call(call.func, args, call.keywords)
+                if entry in args:
+                    self.idle.append((self.observed.shape(call) or (), made))
+
+    def _of_idle_functions(self, trial: Trial, part: int) -> None:
+        """Calls of the program's own functions that nothing calls, with what is at hand."""
+        every = [x for one in trial.trees for x in nodes(one) if isinstance(x, ast.Call)]
+        known = {self.observed.shape(x) for x in every if called(x) in self.functions}
+        shapes = {_VECTOR, _MATRIX, *(one for one in known if one)}
+        here = [*self.unused, *self.counters, *(n for n, shape in self.shapes.items() if shape)]
+        for name in _not_called(trial, {called(x) for x in every}):
+            for given in here:
+                call = ast.Call(ast.Name(name, ast.Load()), [ast.Name(given, ast.Load())], [])
+                self.idle += [(shape, call) for shape in sorted(shapes)]
 
     def _of_addends(self, statement: ast.Assign) -> None:
         known = self.addends.setdefault(_stem([statement]), set())
@@ -198,6 +231,13 @@ class Scope:
             for one in _summands(value) if isinstance(value, ast.BinOp) else ():
                 bare = without_numbers(one)
                 known |= {ast.unparse(one)} if bare is None else {ast.unparse(bare)}
+
+    def _of_factors(self, product: ast.BinOp, observed: Observed) -> None:
+        for one in (product.left, product.right):
+            terms = [*_summands(one)] if observed.shape(one) == () else []
+            for term in terms if len(terms) > 1 else ():
+                bare = without_numbers(term)
+                self.inner.add(ast.unparse(term if bare is None else bare))
 
     def _of_member(self, node: ast.AST, observed: Observed) -> None:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Attribute):
@@ -305,6 +345,19 @@ class Scope:
         for text, node in self.pieces_here(shape).items():
             if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
                 yield text, node
+
+
+def _not_called(trial: Trial, called_: Container[str]) -> Iterator[str]:
+    """The module's functions of one argument that the program does not call, and could."""
+    program = trial.program
+    for name, value in program.space.items():
+        if name in called_ or not isinstance(value, FunctionType):
+            continue
+        own = value.__module__ in program.modules and value.__name__ == name
+        known = {part.name for part in program.parts}
+        alone = value.__code__.co_argcount == 1 and name not in known
+        if own and alone and read(value) is not None:
+            yield name
 
 
 def _pi_of(space: dict[str, Any]) -> ast.expr | None:
@@ -492,6 +545,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
     beside = _factors_beside(here) if term else set()
     if named and not power and (operated or term):
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
+    if term:
+        yield from _two_factors(here, scope)
     for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
@@ -508,6 +563,17 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _two_factors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Two names that stand together elsewhere as a factor: ``m*l``."""
+    own = {*names(here.node)}
+    for piece in scope.pieces_here(()).values():
+        if isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult):
+            both = isinstance(piece.left, ENTRIES) and isinstance(piece.right, ENTRIES)
+            if both and own.isdisjoint(names(piece)):
+                new = ast.BinOp(piece, ast.Mult(), here.node)
+                yield here.instead(new, "missing factor", 1.2)
 
 
 def _has_squares(node: ast.expr) -> bool:
@@ -574,6 +640,7 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
     if shape == ():
         across = (scope.addends.get(one, set()) for one in _of_the_other_axis(stem))
         yield from _turned_terms(here, scope, siblings.union(*across if whole else ()))
+        yield from _terms_of_others(here, scope, siblings)
     for text, piece in scope.pieces_here(shape).items():
         named = isinstance(piece, ast.Name | ast.Subscript)
         one = isinstance(piece, ast.Call) and called(piece) == "eye"
@@ -609,6 +676,45 @@ def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[Prog
                 yield here.instead(ast.BinOp(here.node, op, piece), "missing term", cost)
 
 
+def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:
+    """A term of the line beside, with one of its names for another link's: ``p1`` for ``p2``."""
+    for text in sorted(siblings):
+        piece = ast.parse(text, mode="eval").body
+        for name in dict.fromkeys(names(piece)):
+            stem = name.rstrip("0123456789")
+            for other in scope.shapes if stem != name else ():
+                if other in (name, stem) or other.rstrip("0123456789") != stem:
+                    continue
+                new = _OtherName(name, other).visit(copied(piece))
+                for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
+                    yield here.instead(_summed(here.node, op, new), "missing term", cost)
+
+
+def _summed(node: ast.expr, op: ast.operator, term: ast.expr) -> ast.expr:
+    """A sum as it is written: ``a - b`` for ``a + -b``."""
+    first = _leftmost(term)
+    if not isinstance(first, ast.UnaryOp) or not isinstance(first.op, ast.USub):
+        return ast.BinOp(node, op, term)
+    other = ast.Sub() if isinstance(op, ast.Add) else ast.Add()
+    return ast.BinOp(node, other, _without_sign(term))
+
+
+def _without_sign(term: ast.expr) -> ast.expr:
+    if isinstance(term, ast.BinOp):
+        return ast.BinOp(_without_sign(term.left), term.op, term.right)
+    return term.operand if isinstance(term, ast.UnaryOp) else term
+
+
+class _OtherName(ast.NodeTransformer):
+    """One name for another."""
+
+    def __init__(self, name: str, other: str) -> None:
+        self.name, self.other = name, other
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return ast.Name(self.other, node.ctx) if node.id == self.name else node
+
+
 def _of_the_other_axis(stem: str) -> list[str]:
     """What a coordinate's name is for another one: ``vy`` for ``vx``."""
     return [stem.replace(one, other) for one, other in ("xy", "yx", "xz", "zx") if one in stem]
@@ -637,7 +743,7 @@ class Turned(ast.NodeTransformer):
     def visit_Name(self, node: ast.Name) -> ast.expr:
         other = {"s": "c", "c": "s"}.get(node.id[:1], "") + node.id[1:]
         both = node.id in self.known and other in self.known
-        return ast.Name(other, ast.Load()) if both else node
+        return ast.Name(other, node.ctx) if both else node
 
 
 def _statement(above: Sequence[ast.AST]) -> ast.stmt:
@@ -670,7 +776,8 @@ def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
     """What a part is given, by the names that it has for it."""
     names = [one.arg for one in trial.trees[part].args.args]
     owned = trial.program.parts[part].owner is not None
-    found: dict[str, Shape] = {}
+    own = () if part else zip(names[len(trial.bound) :], observed.given, strict=False)
+    found = {name: shape for name, shape in own if shape is not None}
     for tree in trial.trees if part else ():
         for node in nodes(tree):
             if isinstance(node, ast.Call) and called(node) == trial.program.parts[part].name:
@@ -699,6 +806,10 @@ def _entry_of(node: ast.Subscript, name: str) -> int | None:
     return index if type(index) is int else None
 
 
+def _is_entry_of(node: ast.expr, name: str) -> bool:
+    return isinstance(node, ast.Subscript) and _entry_of(node, name) is not None
+
+
 def _is_number(value: object) -> bool:
     return isinstance(value, int | float | list | tuple | np.ndarray)
 
@@ -723,6 +834,14 @@ def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tu
         return
     if isinstance(over, ast.Call) and called(over) == "enumerate" and inner and len(parts) == 2:
         yield from _passed(parts[1], inner[0], observed)
+        return
+    rows = over.elts if isinstance(over, ast.List | ast.Tuple) else []
+    first = rows[0] if rows else None
+    if parts and isinstance(first, ast.Tuple):
+        for one, entry in zip(parts, first.elts, strict=False):
+            known = observed.shape(entry)
+            if isinstance(one, ast.Name) and known is not None and not _whole(entry, observed):
+                yield one.id, known
         return
     shape = observed.shape(over)
     if not shape or (isinstance(over, ast.Call) and called(over) in ("range", "reversed")):

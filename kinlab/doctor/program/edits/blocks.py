@@ -5,14 +5,16 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from kinlab.doctor.bytecode.syntax import names, nodes
-from kinlab.doctor.program.edits.additions import Scope
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.program.edits.additions import Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
 """Lines over which a statement may have been moved."""
+_LONG = 100
+"""Characters of a line of which another is made."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
 
 
@@ -27,6 +29,7 @@ def of_blocks(
                 yield from _orders(part, node, name, block)
                 yield from _loops(part, node, name, block)
                 yield from _twice(part, node, name, block)
+                yield from _beside(part, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
 
@@ -101,6 +104,7 @@ def _updates(
     """What a loop uses, and does not set anew: ``T = T @ A``, ``p = p + R @ d``, ``w = w_next``."""
     inside = {name for one in loop.body for name in _sets(one)}
     counted = {*names(loop)} & {*scope.counters}
+    turned = {*names(loop.target)} if isinstance(loop, ast.For) else set[str]()
     scope.stand([one for one in nodes(tree) if loop in nodes(one)])
     used = _uses(tree)
     before = {name for one in nodes(tree) if isinstance(one, ast.Assign) for name in _sets(one)}
@@ -110,10 +114,15 @@ def _updates(
             continue
         for text, piece in scope.pieces_here(shape).items():
             given = {*names(piece)}
+            if text != name and given & turned and not shape:
+                yield _added(part, loop, 0, name, piece, 1.12)
             if text == name or not given & inside:
                 continue
+            fresh = given & scope.unused
+            after = [k for k, one in enumerate(loop.body) if fresh & _sets(one)]
+            if after and after[-1] + 1 < len(loop.body):
+                yield _added(part, loop, after[-1] + 1, name, piece, 1.06)
             own = ast.Name(name, ast.Load())
-            fresh = bool(given & scope.unused)
             ways: list[ast.expr] = [ast.BinOp(own, ast.Add(), piece)]
             if len(shape) == 2:
                 ways.insert(0, ast.BinOp(own, ast.MatMult(), piece))
@@ -121,11 +130,121 @@ def _updates(
                 ways.append(piece)
             for new in ways:
                 line = ast.Assign([ast.Name(name, ast.Store())], new)
-                line.lineno = line.end_lineno = loop.body[-1].end_lineno or loop.lineno
-                line.col_offset = line.end_col_offset = 0
-                change = FieldChange(loop, "body", [*loop.body, line])
-                cost = 1.05 if fresh else 1.18
-                yield ProgramEdit(part, (change,), "missing statement", cost, line)
+                block = [*loop.body]
+                yield _missing(part, loop, "body", block, len(block), line, 1.05 if fresh else 1.18)
+
+
+def _added(
+    part: int, loop: ast.For | ast.While, at: int, name: str, piece: ast.expr, cost: float
+) -> ProgramEdit:
+    """``angle += q[i]`` in a loop."""
+    line = ast.AugAssign(ast.Name(name, ast.Store()), ast.Add(), piece)
+    return _missing(part, loop, "body", loop.body, at, line, cost)
+
+
+def _missing(
+    part: int,
+    node: ast.AST,
+    field: str,
+    block: list[ast.stmt],
+    at: int,
+    line: ast.stmt,
+    cost: float,
+) -> ProgramEdit:
+    """A line more in a block, in front of what stands at a place of it."""
+    before = block[at - 1].end_lineno if at else getattr(node, "lineno", 0)
+    for one in nodes(line):
+        if isinstance(one, ast.stmt | ast.expr):
+            one.lineno = one.end_lineno = before or 0
+            one.col_offset = one.end_col_offset = 0
+    change = FieldChange(node, field, [*block[:at], line, *block[at:]])
+    return ProgramEdit(part, (change,), "missing statement", cost, line)
+
+
+def _beside(
+    part: int, node: ast.AST, name: str, block: list[ast.stmt], scope: Scope
+) -> Iterator[ProgramEdit]:
+    """The line of the other axis, or of the entry beside: ``fy += Fy`` behind ``fx += Fx``."""
+    targets = {ast.unparse(one) for line in block for one in _targets(line)}
+    for at, line in enumerate(block):
+        target = next(iter(_targets(line)), None)
+        if target is None or len(ast.unparse(line)) > _LONG:
+            continue
+        others = [_OtherAxis(scope.shapes).visit(copied(line))]
+        if isinstance(target, ast.Subscript):
+            others += [*_of_other_entries(line, scope)]
+        for other in others:
+            own = next(iter(_targets(other)))
+            text = ast.unparse(own)
+            if text in targets or (isinstance(own, ast.Name) and text not in scope.shapes):
+                continue
+            yield _missing(part, node, name, block, at + 1, other, 1.15)
+            if isinstance(own, ast.Subscript):
+                turned = copied(other)
+                turned.value = ast.UnaryOp(ast.USub(), turned.value)
+                yield _missing(part, node, name, block, at + 1, turned, 1.16)
+
+
+class _OtherAxis(Turned):
+    """Of x what is there of y, with cosines for sines."""
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        for one, other in ("xy", "yx", "XY", "YX"):
+            name = node.id.replace(one, other)
+            if name != node.id and name in self.known:
+                return ast.Name(name, node.ctx)
+        return super().visit_Name(node)
+
+
+def _targets(line: ast.stmt) -> list[ast.expr]:
+    if isinstance(line, ast.Assign) and len(line.targets) == 1:
+        return line.targets
+    return [line.target] if isinstance(line, ast.AugAssign) else []
+
+
+def _of_other_entries(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:
+    """Lines that set an entry beside, as the line's turned value, or the entries left."""
+    target = _targets(line)[0]
+    assert isinstance(target, ast.Subscript) and isinstance(line, ast.Assign | ast.AugAssign)
+    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else [target.slice]
+    sizes = scope.observed.shape(target.value) or ()
+    for k, key in enumerate(keys):
+        if isinstance(key, ast.Constant) and type(key.value) is int:
+            for step in (1, -1):
+                if key.value + step >= 0:
+                    other = Turned(scope.shapes).visit(copied(line))
+                    _put(other, k, ast.Constant(key.value + step))
+                    yield other
+        elif isinstance(key, ast.Slice):
+            shape = scope.observed.shape(line.value) or ()
+            rest = _complement(key, sizes[k]) if k < len(sizes) else None
+            if isinstance(rest, ast.Constant):
+                shape = shape[:-1]
+            if rest is None or not shape:
+                continue
+            for _text, piece in scope.simple(shape):
+                other = copied(line)
+                _put(other, k, rest)
+                other.value = piece
+                yield other
+
+
+def _put(line: ast.stmt, k: int, key: ast.expr) -> None:
+    target = _targets(line)[0]
+    assert isinstance(target, ast.Subscript)
+    if isinstance(target.slice, ast.Tuple):
+        target.slice.elts[k] = key
+    else:
+        target.slice = key
+
+
+def _complement(key: ast.Slice, size: int) -> ast.expr | None:
+    """The entries that a slice from, or up to, a place leaves."""
+    if key.step is not None or (key.lower is None) == (key.upper is None):
+        return None
+    if key.upper is not None and ast.unparse(key.upper) == str(size - 1):
+        return key.upper
+    return ast.Slice(key.upper, key.lower, None)
 
 
 def _sets(node: ast.AST) -> set[str]:

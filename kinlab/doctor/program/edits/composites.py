@@ -189,7 +189,7 @@ def _next_entry(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
         return
     factor = isinstance(parent, ast.BinOp) and not isinstance(parent.op, ast.Pow)
-    if not (factor or isinstance(parent, ast.Assign | ast.Return)):
+    if not (factor or isinstance(parent, ast.Assign | ast.Return | ast.Tuple)):
         return
     k, sizes = node.slice.value, observed.shape(node.value) or ()
     for other in (k + 1, k - 1) if type(k) is int and len(sizes) == 1 else ():

@@ -18,6 +18,7 @@ from kinlab.doctor.program.edits.additions import Scope, as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
+from kinlab.doctor.program.edits.forgotten import of_forgotten, with_slices
 from kinlab.doctor.program.edits.operators import (
     keys_of,
     negated,
@@ -118,9 +119,12 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
             for step in (1, -1):
                 yield here.instead(plus(node, step), "index", 1.25 if limits else 1.1)
         return
+    if isinstance(node, ast.Call | ast.Subscript):
+        yield from with_slices(here, scope)
     if shape is not None and not isinstance(here.parent, ast.Compare | ast.If):
         yield from as_a_term(here, scope, shape)
         yield from of_composites(here, scope, shape)
+        yield from of_forgotten(here, scope, shape)
         yield from exchanges.of_repeated(here, scope, observed)
 
 

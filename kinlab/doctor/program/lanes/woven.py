@@ -65,6 +65,7 @@ class Woven:
             self._lists |= lists
         self._sites: dict[Key, list[tuple[int, ast.expr]]] = defaultdict(list)
         self._ways: dict[int, list[tuple[int, ast.expr]]] = defaultdict(list)
+        self._lines: dict[tuple[int, int], list[tuple[int, ast.expr, ast.expr]]] = defaultdict(list)
         self._same: dict[int, ast.AST] = {}
         self._new: dict[int, Spot] = {}
         self._holding: set[int] = set()
@@ -82,6 +83,8 @@ class Woven:
         """Puts an edit where it is asked, if it can be."""
         if edit.part == DATA:
             self.data += [(number, change) for change in edit.changes]
+            return True
+        if len(edit.changes) == 1 and self._put_line(number, edit.changes[0]):
             return True
         spots = [self._spot(change) for change in edit.changes]
         sound = [spot for spot in spots if spot is not None]
@@ -107,6 +110,27 @@ class Woven:
         self._ways[id(statement)].append((number, new))
         self._mark(statement)
         self._at.append((number, [(id(statement), name, None)]))
+        return True
+
+    def _put_line(self, number: int, change: FieldChange) -> bool:
+        """Puts a line more into a block: whatever it sets is then asked for its lanes."""
+        node, block = change.holder, getattr(change.holder, str(change.field), None)
+        new = change.new
+        if change.field not in BLOCKS or not isinstance(block, list) or len(new) != len(block) + 1:
+            return False
+        at = next((k for k, one in enumerate(block) if one is not new[k]), len(block))
+        line = new[at]
+        if new[at + 1 :] != block[at:] or not isinstance(line, ast.Assign | ast.AugAssign):
+            return False
+        target = line.target if isinstance(line, ast.AugAssign) else line.targets[0]
+        if not isinstance(target, ast.Name | ast.Subscript):
+            return False
+        value = line.value
+        if isinstance(line, ast.AugAssign):
+            value = ast.BinOp(loaded(target), line.op, line.value)
+        self._lines[id(block), at].append((number, target, value))
+        self._mark(node)
+        self._at.append((number, [(id(block), "line", at)]))
         return True
 
     def _mark(self, node: ast.AST) -> None:
@@ -263,8 +287,8 @@ class Woven:
 
     def _body(self, body: list[ast.stmt], alone: bool = False) -> list[ast.stmt]:
         """A block; whether it may run for some lanes alone."""
-        found: list[ast.stmt] = []
-        for statement in body:
+        found: list[ast.stmt] = self._added(body, 0, alone)
+        for k, statement in enumerate(body):
             if not alone and id(statement) not in self._holding:
                 found.append(statement)
             elif isinstance(statement, _SIMPLE):
@@ -275,6 +299,22 @@ class Woven:
                 found.append(one)
             else:
                 found += self._block(statement, alone)
+            found += self._added(body, k + 1, alone)
+        return found
+
+    def _added(self, body: list[ast.stmt], at: int, alone: bool) -> list[ast.stmt]:
+        """The lines that edits put at a place of a block, each for its lanes."""
+        found: list[ast.stmt] = []
+        for number, target, value in self._lines.get((id(body), at), ()):
+            given = [
+                ast.Constant((number,)),  # type: ignore[arg-type]
+                function_of(loaded(target)),
+                function_of(value, (_EDIT,)),
+            ]
+            line = ast.Assign([target], ast.Call(ast.Name("_pick", ast.Load()), given, []))
+            if alone:
+                line.value = apart(line, line.value)
+            found.append(line)
         return found
 
     def _block(self, statement: ast.stmt, alone: bool) -> list[ast.stmt]:

@@ -1,0 +1,186 @@
+"""What is forgotten as one writes: a term of two names, a vector behind its number, a moment."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.program.edits.additions import ANGLES, Scope, Turned
+from kinlab.doctor.program.observed import Shape
+from kinlab.doctor.program.places import Here, ProgramEdit, called
+
+_FORCES = ("f", "F")
+"""How names of forces begin."""
+_RATES = ("w", "o", "W", "O")
+"""How names of angular velocities begin."""
+_ARMS = ("p", "P", "r", "c", "C", "l", "L", "d", "s")
+"""How names of what leads from one point to another begin."""
+_VECTOR = (3,)
+_FEW = 8
+"""Names of one kind that are tried."""
+_SUMS = ast.Add | ast.Sub
+_SET = ast.Assign | ast.AugAssign | ast.Return
+
+
+def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """What may have been forgotten beside an expression."""
+    node, parent = here.node, here.parent
+    if isinstance(node, ast.Constant | ast.List | ast.Tuple):
+        return
+    op = parent.op if isinstance(parent, ast.BinOp) else None
+    if shape == ():
+        if isinstance(op, _SUMS):
+            yield from _with_vectors(here, scope)
+        if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
+            yield from _inside_products(here, scope)
+        return
+    if isinstance(op, _SUMS):
+        yield from _with_angles(here, scope)
+    if isinstance(op, ast.Mult) and isinstance(node, ast.BinOp):
+        yield from _other_axes(here, scope, shape)
+    if isinstance(parent, ast.Call) and here.holder is parent.args:
+        yield from _by_unused(here, scope)
+    yield from _calls(here, scope, shape)
+    if isinstance(parent, _SET):
+        if shape == _VECTOR:
+            yield from _moments(here, scope)
+        if len(shape) == 2:
+            yield from _turned_matrices(here, scope, shape)
+
+
+def _begins(node: ast.expr, letters: tuple[str, ...]) -> bool:
+    while isinstance(node, ast.Subscript):
+        node = node.value
+    name = node.attr if isinstance(node, ast.Attribute) else getattr(node, "id", "")
+    return name.startswith(letters)
+
+
+def _moments(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The moment of a force: ``cross(P, f)``, and ``cross(P, R @ f)`` of the next link's."""
+    if scope.cross is None:
+        return
+    simple = dict(scope.simple(_VECTOR))
+    arms = [(text, one) for text, one in simple.items() if _begins(one, _ARMS)][:_FEW]
+    forces = [one for one in simple.values() if _begins(one, _FORCES)][:_FEW]
+    for piece in scope.pieces_here(_VECTOR).values():
+        if isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.MatMult):
+            forces += [piece] if _begins(piece.right, _FORCES) else []
+    for force in forces:
+        for text, arm in arms:
+            unused = text in scope.unused or not scope.unused.isdisjoint(names(arm))
+            moment = ast.Call(scope.cross, [arm, force], [])
+            new = ast.BinOp(here.node, ast.Add(), moment)
+            yield here.instead(new, "missing term", 1.1 if unused else 1.14)
+
+
+def _with_vectors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A number in a sum of vectors, whose vector is forgotten: ``qdd*z``."""
+    parent = here.parent
+    assert isinstance(parent, ast.BinOp)
+    other = parent.right if parent.left is here.node else parent.left
+    shape = scope.observed.shape(other) or ()
+    for _text, vector in [*scope.simple(shape)][: 2 * _FEW] if shape else ():
+        yield here.instead(ast.BinOp(here.node, ast.Mult(), vector), "missing factor", 1.07)
+
+
+def _with_angles(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A vector in a sum, whose sine or cosine is forgotten: ``cos(q)*x + sin(q)*y``."""
+    for piece in scope.pieces_here(()).values():
+        if isinstance(piece, ast.Call) and called(piece) in ANGLES:
+            new = ast.BinOp(piece, ast.Mult(), here.node)
+            yield here.instead(new, "missing factor", 1.12)
+
+
+def with_slices(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Entries from a place on, times those of another row: ``l[j:]*sin(phi[j:])``."""
+    node = here.node
+    one = node.args[0] if isinstance(node, ast.Call) and len(node.args) == 1 else node
+    if one is not node and called(node) not in ANGLES:
+        return
+    if not isinstance(one, ast.Subscript) or not isinstance(one.slice, ast.Slice):
+        return
+    if not isinstance(one.value, ast.Name):
+        return
+    for name, shape in scope.shapes.items():
+        if len(shape) != 1 or name == one.value.id:
+            continue
+        rest: ast.expr = ast.Subscript(ast.Name(name, ast.Load()), one.slice, ast.Load())
+        factors = [rest]
+        for angle in ("sin", "cos") if one is node and scope.has_numpy else ():
+            function = ast.Attribute(ast.Name("np", ast.Load()), angle, ast.Load())
+            factors.append(ast.Call(function, [rest], []))
+        for factor in factors:
+            yield here.instead(ast.BinOp(node, ast.Mult(), factor), "missing factor", 1.1)
+
+
+def _inside_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """One term of a sum in parentheses: ``a*(b*c + d*e)``, of which ``a*b*c`` is left."""
+    known = {ast.unparse(one) for one in nodes(here.node) if isinstance(one, ast.expr)}
+    for text in sorted(scope.inner):
+        piece = ast.parse(text, mode="eval").body
+        for cost, one in ((1.12, piece), (1.13, Turned(scope.shapes).visit(copied(piece)))):
+            if not isinstance(one, ast.BinOp) or ast.unparse(one) in known:
+                continue
+            if cost > 1.12 and ast.unparse(one) == text:
+                continue
+            for op, more in ((ast.Add(), 0.0), (ast.Sub(), 0.02)):
+                yield here.instead(ast.BinOp(here.node, op, one), "missing term", cost + more)
+
+
+def _other_axes(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """The part along another axis: ``cos(q)*x + sin(q)*z``, of which ``cos(q)*x`` is left."""
+    node = here.node
+    if not isinstance(node.op, ast.Mult):
+        return
+    for scalar, vector in ((node.left, node.right), (node.right, node.left)):
+        if not isinstance(vector, ast.Name) or not isinstance(scalar, ast.Call):
+            continue
+        turned = Turned().visit(copied(scalar))
+        for text, other in scope.simple(shape):
+            if isinstance(other, ast.Name) and text != vector.id and text[0] == vector.id[0]:
+                across = ast.BinOp(turned, ast.Mult(), other)
+                for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
+                    yield here.instead(ast.BinOp(node, op, across), "missing term", cost)
+
+
+def _by_unused(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """What is given on, without the number that nothing uses any more: ``expm(S*angle)``."""
+    for text, scalar in scope.simple(()):
+        if text in scope.unused:
+            new = ast.BinOp(here.node, ast.Mult(), scalar)
+            yield here.instead(new, "missing factor", 1.06)
+
+
+def _calls(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """A call that nothing makes: the rotation of a joint, the way to the next one."""
+    node = here.node
+    if isinstance(here.parent, ast.Subscript | ast.Attribute):
+        return
+    for size, call in scope.idle:
+        if size != shape:
+            continue
+        if len(shape) == 2:
+            cost = 1.04 if isinstance(here.parent, _SET) else 1.07
+            yield here.instead(ast.BinOp(node, ast.MatMult(), call), "missing matrix", cost)
+            yield here.instead(ast.BinOp(call, ast.MatMult(), node), "missing matrix", cost)
+            continue
+        added: list[ast.expr] = [call]
+        if shape == _VECTOR and scope.cross is not None:
+            rates = [one for _text, one in scope.simple(_VECTOR) if _begins(one, _RATES)]
+            added += [ast.Call(scope.cross, [one, call], []) for one in rates[:_FEW]]
+        for one in added:
+            yield here.instead(ast.BinOp(node, ast.Add(), one), "missing term", 1.1)
+
+
+def _turned_matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+    """The term of Rodrigues' formula that goes with a sine or a cosine: ``sin(t)*W``."""
+    used = {*names(here.node)}
+    for text, matrix in scope.simple(shape):
+        if not isinstance(matrix, ast.Name) or text not in used:
+            continue
+        for piece in scope.pieces_here(()).values():
+            if isinstance(piece, ast.Call) and called(piece) in ANGLES:
+                term = ast.BinOp(piece, ast.Mult(), matrix)
+                new = ast.BinOp(here.node, ast.Add(), term)
+                yield here.instead(new, "missing term", 1.15)
