@@ -146,6 +146,20 @@ def f(q, v):
                 C[i, j] += 0.5*(D[k][i, j] + D[j][i, k] - D[i][j, k])*v[k]
     return C
 """
+CROSS = """
+import numpy as np
+from math import cos, sin
+
+L = (0.5, 0.4)
+
+def moment(r, f):
+    return r[0]*f[1] - r[1]*f[0]
+
+def f(q, wrench):
+    forearm = np.array([L[1]*cos(q[0] + q[1]), L[1]*sin(q[0] + q[1])])
+    arm = forearm + np.array([L[0]*cos(q[0]), L[0]*sin(q[0])])
+    return np.array([moment(arm, wrench) + wrench[5], moment(forearm, wrench) + wrench[5]])
+"""
 PROGRAMS = {
     "plane": ("planar2r_rods", "inverse_dynamics", PLANE),
     "space": ("spatial3r", "inverse_dynamics", SPACE),
@@ -153,6 +167,7 @@ PROGRAMS = {
     "entries": ("planar2r_rods", "inverse_dynamics", ENTRIES),
     "slices": ("planar3r", "planar_jacobian", SLICES),
     "rates": ("planar2r_rods", "coriolis_matrix", RATES),
+    "cross": ("planar2r", "statics", CROSS),
 }
 FORGOTTEN = [
     ("plane", "        angle += q[k]\n", "", "a line at the beginning of a loop"),
@@ -171,6 +186,7 @@ FORGOTTEN = [
     ("slices", "L[j:]*np.sin(phi[j:])", "np.sin(phi[j:])", "lengths from a place on"),
     ("slices", "np.sum(L[j:]*np.cos(phi[j:]))", "np.sum(L[j:])", "cosines from a place on"),
     ("slices", "        J[0, j] = -np.sum(L[j:]*np.sin(phi[j:]))\n", "", "the row of x"),
+    ("cross", "r[0]*f[1] - r[1]*f[0]", "-r[1]*f[0]", "one half of a cross product"),
     ("rates", "*v[k]", "", "the rate of a Christoffel symbol"),
 ]  # fmt: skip
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Container, Iterator, Sequence
+from functools import lru_cache
 from math import pi
 from types import FunctionType, ModuleType
 from typing import Any
@@ -356,8 +357,13 @@ def _not_called(trial: Trial, called_: Container[str]) -> Iterator[str]:
         own = value.__module__ in program.modules and value.__name__ == name
         known = {part.name for part in program.parts}
         alone = value.__code__.co_argcount == 1 and name not in known
-        if own and alone and read(value) is not None:
+        if own and alone and _is_readable(value):
             yield name
+
+
+@lru_cache(maxsize=64)
+def _is_readable(function: FunctionType) -> bool:
+    return read(function) is not None
 
 
 def _pi_of(space: dict[str, Any]) -> ast.expr | None:
@@ -687,10 +693,10 @@ def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[P
                     continue
                 new = _OtherName(name, other).visit(copied(piece))
                 for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
-                    yield here.instead(_summed(here.node, op, new), "missing term", cost)
+                    yield here.instead(summed(here.node, op, new), "missing term", cost)
 
 
-def _summed(node: ast.expr, op: ast.operator, term: ast.expr) -> ast.expr:
+def summed(node: ast.expr, op: ast.operator, term: ast.expr) -> ast.expr:
     """A sum as it is written: ``a - b`` for ``a + -b``."""
     first = _leftmost(term)
     if not isinstance(first, ast.UnaryOp) or not isinstance(first.op, ast.USub):
@@ -744,6 +750,17 @@ class Turned(ast.NodeTransformer):
         other = {"s": "c", "c": "s"}.get(node.id[:1], "") + node.id[1:]
         both = node.id in self.known and other in self.known
         return ast.Name(other, node.ctx) if both else node
+
+
+class OtherAxis(Turned):
+    """Of x what is there of y, with cosines for sines."""
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        for one, other in ("xy", "yx", "XY", "YX"):
+            name = node.id.replace(one, other)
+            if name != node.id and name in self.known:
+                return ast.Name(name, node.ctx)
+        return super().visit_Name(node)
 
 
 def _statement(above: Sequence[ast.AST]) -> ast.stmt:

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.additions import Scope, Turned
+from kinlab.doctor.program.edits.additions import OtherAxis, Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange
@@ -170,7 +170,7 @@ def _beside(
         target = next(iter(_targets(line)), None)
         if target is None or len(ast.unparse(line)) > _LONG:
             continue
-        others = [_OtherAxis(scope.shapes).visit(copied(line))]
+        others = [OtherAxis(scope.shapes).visit(copied(line))]
         if isinstance(target, ast.Subscript):
             others += [*_of_other_entries(line, scope)]
         for other in others:
@@ -183,17 +183,6 @@ def _beside(
                 turned = copied(other)
                 turned.value = ast.UnaryOp(ast.USub(), turned.value)
                 yield _missing(part, node, name, block, at + 1, turned, 1.16)
-
-
-class _OtherAxis(Turned):
-    """Of x what is there of y, with cosines for sines."""
-
-    def visit_Name(self, node: ast.Name) -> ast.expr:
-        for one, other in ("xy", "yx", "XY", "YX"):
-            name = node.id.replace(one, other)
-            if name != node.id and name in self.known:
-                return ast.Name(name, node.ctx)
-        return super().visit_Name(node)
 
 
 def _targets(line: ast.stmt) -> list[ast.expr]:

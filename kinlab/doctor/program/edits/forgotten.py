@@ -6,7 +6,7 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.additions import ANGLES, Scope, Turned
+from kinlab.doctor.program.edits.additions import ANGLES, OtherAxis, Scope, Turned, summed
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
 
@@ -32,6 +32,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
     if shape == ():
         if isinstance(op, _SUMS):
             yield from _with_vectors(here, scope)
+        if isinstance(parent, _SET | ast.List | ast.Tuple):
+            yield from _crosswise(here)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
         return
@@ -116,16 +118,32 @@ def with_slices(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 
 def _inside_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """One term of a sum in parentheses: ``a*(b*c + d*e)``, of which ``a*b*c`` is left."""
-    known = {ast.unparse(one) for one in nodes(here.node) if isinstance(one, ast.expr)}
-    for text in sorted(scope.inner):
-        piece = ast.parse(text, mode="eval").body
-        for cost, one in ((1.12, piece), (1.13, Turned(scope.shapes).visit(copied(piece)))):
-            if not isinstance(one, ast.BinOp) or ast.unparse(one) in known:
+    own = {ast.unparse(one) for one in nodes(here.node) if isinstance(one, ast.expr)}
+    known = [ast.parse(text, mode="eval").body for text in sorted(scope.inner)]
+    turned = [Turned(scope.shapes).visit(copied(one)) for one in known]
+    across = OtherAxis(scope.shapes).visit(copied(here.node))
+    for cost, pieces in ((1.12, known), (1.13, [*turned, across])):
+        for piece in pieces:
+            text = ast.unparse(piece)
+            if not isinstance(piece, ast.BinOp | ast.UnaryOp) or text in own:
                 continue
-            if cost > 1.12 and ast.unparse(one) == text:
-                continue
+            own.add(text)
             for op, more in ((ast.Add(), 0.0), (ast.Sub(), 0.02)):
-                yield here.instead(ast.BinOp(here.node, op, one), "missing term", cost + more)
+                yield here.instead(summed(here.node, op, piece), "missing term", cost + more)
+
+
+def _crosswise(here: Here) -> Iterator[ProgramEdit]:
+    """The other half of a product of two vectors: ``- a[1]*b[0]`` of ``a[0]*b[1] - a[1]*b[0]``."""
+    node = here.node
+    one, other = (node.left, node.right) if isinstance(node, ast.BinOp) else (None, None)
+    if not isinstance(one, ast.Subscript) or not isinstance(other, ast.Subscript):
+        return
+    if isinstance(node.op, ast.Mult) and ast.dump(one.slice) != ast.dump(other.slice):
+        left = ast.Subscript(one.value, other.slice, ast.Load())
+        right = ast.Subscript(other.value, one.slice, ast.Load())
+        across = ast.BinOp(left, ast.Mult(), right)
+        for op, cost in ((ast.Sub(), 1.1), (ast.Add(), 1.12)):
+            yield here.instead(ast.BinOp(node, op, across), "missing term", cost)
 
 
 def _other_axes(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
