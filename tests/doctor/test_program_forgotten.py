@@ -186,7 +186,8 @@ FORGOTTEN = [
     ("slices", "L[j:]*np.sin(phi[j:])", "np.sin(phi[j:])", "lengths from a place on"),
     ("slices", "np.sum(L[j:]*np.cos(phi[j:]))", "np.sum(L[j:])", "cosines from a place on"),
     ("slices", "        J[0, j] = -np.sum(L[j:]*np.sin(phi[j:]))\n", "", "the row of x"),
-    ("cross", "r[0]*f[1] - r[1]*f[0]", "-r[1]*f[0]", "one half of a cross product"),
+    ("cross", " - r[1]*f[0]", "", "one half of a cross product"),
+    ("cross", "r[0]*f[1] - r", "-r", "its other half"),
     ("rates", "*v[k]", "", "the rate of a Christoffel symbol"),
 ]  # fmt: skip
 

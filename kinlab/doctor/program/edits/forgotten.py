@@ -136,6 +136,8 @@ def _crosswise(here: Here) -> Iterator[ProgramEdit]:
     """The other half of a product of two vectors: ``- a[1]*b[0]`` of ``a[0]*b[1] - a[1]*b[0]``."""
     node = here.node
     one, other = (node.left, node.right) if isinstance(node, ast.BinOp) else (None, None)
+    if isinstance(one, ast.UnaryOp):
+        one = one.operand  # -a[1]*b[0]
     if not isinstance(one, ast.Subscript) or not isinstance(other, ast.Subscript):
         return
     if isinstance(node.op, ast.Mult) and ast.dump(one.slice) != ast.dump(other.slice):
