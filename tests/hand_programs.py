@@ -501,16 +501,13 @@ def _typed(node: ast.AST) -> str:
 def _with(tree: ast.Module, found: re.Match[str]):
     """The trees in which a sentence's repair stands, one for each place that it may mean."""
     number = int(found["line"])
-    count = len([*ast.walk(tree)])
-    for k in range(count):
+    old = found["old"] or found["moved"] or found["dropped"]
+    for k, one in enumerate(ast.walk(tree)):
+        first, last = getattr(one, "lineno", 0), getattr(one, "end_lineno", 0)
+        if not first <= number <= last or _typed(one) != old:
+            continue
         fresh = copy.deepcopy(tree)
         node = [*ast.walk(fresh)][k]
-        first, last = getattr(node, "lineno", 0), getattr(node, "end_lineno", 0)
-        if not first <= number <= last:
-            continue
-        old = found["old"] or found["moved"] or found["dropped"]
-        if _typed(node) != old:
-            continue
         if found["new"] is not None:
             new = _parsed(found["new"], node)
             if new is not None and _replace(fresh, node, new):
@@ -524,7 +521,8 @@ def _with(tree: ast.Module, found: re.Match[str]):
 def _with_line(tree: ast.Module, found: re.Match[str]):
     """The trees in which a line stands that was missing: behind another one, or first in a loop."""
     number = int(found["line"])
-    for k in range(len([*ast.walk(tree)])):
+    blocks = [k for k, one in enumerate(ast.walk(tree)) if hasattr(one, "body")]
+    for k in blocks:
         fresh = copy.deepcopy(tree)
         node = [*ast.walk(fresh)][k]
         line = ast.parse(found["new"]).body[0]

@@ -94,6 +94,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.within(node, "op", ast.Div(), "factor", 1.35)
             if all(shape for shape in matrices):
                 yield here.within(node, "op", ast.MatMult(), "product", 1.1)
+            if matrices[0] == matrices[1] and matrices[0]:
+                for other in (ast.Add(), ast.Sub()):
+                    yield here.within(node, "op", other, "operator", 1.16)
             square = matrices[1] is not None and len(matrices[1]) == 2
             if square and isinstance(left, ast.Constant) and left.value == 2:
                 across = ast.Attribute(right, "T", ast.Load())
