@@ -123,11 +123,21 @@ def in_text(
             line = Line(text, names, at, np.array(target), forms, numeric=at is own)
             lines.append(line)
             plain += [line] if text is written else []
+    free, rods = anywhere(names), as_rods(anywhere(names), written, derived)
+    unlike = []
+    if any(not np.array_equal(rods[name], free[name]) for name in tree.names(right) & free.keys()):
+        whole = np.broadcast_to(tree.evaluate(right, free), np.shape(plain[0].target))
+        unlike.append(Line(written, names, free, np.array(whole), forms))
     if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
         lines = plain  # nothing else is wrong: the digits are too few
-    tried = [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
+    # a moment that is left out comes before one that would be a rod's
+    tried = [(line, 1) for line in unlike]
+    tried += [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
     if bare:  # without a name the other numbers are the robot's own
         lines.sort(key=lambda line: not line.numeric)
+    if any(name[0] == "I" for name in tree.names(written.node)):  # who names one names them all
+        tried += [(line, 1) for line in lines * bool(unlike)]
+        tried += [(line, 2) for line in unlike]
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),

@@ -155,6 +155,30 @@ def test_a_slip_in_a_books_names_is_told_in_them(old, new, told):
     assert found.causes[0].shown["M11"].replace("**", "^") == BOOKS
 
 
+ENTRY = "m1*l1**2/4 + I1 + m2*l1**2 + m2*l1*l2*cos(q2) + m2*l2**2/4 + I2"
+"""The same of rods whose moments have names."""
+
+
+@pytest.mark.parametrize(
+    ("entry", "typed", "told"),
+    [
+        ("M22", "m2*l2**2/4", ["the term I2 is missing"]),
+        ("M11", ENTRY.replace(" + I1", ""), ["the term I1 is missing"]),
+        (
+            "M11",
+            ENTRY.replace(" + I1", "").replace("cos(q2)", "cos(q1)"),
+            ["cos(q1) should be cos(q2)", "the term I1 is missing"],
+        ),
+        ("M22", "m2*l2**2/2", ["2 should be 3 in m2*l2**2/2"]),
+        ("M22", "m2*l2/3", ["l2 should be l2**2"]),
+    ],
+)
+def test_a_moment_that_is_left_out_comes_before_one_that_would_be_a_rods(entry, typed, told):
+    found = kl.diagnose("planar2r_rods", entry, typed)
+    assert all(one in found.causes[0].sentence for one in told), str(found)
+    assert len(found.causes[0].kinds) == len(told)
+
+
 def test_a_books_names_of_arms_that_are_not_planar():
     """Craig's arm with a hinge and a slide: l1 is how far the first centre of mass is."""
     hinge = kl.DHLink(alpha=np.pi / 2, theta=np.pi / 2, mass=2.4, com=(0, 0, 0.4))
