@@ -38,6 +38,7 @@ from kinlab.doctor.derivations.shown import shown
 from kinlab.doctor.excuses import (
     covered_up,
     excused,
+    for_another_arm,
     rounding_alone,
     texts_again,
     without_value,
@@ -151,15 +152,45 @@ def _examined(
     )
 
 
-def _explained(
-    case: Case, engine: Array, written: dict[str, Written], worst: float
-) -> tuple[list[Cause], tuple[str, ...], Excuse | None, Apart | None]:
+Explained = tuple[list[Cause], tuple[str, ...], Excuse | None, Apart | None]
+"""Causes; sentences on single entries; an excuse; and, where nothing explains the formula by one
+step, its kinds of term."""
+
+
+def _explained(case: Case, engine: Array, written: dict[str, Written], worst: float) -> Explained:
     """What explains the difference, what is known of some entries, or why it is none.
 
-    Returns:
-        Causes; sentences on single entries; an excuse; and, where nothing explains the formula by
-        one step, its kinds of term.
+    How a text with names is read must explain what it says of another arm, too: at one arm's
+    numbers a lost square may come to a forgotten link.
     """
+    told = _told(case, engine, written)
+    found = _possible(case, engine, written, worst, told)
+    doubtful = [one for one in found[0] if not any(one is known for known in told[0])]
+    other = for_another_arm(case, engine, written) if doubtful else None
+    if other is None:
+        return found
+    there, right = other
+    gap = float(np.max(relative_errors(there.hand, right)))
+    again = _possible(there, right, written, gap, _told(there, right, written))[0]
+    said = {one.sentence for one in again}
+    kept = [x for x in found[0] if x.sentence in said or not any(x is one for one in doubtful)]
+    return kept or told[0], *found[1:]
+
+
+Told = tuple[list[Cause], tuple[str, ...]]
+
+
+def _told(case: Case, engine: Array, written: dict[str, Written]) -> Told:
+    """Slips that stand in texts, and what is known of some entries."""
+    same = written and case.hand.shape == engine.shape
+    off = [e for e in entries(case, engine) if not e.agrees] if same else []
+    return slips_in(case, off, written) if off else ([], ())
+
+
+def _possible(
+    case: Case, engine: Array, written: dict[str, Written], worst: float, told: Told
+) -> Explained:
+    """What explains the difference at the arm's own numbers, beside what stands in the texts."""
     same = case.hand.shape == engine.shape
     silent = (without_value(case, engine) or rounding_alone(case)) if same else None
     tried = readings(case)
@@ -172,8 +203,8 @@ def _explained(
     partial: tuple[str, ...] = ()
     off = [e for e in entries(case, engine) if not e.agrees] if same else []
     causes: list[Cause] = [silent] if silent is not None else []
-    if written and off and silent is None:
-        causes, partial = slips_in(case, off, written)
+    if silent is None:
+        causes, partial = [*told[0]], told[1]
     visible = bool(causes) and len(causes[0].kinds) <= 1
     bare = signs and _bare_signs(engine)
     read = same and not written and (silent is not None or not bare)

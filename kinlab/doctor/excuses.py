@@ -12,7 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
-from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries
+from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
 from kinlab.doctor.slips import of_entry, slip_cause
@@ -22,7 +22,12 @@ from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
+from kinlab.errors import KinlabError, already_said
+from kinlab.formulas.tree import names
 from kinlab.host.language import _
+from kinlab.model.dh import DHTable
+from kinlab.model.robot import Robot
+from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _WHOLE_TERMS = {"extra term", "missing term"}
@@ -189,6 +194,68 @@ def texts_again(
         return out
 
     return again if all(text is not None for _local, text in texts) else None
+
+
+_LONGER, _HEAVIER = (1.19, 1.37, 1.29, 1.13), (1.29, 0.77, 1.13, 0.91)
+"""What lengths and masses of another arm are multiplied by, link by link."""
+
+
+def for_another_arm(
+    case: Case, engine: Array, written: dict[str, Written]
+) -> tuple[Case, Array] | None:
+    """The texts for an arm that has other numbers for their names, and what the engine says there.
+
+    None where the texts have numbers of this arm in them, or names of none.
+    """
+    if case.again is None or any(map(_has_numbers, written.values())):
+        return None
+    table = table_of(case.robot)
+    other = None if table is None else _with_other_numbers(table, written)
+    if other is None:
+        return None
+    try:
+        with already_said():
+            there = replace(case, robot=Robot.from_dh(other), again=None)
+        right = np.asarray(there.answer(()), dtype=float)
+        again = texts_again(there, right, written)
+        hand = None if again is None else again(there.arguments)
+    except (KinlabError, KeyError, TypeError, ValueError):
+        return None
+    if hand is None or not (np.isfinite(hand).all() and np.isfinite(right).all()):
+        return None
+    return replace(there, hand=hand, again=again), right
+
+
+def _has_numbers(text: Written) -> bool:
+    """Whether a text has a number that is no plain fraction."""
+    return any(not n.whole and 12 * n.value % 1 and not n.exponent for n in text.literals)
+
+
+def _with_other_numbers(table: DHTable, written: dict[str, Written]) -> DHTable | None:
+    """The arm with other lengths, masses, centres and moments, where the texts name them."""
+    named = set[str]().union(*(names(text.node) for text in written.values()))
+    values = {n: abs(float(x)) for n, x in vocabulary(table).values.items() if n in named}
+    lengths = {n: x for n, x in values.items() if n[0] not in "mIg" and x}
+    longer = {x: _LONGER[k % len(_LONGER)] for k, x in enumerate(dict.fromkeys(lengths.values()))}
+    links = []
+    for k, link in enumerate(table.links):
+        mass = _HEAVIER[k % len(_HEAVIER)] if f"m{k + 1}" in values else 1.0
+        own = [longer[x] for n, x in lengths.items() if n[1:] == str(k + 1) and n[0] in "lad"]
+        size = own[0] if own else 1.0  # of a link and of what is in it
+        com = [x * longer.get(abs(x), size) for x in map(float, np.asarray(link.com))]
+        inertia = mass * size**2 * np.asarray(link.inertia)
+        a, d = (x * longer.get(abs(x), 1.0) for x in (link.a, link.d))
+        links.append(replace(link, a=a, d=d, mass=mass * link.mass, com=com, inertia=inertia))
+    if not longer and not any(n[0] == "m" for n in values):
+        return None
+    tool, base = np.array(table.tool, dtype=float), np.array(table.base, dtype=float)
+    for pose in (tool, base):
+        pose[:3, 3] = [x * longer.get(abs(x), 1.0) for x in pose[:3, 3]]
+    try:
+        with already_said():
+            return replace(table, links=links, tool=tool, base=base)
+    except KinlabError:
+        return None
 
 
 def without_value(case: Case, engine: Array) -> Cause | None:

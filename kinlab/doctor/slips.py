@@ -16,6 +16,7 @@ from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
 from kinlab.doctor.derived import derivation_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
+from kinlab.doctor.verdicts import numbers_at
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
 
@@ -38,6 +39,23 @@ def slips_in(
     case: Case, off: list[AnswerEntry], written: dict[str, Written]
 ) -> tuple[list[Cause], tuple[str, ...]]:
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
+    defined: list[Slip] = []
+    while len(defined) < LIST and (one := _defined(case, off, written)) is not None:
+        defined.append(one)
+        written = _defined_otherwise(written, one)
+        off = _still_off(case, off, written)
+    per_entry = [*([one] for one in defined), *_per_entry(case, off, written)]
+    if not all(per_entry):
+        return [], tuple(found[0].sentence for found in per_entry if found)
+    # alternatives are told for one entry at a time; all of all would be a flood
+    if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
+        return [], tuple(found[0].sentence for found in per_entry)
+    sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
+    return [slip_cause(chosen) for chosen in sets], ()
+
+
+def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> list[list[Slip]]:
+    """What explains each entry, as long as most are explained."""
     per_entry: list[list[Slip]] = []
     seen: list[Written] = []
     for entry in off:
@@ -53,13 +71,41 @@ def slips_in(
         missed = sum(not found for found in per_entry)
         if missed >= _PATIENCE or (not written and (missed or told > _FLOOD)):
             break
-    if not all(per_entry):
-        return [], tuple(found[0].sentence for found in per_entry if found)
-    # alternatives are told for one entry at a time; all of all would be a flood
-    if sum(len(found[0].kinds) for found in per_entry) > _FLOOD:
-        return [], tuple(found[0].sentence for found in per_entry)
-    sets = product(*per_entry) if len(per_entry) == 1 else [tuple(f[0] for f in per_entry)]
-    return [slip_cause(chosen) for chosen in sets], ()
+    return per_entry
+
+
+def _defined(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
+    """A slip in a definition that makes more right than one in a formula would."""
+    derived = derivation_of(case)
+    for entry in off[:_PATIENCE] if derived is not None else ():
+        text = written.get(entry.label)
+        if text is None or derived is None:
+            return None
+        of = (derived, derived.entry(entry.index), case.quantity.arguments, case.arguments)
+        for slip in terms.in_definitions(text, *of):
+            left = _still_off(case, off, _defined_otherwise(written, slip))
+            if len(left) < len(off) - 1 or (not left and not of_entry(case, entry, text)):
+                return slip.with_error(entry.error(slip.values, entry.engine))
+    return None
+
+
+def _defined_otherwise(written: dict[str, Written], slip: Slip) -> dict[str, Written]:
+    """The texts with another definition of one of the writer's names."""
+    assert slip.defined is not None
+    name, new = slip.defined
+    return {
+        label: replace(text, symbols={**text.symbols, name: new}) for label, text in written.items()
+    }
+
+
+def _still_off(
+    case: Case, off: list[AnswerEntry], written: dict[str, Written]
+) -> list[AnswerEntry]:
+    """The entries that are off all the same."""
+    here = numbers_at(case)
+    now = [(one, written[one.label].values(here)) for one in off]
+    left = [replace(one, hand=hand) for one, hand in now]
+    return [one for one in left if not one.agrees]
 
 
 def _varied(found: list[Slip]) -> list[Slip]:

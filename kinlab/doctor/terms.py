@@ -56,6 +56,7 @@ class Slip:
         repaired: whether ``values`` are the user's repaired ones.
         error: relative error that is left with the slip repaired.
         typed: the right formula as the writer would type it, where otherwise, or ``""``.
+        defined: of a slip in what a name of the writer's stands for, the name and what it should.
     """
 
     entry: str
@@ -67,6 +68,7 @@ class Slip:
     repaired: bool
     error: float = np.inf
     typed: str = ""
+    defined: tuple[str, str] | None = None
 
     def with_error(self, error: float) -> Slip:
         """The slip with its evidence."""
@@ -159,6 +161,50 @@ def in_text(
     return [_mended(written, one, here) for one in found]
 
 
+def in_definitions(
+    written: Written,
+    derived: Derivation,
+    poly: Poly,
+    arguments: tuple[str, ...],
+    states: dict[str, Array],
+) -> Iterator[Slip]:
+    """Slips in what the writer's own names stand for: in ``h = m2*l1*l2*sin(q2)``.
+
+    A formula in which the name stands once, or in every term, says what it should be.
+    """
+    if not written.definitions or not searchable(poly):
+        return
+    here, names = environment(derived, states), names_for(derived, arguments)
+    right = derived.tree(derived.held(poly, [name for name in derived.loads if np.any(here[name])]))
+    at = as_rods(anywhere(names), written, derived)
+    forms = [list(form.terms) for form in _forms(derived, poly)]
+    target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
+    line = Line(written, names, at, np.array(target), forms)
+    for name in written.definitions:
+        wanted = _wanted_of(written, name, line)
+        if wanted is None:
+            continue
+        own = replace(written, entry=name, text=written.symbols[name], typing=None)
+        part = Line(own, names, at, wanted, forms)
+        for one in mended(part, 1):
+            whole = replace(written, symbols={**written.symbols, name: one.text})
+            slip = replace(_mended(own, one, here), values=whole.values(here))
+            yield replace(slip, defined=(name, one.text))
+
+
+def _wanted_of(written: Written, name: str, line: Line) -> Array | None:
+    """What a name would have to be for the formula to be right; None where that is not one."""
+    none, one, two = (
+        replace(written, symbols={**written.symbols, name: str(k)}).values(line.at)
+        for k in (0, 1, 2)
+    )
+    slope = one - none
+    straight = np.max(np.abs(two - one - slope)) <= TOLERANCES.effect_matches * line.scale
+    if not straight or np.min(np.abs(slope)) == 0.0:
+        return None
+    return np.asarray((line.target - none) / slope)
+
+
 def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -> bool:
     """Whether a repair at the robot's own numbers is one where the names in the text have others.
 
@@ -220,11 +266,12 @@ def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict
     """The numbers with I = m l²/12 where the robot's links are rods and the text has no I."""
     values, out = derived.arm.values, dict(at)
     for name in values:
-        found = re.fullmatch(r"I(\d+)", name)
+        found = re.fullmatch(r"I(?:xx|yy|zz)?(\d+)", name)
         if found is None or name in tree.names(written.node):
             continue
-        m, length = f"m{found.group(1)}", f"l{found.group(1)}"
-        if m not in values or length not in values:
+        m, k = f"m{found[1]}", found[1]
+        length = next((one for one in (f"l{k}", f"a{k}") if one in values), "")
+        if m not in values or not length:
             continue
         rod = float(values[m]) * float(values[length]) ** 2 / 12
         if abs(float(values[name]) - rod) <= TOLERANCES.same_length * rod:

@@ -647,7 +647,8 @@ _IN_BOOKS = (
     "L lagrangian",
     "T A H fk",
     "J planar_jacobian jacobian jacobian_tool jacobian_spatial",
-    "tau u Q inverse_dynamics",
+    "tau u Q inverse_dynamics inverse_dynamics_loaded lagrange_torques",
+    "tau statics statics_tool",
     "V C H N B coriolis_torques",
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""

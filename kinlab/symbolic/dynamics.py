@@ -106,14 +106,21 @@ def coriolis_grid(arm: SymbolicArm) -> Grid:
     return [[_dot(arm, row, speeds) for row in grid] for grid in christoffel_cube(arm)]
 
 
+def centres(arm: SymbolicArm) -> Grid:
+    """The links' centres of mass in the base as polynomials, (n, 3)."""
+    found = []
+    for i, frame in enumerate(kinematics.link_frames(arm)[1:], 1):
+        place = [*(arm.entry(f"com{i}{axis}") for axis in "xyz"), arm.trig.ring.one]
+        found.append([_dot(arm, frame[r], place) for r in range(3)])
+    return found
+
+
 @lru_cache(maxsize=32)
 def potential_poly(arm: SymbolicArm) -> Poly:
     """V as a polynomial."""
     gravity = [arm.entry(f"gravity{axis}") for axis in "xyz"]
     total = arm.trig.ring.zero
-    for i, frame in enumerate(kinematics.link_frames(arm)[1:], 1):
-        place = [*(arm.entry(f"com{i}{axis}") for axis in "xyz"), arm.trig.ring.one]
-        centre = [_dot(arm, frame[r], place) for r in range(3)]
+    for i, centre in enumerate(centres(arm), 1):
         total -= arm.entry(f"mass{i}") * _dot(arm, gravity, centre)
     return arm.trig.reduce(total)
 

@@ -106,6 +106,14 @@ class Place:
         return self.node.col_offset, self.node.end_col_offset or 0
 
 
+def _slid(node: Node) -> set[str]:
+    """The joints' positions outside of sines and cosines: of slides."""
+    if node.op in tree.FUNCTIONS:
+        return set()
+    own = {str(node.value)} if node.op == "sym" and _POSITION.fullmatch(str(node.value)) else set()
+    return own.union(*map(_slid, node.args))
+
+
 @dataclass(eq=False)
 class Line:
     """One formula, with what each change would do to it.
@@ -216,7 +224,11 @@ class Line:
     def slides(self) -> dict[str, Array]:
         """The writer's names of joints that slide, with their values: d3 is q3."""
         own = {name: meaning for name, meaning in self.text.symbols.items() if name[0] == "d"}
-        return {name: np.asarray(self.at[q]) for name, q in own.items() if _POSITION.fullmatch(q)}
+        found = {name: q for name, q in own.items() if _POSITION.fullmatch(q)}
+        for q in {name for form in self.forms for term in form for name in _slid(term)}:
+            if q not in found.values():
+                found[self.spelling.get(q, q)] = q
+        return {name: np.asarray(self.at[q]) for name, q in sorted(found.items())}
 
     def _named(self, name: str) -> Array:
         return replace(self.text, text=name).values(self.at)

@@ -138,6 +138,13 @@ class Written:
         return tuple(found)
 
     @cached_property
+    def definitions(self) -> list[str]:
+        """The writer's own names in it that stand for formulas."""
+        return [
+            x for x in self._used[1:] if not isinstance(self._trees[x], ast.Name | ast.Constant)
+        ]
+
+    @cached_property
     def spans(self) -> list[tuple[int, int]]:
         """Where the numbers of the text itself stand, which are the first of :attr:`literals`."""
         inside = (constant for constant, _above in constants(self._trees[""]))

@@ -1,0 +1,90 @@
+"""Short texts of which more than the arm's own numbers must be asked; centres, rates, statics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import kinlab as kl
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed"),
+    [
+        # l3/4 is l3**2, and l3/2 is where the centre is, of this arm alone
+        ("planar3r", "M23", "I3 + m3*l3/4 + m3*l2*l3*cos(q3)"),
+    ],
+)  # fmt: skip
+def test_no_reading_that_holds_for_one_arm_alone_is_told(robot, entry, typed) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert not found.agrees
+    assert all("the formula" not in cause.sentence for cause in found.causes)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "told"),
+    [
+        ("planar2r", "jacobian", "[[l1*s1 + l2*s12, l2*s12], [-l1*c1 - l2*c12, -l2*c12], [0, 0], [0, 0], [0, 0], [-1, -1]]", "opposite sign"),
+        ("planar2r", "M", "[[m2*l2**2, m2*l2**2 + m2*l1*l2*c2], [m2*l2**2 + m2*l1*l2*c2, m1*l1**2 + m2*l1**2 + m2*l2**2 + 2*m2*l1*l2*c2]]", "the formula"),
+    ],
+)  # fmt: skip
+def test_a_reading_that_holds_for_every_arm_is_told(robot, entry, typed, told) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert told in found.causes[0].sentence, str(found)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "told"),
+    [
+        ("planar3r", "com_positions[2,1]", r"l_1 \cos\theta_1 + l_2 \sin\theta_{12} + \frac{1}{2} l_3 \sin\theta_{123}", r"\cos\theta_1 should be \sin\theta_1"),
+        ("planar2r_rods", "com_positions[1,0]", "l1*cos(θ₁) + (l2/2)*cos(θ₂)", "cos(θ₂) should be cos(θ₁ + θ₂)"),
+        ("planar2r", "jacobian_dot[0,0]", "-l1*c1*qd1 - l2*s12*(qd1 + qd2)", "s12 should be c12"),
+        ("planar2r", "lagrange_torques[1]", "m2*l2**2*(qdd1 + qdd2) + m2*l1*l2*c2*qdd1 - m2*l1*l2*s2*qd1**2 + m2*l2*g*c12", "(sign)"),
+        ("planar2r", "statics", "tau = [(-l1*s1 - l2*s12)*fx + (l1*c1 + l2*c12)*fy; -l2*s12*fx + l2*c12*fy + nz]", "the term nz is missing"),
+    ],
+)  # fmt: skip
+def test_a_slip_in_a_text_is_told(robot, entry, typed, told) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert len(found.causes[0].kinds) == 1
+    assert told in found.causes[0].sentence, str(found)
+
+
+H = "; C = [[-h*qd2, -h*(qd1 + qd2)], [h*qd1, 0]]"
+
+
+@pytest.mark.parametrize(
+    ("typed", "told"),
+    [
+        ("h = m2*l1*l1*sin(q2)" + H, ["h: l1 should be l2 in m2*l1*l1*sin(q2)"]),
+        ("h = m2*l1*sin(q2)" + H, ["h: the factor l2 is missing"]),
+        ("h = m2*l1*l2*cos(q2)" + H, ["h: cos(q2) should be sin(q2)"]),
+        ("h = m2*l1*l1*sin(q2)" + H.replace("[h", "[-h"), ["h: l1 should be l2", "C21: -h*qd1 should be h*qd1"]),
+        ("h = m2*l1*l2*sin(q2)" + H.replace("[h", "[-h"), ["C21: -h*qd1 should be h*qd1"]),
+    ],
+)  # fmt: skip
+def test_a_slip_in_what_a_name_stands_for_is_told_there(typed, told) -> None:
+    cause = kl.diagnose("planar2r", "coriolis_matrix", typed).causes[0]
+    assert len(cause.kinds) == len(told)
+    assert all(one in cause.sentence for one in told), cause.sentence
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed"),
+    [
+        ("planar3r", "com_positions[2,1]", "l1*s1 + l2*s12 + l3/2*s123"),
+        ("planar2r", "jacobian_dot[0,0]", "-l1*c1*qd1 - l2*c12*(qd1 + qd2)"),
+        ("planar2r", "statics", "tau = [(-l1*s1 - l2*s12)*fx + (l1*c1 + l2*c12)*fy + nz; -l2*s12*fx + l2*c12*fy + nz]"),
+    ],
+)  # fmt: skip
+def test_right_texts_agree(robot, entry, typed) -> None:
+    assert kl.diagnose(robot, entry, typed).agrees
+
+
+def test_a_slide_is_told_for_a_length() -> None:
+    links = [
+        kl.DHLink(d=0.52, alpha=np.pi / 2),
+        kl.DHLink(theta=np.pi / 2, alpha=np.pi / 2),
+        kl.DHLink("prismatic", lower=0.3, upper=1.1),
+    ]
+    found = kl.diagnose(kl.DHTable("polar", "standard", links), "T14", "d1*cos(q1)*cos(q2)")
+    assert "d1 should be q3" in found.causes[0].sentence
