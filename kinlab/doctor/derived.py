@@ -168,17 +168,19 @@ _KINEMATIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "planar_position_determinant": lambda a: _determinant(a, (0, 1)),
     "planar_jacobian": lambda a: [_jacobian("base")(a)[r] for r in (0, 1, 5)],
 }
+_AT_REST: dict[str, Callable[[SymbolicArm], Any]] = {
+    "gravity_torques": lambda a: _column(dynamics.gravity_column(a)),
+    "potential_energy": dynamics.potential_poly,
+    "com_positions": dynamics.centres,
+}
 _DYNAMIC: dict[str, Callable[[SymbolicArm], Any]] = {
     "mass_matrix": dynamics.mass_grid,
     "coriolis_matrix": dynamics.coriolis_grid,
     "coriolis_torques": _coriolis_torques,
-    "gravity_torques": lambda a: _column(dynamics.gravity_column(a)),
-    "com_positions": dynamics.centres,
     "jacobian_dot": lambda a: [[_rate(a, x) for x in row] for row in _jacobian("base")(a)],
     "inverse_dynamics": lambda a: _column(dynamics.torque_column(a)),
     "lagrange_torques": lambda a: _column(dynamics.torque_column(a)),
     "kinetic_energy": dynamics.kinetic_poly,
-    "potential_energy": dynamics.potential_poly,
     "lagrangian": lagrangian,
     "momentum": momentum,
     "momentum_rate": momentum_rate,
@@ -266,6 +268,8 @@ def derivation(table: DHTable, quantity: str) -> Derivation | None:
     """The quantity (without index) derived for the table, or None where none is offered."""
     if quantity in _KINEMATIC and table.n <= _KINEMATIC_JOINTS:
         make = _KINEMATIC[quantity]
+    elif quantity in _AT_REST and table.n <= _KINEMATIC_JOINTS:
+        make = _AT_REST[quantity]
     elif quantity in _DYNAMIC and table.n <= _DYNAMIC_JOINTS:
         make = _DYNAMIC[quantity]
     elif quantity in _LOADED and table.n <= _DYNAMIC_JOINTS:

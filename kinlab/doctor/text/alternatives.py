@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
+from collections.abc import Iterator
 from fractions import Fraction
 
 import numpy as np
@@ -198,10 +199,25 @@ def _wave(line: Line, place: Place, wave: Node) -> None:
     _node(line, place, tree.call(other, argument), "sin/cos", 1.0)
     minus = tree.mul(tree.num(-1), tree.call(other, argument))
     _node(line, place, minus, "sin/cos", 1.7)
-    for angle in line.names.angles:
+    for angle in (*line.names.angles, *_beside(line, argument)):
         if angle != argument:
             _node(line, place, tree.call(wave.op, angle), "argument", 1.2)
             _node(line, place, tree.call(other, angle), "argument", 2.0)
+
+
+def _beside(line: Line, angle: Node) -> Iterator[Node]:
+    """A sum of angles with one turned the other way, one less, or one more."""
+    terms = angle.args if angle.op == "add" else (angle,)
+    for k, term in enumerate(terms):
+        rest = (*terms[:k], *terms[k + 1 :])
+        yield tree.add(*terms[:k], tree.mul(tree.num(-1), term), *terms[k + 1 :])
+        if rest:
+            yield tree.add(*rest)
+    inside = tree.names(angle)
+    for joint in (f"q{i + 1}" for i in range(line.names.n)):
+        if joint not in inside:
+            yield tree.add(*terms, tree.sym(joint))
+            yield tree.add(*terms, tree.mul(tree.num(-1), tree.sym(joint)))
 
 
 def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
