@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from hand_programs import asked, written
+from test_program_slips import CHRISTOFFEL, ROWS
 
 import kinlab as kl
 
@@ -116,36 +117,6 @@ def f(q, v, a):
     t1 = t1 - h*np.sin(q[1])*(2*v[0]*v[1] + v[1]**2) + m2*c2*9.81*np.cos(q[0] + q[1])
     return np.array([t1 + (m1*c1 + m2*l1)*9.81*np.cos(q[0]), t2])
 """
-SLICES = """
-import numpy as np
-L = np.array([0.5, 0.4, 0.25])
-
-def f(q):
-    phi = np.cumsum(q)
-    J = np.ones((3, 3))
-    for j in range(3):
-        J[0, j] = -np.sum(L[j:]*np.sin(phi[j:]))
-        J[1, j] = np.sum(L[j:]*np.cos(phi[j:]))
-    return J
-"""
-RATES = """
-import numpy as np
-
-def M(q):
-    h = 1.5*0.5*0.2*np.cos(q[1])
-    J = 1.5*0.4**2/3
-    return np.array([[2.0*0.5**2/3 + 1.5*0.5**2 + J + 2*h, J + h], [J + h, J]])
-
-def f(q, v):
-    e = 1e-6
-    D = [(M(q + e*x) - M(q - e*x))/(2*e) for x in np.eye(2)]
-    C = np.zeros((2, 2))
-    for i in range(2):
-        for j in range(2):
-            for k in range(2):
-                C[i, j] += 0.5*(D[k][i, j] + D[j][i, k] - D[i][j, k])*v[k]
-    return C
-"""
 CROSS = """
 import numpy as np
 from math import cos, sin
@@ -165,8 +136,8 @@ PROGRAMS = {
     "space": ("spatial3r", "inverse_dynamics", SPACE),
     "turns": ("planar3r", "jacobian", TURNS),
     "entries": ("planar2r_rods", "inverse_dynamics", ENTRIES),
-    "slices": ("planar3r", "planar_jacobian", SLICES),
-    "rates": ("planar2r_rods", "coriolis_matrix", RATES),
+    "slices": ("planar3r", "planar_jacobian", ROWS),
+    "rates": ("planar2r_rods", "coriolis_matrix", CHRISTOFFEL),
     "cross": ("planar2r", "statics", CROSS),
 }
 FORGOTTEN = [
