@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
@@ -198,19 +199,28 @@ def _of_objects(
     return wide, kept
 
 
-def _counterparts(old: Any, new: Any) -> dict[int, Any]:
-    """For what holds numbers, by identity, what stands for it where it was made anew."""
+def _counterparts(old: Any, new: Any, met: dict[int, Any] | None = None) -> dict[int, Any]:
+    """For what holds numbers, by identity, what stands for it where it was made anew.
+
+    Args:
+        old: what there was.
+        new: what stands for it.
+        met: what is known already: a logger, and what holds itself, leads back to it.
+    """
+    found = {} if met is None else met
     if type(old) is not type(new) or isinstance(old, int | float | str | type) or callable(old):
-        return {}
-    found = {id(old): new}
+        return found
+    if id(old) in found or isinstance(old, logging.Logger):
+        return found
+    found[id(old)] = new
     if isinstance(old, list | tuple):
         for one, other in zip(old, new, strict=False):
-            found |= _counterparts(one, other)
+            _counterparts(one, other, found)
     elif isinstance(old, dict):
         for key in old.keys() & new.keys():
-            found |= _counterparts(old[key], new[key])
+            _counterparts(old[key], new[key], found)
     elif hasattr(old, "__dict__"):
-        found |= _counterparts(vars(old), vars(new))
+        _counterparts(vars(old), vars(new), found)
     return found
 
 
