@@ -216,6 +216,9 @@ def _all_read(program: OwnProgram) -> bool:
         for base in owner.__mro__:
             if written(base, program.modules) and base not in own:
                 return False
+        fields = getattr(owner, "__dataclass_fields__", {}).values()
+        if any(isinstance(one.default_factory, FunctionType) for one in fields):
+            return False
         for name in ("__new__", "__init__", "__post_init__"):
             kept = vars(owner).get(name)
             method = getattr(kept, "__func__", kept)
@@ -305,7 +308,7 @@ class _Reader:
                 return None
             if self._may_stay(name, owner) and not self._harmless_all(one):
                 continue
-            tree = with_defaults_inside(tree, one)
+            tree = with_defaults_inside(_with_given(tree, one), one)
             self.parts[one] = OwnFunction(name, tree, one, owner, [(owner, name)], kept)
             given = [line for line in tree.body if isinstance(line, ByDefault)]
             used = {*names(ast.Module([*given], []), ast.Load)} & one.__globals__.keys()
@@ -411,6 +414,25 @@ def _is_record(value: Any) -> bool:
 
 def _is_class(value: Any) -> bool:
     return isinstance(value, type)
+
+
+def _with_given(tree: ast.FunctionDef, function: FunctionType) -> ast.FunctionDef:
+    """A definition with what a partial gives it by name, where that has a name in the module."""
+    values, asked = function.__defaults__ or (), [*tree.args.posonlyargs, *tree.args.args]
+    if len(values) <= len(tree.args.defaults) or len(values) > len(asked):
+        return tree
+    known = {id(value): name for name, value in function.__globals__.items()}
+    if any(not isinstance(x, int | float) and id(x) not in known for x in values):
+        return tree
+    own = copy.copy(tree)
+    own.args = copy.copy(tree.args)
+    own.args.defaults = [
+        ast.copy_location(ast.Constant(x), tree)
+        if isinstance(x, int | float)
+        else ast.copy_location(ast.Name(known[id(x)], ast.Load()), tree)
+        for x in values
+    ]
+    return own
 
 
 def _unwrapped(held: Any) -> tuple[FunctionType | None, type]:

@@ -16,7 +16,7 @@ from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.data import is_object
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number, paired
-from kinlab.doctor.program.read import read
+from kinlab.doctor.program.read import OwnFunction, read
 from kinlab.doctor.program.trial import Trial
 
 ANGLES = ("sin", "cos", "tan")
@@ -112,6 +112,7 @@ class Scope:
         for held in (*trial.bound, *(trial.space[name] for name in kept)):
             self._of_object(held)
         for kind in trial.classes.values():
+            self._of_object(kind)
             for name, told in getattr(kind, "__annotations__", {}).items():
                 if told in (float, "float"):
                     self.attributes.setdefault(name, ())
@@ -158,6 +159,7 @@ class Scope:
                 for k in range(shape[0]):
                     entry = ast.Subscript(copied(plain), ast.Constant(k), ast.Load())
                     self.pieces.setdefault((), {}).setdefault(ast.unparse(entry), entry)
+        self._of_its_object(parts[part])
         self._of_siblings(trial)
         self._of_idle_joints(trial, part)
         self._of_idle_functions(trial, part)
@@ -170,6 +172,18 @@ class Scope:
                 counted = ast.Name(counter, ast.Load())
                 entry = ast.Subscript(ast.Name(name, ast.Load()), counted, ast.Load())
                 self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+
+    def _of_its_object(self, method: OwnFunction) -> None:
+        """What the object of a method has, where the method asks it for no number."""
+        if method.owner is None or not method.tree.args.args or method.kept is staticmethod:
+            return
+        own = ast.Name(method.tree.args.args[0].arg, ast.Load())
+        known = {text for some in self.pieces.values() for text in some}
+        if any(text.startswith(f"{own.id}.") for text in known):
+            return
+        for name, shape in self.attributes.items():
+            one = ast.Attribute(own, name, ast.Load())
+            self.pieces.setdefault(shape, {}).setdefault(ast.unparse(one), one)
 
     def _of_siblings(self, trial: Trial) -> None:
         """What other objects of the module have where one has it: ``two.m`` beside ``one.m``."""
@@ -224,6 +238,22 @@ class Scope:
             for given in here:
                 call = ast.Call(ast.Name(name, ast.Load()), [ast.Name(given, ast.Load())], [])
                 self.idle += [(shape, call) for shape in sorted(shapes)]
+        rows = [one for one in self.unused if len(self.shapes[one]) == 1]
+        counters = [ast.Name(one, ast.Load()) for one in self.counters]
+        entries = [
+            ast.Subscript(ast.Name(row, ast.Load()), counter, ast.Load())
+            for row in sorted(rows)
+            for counter in counters
+        ]
+        for name, count in self.functions.items() if entries else ():
+            calls = (x for x in every if called(x) == name)
+            shape = next(map(self.observed.shape, calls), None) or _MATRIX
+            for k in range(count if len(shape) == 2 else 0):
+                for entry in entries:
+                    args: list[ast.expr] = [ast.Constant(0)] * k
+                    args += [entry, *[ast.Constant(0)] * (count - k - 1)]
+                    call = ast.Call(ast.Name(name, ast.Load()), args, [])
+                    self.idle.append((shape, call))
 
     def _of_addends(self, statement: ast.Assign) -> None:
         known = self.addends.setdefault(_stem([statement]), set())
@@ -249,6 +279,7 @@ class Scope:
         if shape is None:
             return
         owner = node.value if isinstance(node, ast.Attribute) and node.attr != "T" else None
+        owner = owner.value if isinstance(owner, ast.Subscript) else owner
         if isinstance(owner, ast.Name) and owner.id not in ("np", "math", "numpy"):
             assert isinstance(node, ast.Attribute)
             self.attributes.setdefault(node.attr, shape)
@@ -256,11 +287,14 @@ class Scope:
         if isinstance(key, ast.Constant) and isinstance(key.value, str):
             self.keys.setdefault(key.value, shape)
 
-    def _of_object(self, held: object) -> None:
-        if isinstance(held, list | tuple) and held and not _is_number(held[0]):
-            self._of_object(held[0])
+    def _of_object(self, held: Any) -> None:
+        named = isinstance(held, tuple) and hasattr(held, "_asdict")
+        first = held[0] if isinstance(held, list | tuple) and held and not named else 0.0
+        if not _is_number(first) or isinstance(first, tuple):
+            self._of_object(first)
         own = self.keys if isinstance(held, dict) else self.attributes
         members = held if isinstance(held, dict) else getattr(held, "__dict__", {})
+        members = held._asdict() if named else members
         for name, value in members.items():
             if isinstance(name, str) and name[:1] != "_" and _is_number(value):
                 known = _shape(value)
@@ -296,20 +330,23 @@ class Scope:
     def _of_the_object(self, node: ast.expr, shape: Shape) -> Iterator[ast.expr]:
         """What else an object or a dictionary has: ``link.length`` beside ``link.centre``."""
         if isinstance(node, ast.Attribute) and node.attr in self.attributes:
-            owner = node.value
-            owners = [owner]
-            if isinstance(owner, ast.Subscript) and isinstance(owner.slice, ast.Name):
-                counters = (ast.Name(one, ast.Load()) for one in self.counters)
-                owners = [ast.Subscript(owner.value, one, ast.Load()) for one in counters]
-            for one in owners:
+            for one in self._owners(node.value):
                 for name, own in self.attributes.items():
                     if own == shape:
                         yield ast.Attribute(copied(one), name, ast.Load())
         key = node.slice if isinstance(node, ast.Subscript) else None
         if isinstance(node, ast.Subscript) and isinstance(key, ast.Constant):
-            for name, own in self.keys.items() if key.value in self.keys else ():
-                if own == shape and name != key.value:
-                    yield ast.Subscript(copied(node.value), ast.Constant(name), ast.Load())
+            for one in self._owners(node.value) if key.value in self.keys else ():
+                for name, own in self.keys.items():
+                    if own == shape and (name != key.value or one is not node.value):
+                        yield ast.Subscript(copied(one), ast.Constant(name), ast.Load())
+
+    def _owners(self, owner: ast.expr) -> list[ast.expr]:
+        """An object or a dictionary, or those that counters count: ``links[k]`` of ``links[i]``."""
+        if not isinstance(owner, ast.Subscript) or not isinstance(owner.slice, ast.Name):
+            return [owner]
+        counters = (ast.Name(one, ast.Load()) for one in self.counters)
+        return [owner, *(ast.Subscript(owner.value, one, ast.Load()) for one in counters)]
 
     def dear(self, node: ast.expr) -> float:
         """What a piece costs more than one that is used nowhere."""
@@ -444,6 +481,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     entry = isinstance(parent, ast.List | ast.Tuple)
     whole = isinstance(parent, ast.Assign | ast.AugAssign | ast.Return) or entry
     whole = whole or (isinstance(parent, ast.IfExp) and here.field != "test")
+    kept = isinstance(parent, ast.Call) and called(parent) in ("append", "float")
+    listed = whole or kept or here.field == "elt"  # of ``[x for ..]``
     trig = isinstance(parent, ast.Call) and called(parent) in ANGLES
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
@@ -455,7 +494,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         cost = 1.06 if alone else 1.0 if first or entry else 1.03 if whole else 1.1
         yield here.instead(ast.UnaryOp(ast.USub(), node), "sign", cost)
     below = isinstance(op, ast.Div) and here.field == "right"
-    if (summand or whole or trig or below) and not isinstance(node, ast.Constant):
+    if (summand or listed or trig or below) and not isinstance(node, ast.Constant):
         passed = isinstance(parent, ast.Return) and not isinstance(node, ast.BinOp)
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
@@ -471,7 +510,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
                 yield here.instead(scalar, "name", 1.07 + scope.dear(scalar))
         return
     if shape == ():
-        yield from _scalars(here, scope, summand or whole or below, operated)
+        yield from _scalars(here, scope, summand or listed or below, operated)
         if scope.root is not None and _has_squares(node):
             yield here.instead(ast.Call(scope.root, [node], []), "function", 1.16)
         if isinstance(node, ast.Name) and node.id in scope.arcs and (whole or summand):

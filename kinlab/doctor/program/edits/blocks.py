@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, Scope, Turned
@@ -30,6 +30,7 @@ def of_blocks(
                 yield from _loops(part, node, name, block)
                 yield from _twice(part, node, name, block)
                 yield from _beside(part, node, name, block, scope)
+                yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
 
@@ -41,7 +42,7 @@ def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Itera
             moved = block[i]
             if isinstance(block[j], ast.Return):
                 continue
-            if not (_sets(moved) & _uses(block[j]) or _uses(moved) & _sets(block[j])):
+            if not (_fills(moved) & _reads(block[j]) or _reads(moved) & _fills(block[j])):
                 continue
             later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
             change = FieldChange(node, name, later)
@@ -76,7 +77,7 @@ def _loops(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterat
             yield ProgramEdit(part, changes, kind, cost, moved)
         after = block[k + 1] if k + 1 < len(block) else None
         before = block[k - 1] if k else None
-        if isinstance(after, _PLAIN) and _uses(after) & _sets(loop):
+        if isinstance(after, _PLAIN) and _uses(after) & _fills(loop):
             changes = (
                 FieldChange(loop, "body", [*loop.body, after]),
                 FieldChange(node, name, [*block[: k + 1], *block[k + 2 :]]),
@@ -173,6 +174,7 @@ def _beside(
         others = [OtherAxis(scope.shapes).visit(copied(line))]
         if isinstance(target, ast.Subscript):
             others += [*_of_other_entries(line, scope)]
+            others += [_Stepped(step, scope.shapes).visit(copied(line)) for step in (1, -1)]
         for other in others:
             own = next(iter(_targets(other)))
             text = ast.unparse(own)
@@ -183,6 +185,66 @@ def _beside(
                 turned = copied(other)
                 turned.value = ast.UnaryOp(ast.USub(), turned.value)
                 yield _missing(part, node, name, block, at + 1, turned, 1.16)
+
+
+def _of_unused(
+    part: int,
+    tree: ast.FunctionDef,
+    node: ast.AST,
+    name: str,
+    block: list[ast.stmt],
+    scope: Scope,
+) -> Iterator[ProgramEdit]:
+    """The last column of a transform, of what nothing else uses: ``T[:3, 3] = x, y, z``."""
+    known = scope.shapes
+    idle = [one for one in known if one in scope.unused]
+    given = [one.arg for one in tree.args.args if one.arg not in _uses(tree)]
+    scalars: list[ast.expr] = [ast.Name(x, ast.Load()) for x in given if known.get(x, ()) == ()]
+    columns: list[ast.expr] = []
+    if len(scalars) == _COLUMN[0]:
+        columns.append(ast.Tuple(scalars, ast.Load()))
+    for one in idle:
+        if known[one] == _COLUMN:
+            vector = ast.Name(one, ast.Load())
+            columns.append(vector)
+            for other in (x for x in known if known[x] == _COLUMN and x != one):
+                if scope.cross is not None:
+                    for both in ((one, other), (other, one)):
+                        args: list[ast.expr] = [ast.Name(x, ast.Load()) for x in both]
+                        columns.append(ast.Call(scope.cross, args, []))
+    for at, line in enumerate(block) if columns else ():
+        target = next(iter(_targets(line)), None)
+        if isinstance(target, ast.Name) and known.get(target.id) == _POSE:
+            where = ast.parse(f"{target.id}[:3, 3] = 0").body[0]
+            assert isinstance(where, ast.Assign)
+            for column in columns:
+                new = copied(where)
+                new.value = column
+                yield _missing(part, node, name, block, at + 1, new, 1.1)
+
+
+_COLUMN, _POSE = (3,), (4, 4)
+
+
+class _Stepped(ast.NodeTransformer):
+    """Of a joint, or a link, what is there of the next one, or of the one before."""
+
+    def __init__(self, step: int, known: Container[str]) -> None:
+        self.step, self.known = step, known
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        stem = node.id.rstrip("0123456789")
+        digits = node.id[len(stem) :]
+        name = f"{stem}{int(digits) + self.step}" if digits else ""
+        return ast.Name(name, node.ctx) if name in self.known else node
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        node.value = self.visit(node.value)
+        keys = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        for key in keys:
+            if isinstance(key, ast.Constant) and type(key.value) is int:
+                key.value = max(key.value + self.step, 0)
+        return node
 
 
 def _targets(line: ast.stmt) -> list[ast.expr]:
@@ -242,3 +304,25 @@ def _sets(node: ast.AST) -> set[str]:
 
 def _uses(node: ast.AST) -> set[str]:
     return {*names(node, ast.Load)}
+
+
+def _fills(node: ast.AST) -> set[str]:
+    """The names that are set, and those of what is written into: ``S[:3, 3] = v``."""
+    return _sets(node) | {one.id for one in _written_into(node)}
+
+
+def _reads(node: ast.AST) -> set[str]:
+    """The names that are used for more than to write into what they stand for."""
+    filled = {id(one) for one in _written_into(node)}
+    found = [one for one in nodes(node) if isinstance(one, ast.Name) and id(one) not in filled]
+    return {one.id for one in found if isinstance(one.ctx, ast.Load)}
+
+
+def _written_into(node: ast.AST) -> Iterator[ast.Name]:
+    for one in nodes(node):
+        root: ast.AST = one
+        while isinstance(root, ast.Subscript):
+            root = root.value
+        stored = root is not one and isinstance(getattr(one, "ctx", None), ast.Store)
+        if stored and isinstance(root, ast.Name):
+            yield root

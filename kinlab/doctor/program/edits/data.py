@@ -280,6 +280,9 @@ def leaves(trial: Trial) -> Iterator[NumberPlace]:
         yield from leaves_of(trial, name)
     for held in trial.bound:
         yield from _below(held, "self", ())
+    for owner in trial.classes.values():
+        if owner.__name__ not in trial.program.data:
+            yield from _below(owner, owner.__name__, ())
 
 
 def leaves_of(trial: Trial, name: str) -> Iterator[NumberPlace]:

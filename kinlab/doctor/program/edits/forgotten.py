@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import ANGLES, OtherAxis, Scope, Turned, summed
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _FORCES = ("f", "F")
 """How names of forces begin."""
@@ -30,6 +30,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     op = parent.op if isinstance(parent, ast.BinOp) else None
     if shape == ():
+        if isinstance(parent, ast.List | ast.Tuple) or _is_entry(parent):
+            yield here.instead(number(0.0), "extra term", 1.18)
         if isinstance(op, _SUMS):
             yield from _with_vectors(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
@@ -39,6 +41,10 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     if isinstance(op, _SUMS):
         yield from _with_angles(here, scope)
+    if scope.has_numpy and len(shape) == 1 and isinstance(node, ast.Name | ast.Subscript):
+        added = isinstance(parent, _SET) or isinstance(op, ast.Mult)
+        outer = ast.Attribute(ast.Name("np", ast.Load()), "outer", ast.Load())
+        yield from [here.instead(ast.Call(outer, [node] * 2, []), "product", 1.1)] * added
     if isinstance(op, ast.Mult) and isinstance(node, ast.BinOp):
         yield from _other_axes(here, scope, shape)
     if isinstance(parent, ast.Call) and here.holder is parent.args:
@@ -49,6 +55,11 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _moments(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
+
+
+def _is_entry(parent: ast.AST) -> bool:
+    """Whether it sets an entry of a vector or a matrix, which may be 0."""
+    return isinstance(parent, ast.Assign) and isinstance(parent.targets[0], ast.Subscript)
 
 
 def _begins(node: ast.expr, letters: tuple[str, ...]) -> bool:

@@ -50,6 +50,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(new, "parentheses", 1.09)
         for new in chains.multiplied(node):
             yield here.instead(new, "operator", 1.12)
+        if all(len(observed.shape(side) or ()) == 2 for side in (left, right)):
+            yield here.within(node, "op", ast.MatMult(), "operator", 1.12)
         for new in chains.squared(node):
             yield here.instead(new, "parentheses", 1.13)
         factor = isinstance(here.parent, ast.BinOp) and not isinstance(here.parent.op, ast.Pow)
@@ -406,10 +408,13 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             yield here.within(node, "attr", other, "function", 1.05)
     if not isinstance(node.value, ast.Name | ast.Subscript | ast.Attribute):
         return
+    product = isinstance(getattr(here.parent, "op", None), ast.MatMult)
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
             cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
             yield here.within(node, "attr", other, "name", cost)
+        elif other != node.attr and product:
+            yield here.within(node, "attr", other, "name", 1.15)
     for _text, piece in scope.simple(shape):
         if isinstance(piece, ast.Attribute) and ast.dump(piece.value) != ast.dump(node.value):
             cost = 1.12 if piece.attr == node.attr else 1.15  # of another object

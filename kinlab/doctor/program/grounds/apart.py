@@ -194,25 +194,30 @@ class _Reader:
         self.fitting: set[Any] = set()
         self.odd = False
         self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
-        unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
+        left_of: list[tuple[ProgramNumber, _Label, bool, list[int]]] = []
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
+            place, own = one.place, may_be_of_one_arm(one.value)
             may = self._alike(one) if one.value else []
-            own = may_be_of_one_arm(one.value)
             if may and (one.alone or own or one.given):
-                sure, left = self._as_called(may, label, one.place.part == DATA)
-                if sure:
-                    self.items.append(_Item(tuple(((one, k),) for k in left), not label[2]))
-                else:
-                    key = (label[:2], label[2][1:]) if one.alone else ()
-                    unknown.setdefault((key, one.value, own), []).append((one, left))
-            elif own or (may and id(one.place.node) in summed):
+                left_of.append((one, label, *self._as_called(may, label, place.part == DATA)))
+            elif own or (may and id(place.node) in summed):
                 self.whole = False
             elif may:
-                if not isinstance(one.place.value, int):  # a factor, a power
+                if not isinstance(place.value, int):  # a factor, a power
                     plain.append(one.value)
-            elif one.alone and isinstance(one.place.value, float) and not one.place.place:
+            elif one.alone and isinstance(place.value, float) and not place.place:
                 self.whole = self.whole and named_at_will(one.value)
+        unknown: dict[Any, list[tuple[ProgramNumber, list[int]]]] = {}
+        for one, label, sure, left in left_of:
+            if sure:
+                others = {k for other, *_rest, some in left_of if other is not one for k in some}
+                some = self._alone(label, left, [k for k in self._alike(one) if k not in others])
+                self.items.append(_Item(tuple(((one, k),) for k in some), not label[2]))
+            else:
+                key = (label[:2], label[2][1:]) if one.alone else ()
+                own = may_be_of_one_arm(one.value)
+                unknown.setdefault((key, one.value, own), []).append((one, left))
         unsure = 0
         for (*_key, own), group in unknown.items():
             kinds = [*self._kinds(group)]
@@ -318,6 +323,25 @@ class _Reader:
                 self.tied[self.cells[k].which] = firsts[self.cells[k].which[0]]
             left = [k for k in left if self.cells[k].which in firsts.values()]
         return sure, left
+
+    def _alone(self, label: _Label, left: list[int], free: list[int]) -> list[int]:
+        """Of the cells that a number may be one, if it is all: a point mass is at a link's end.
+
+        Args:
+            label: what it is called.
+            left: what it may be as it is called.
+            free: what it may be, and no other number is.
+        """
+        link, first = self._link(label), self.cells[left[0]]
+        if not {*left} <= {*free} or (link is None and label[2]):
+            return left
+        lengths = [k for k in free if self.cells[k].kind in ("length", "centre")]
+        some = {*left, *(k for k in lengths if link in (None, *self.cells[k].links))}
+        if first.kind not in ("length", "centre") or len({self.cells[k].value for k in some}) > 1:
+            return left
+        for k in some:
+            self.tied.setdefault(self.cells[k].which, first.which)
+        return left[:1]
 
     def _again(self, k: int, may: list[int]) -> bool:
         """Whether a moment of inertia is that of a cell before."""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.operators import SIZES
@@ -24,7 +24,7 @@ from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import attributes, home
 from kinlab.doctor.program.places import DATA, ProgramEdit, called
 from kinlab.doctor.program.read import of_numbers
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.errors import KinlabError, already_said
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.robot import Robot
@@ -143,9 +143,10 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
 
 def holds_an_arm(trial: Trial) -> bool:
     """Whether a program asks an arm itself, or this package, where no other can be put."""
-    used = {name for tree in trial.trees for name in names(tree)}
+    used = {name for tree in trial.trees for name in named_in(tree)}
     held = [value for name, value in trial.program.space.items() if name in used]
-    held += [x for one in trial.program.bound for x in attributes(one).values()]
+    kept = [attributes(one) for one in (*held, *trial.program.bound)]
+    held += [x for of in kept for name, x in of.items() if name in used]
     return any(home(x) in ("kinlab", "pinocchio") for x in held)
 
 

@@ -198,6 +198,8 @@ def registers(owner: type) -> bool:
 
 
 _MAKING = ("__new__", "__init__", "__prepare__")
+_BEFORE = ("__init__", "__post_init__")
+"""Methods that have run when there is an object."""
 _STANDARD = ("abc", "enum", "typing", "dataclasses")
 
 
@@ -248,7 +250,8 @@ def alike(one: Any, other: Any, depth: int = 6) -> bool:
         if type(one).__name__ != type(other).__name__:
             return False
         if not attributes(one):
-            return bool(one == other)
+            plain = getattr(type(one), "__eq__", None) is object.__eq__
+            return plain or bool(one == other)
         one, other = attributes(one), attributes(other)
     if not isinstance(other, dict) or one.keys() != other.keys():
         return False
@@ -301,12 +304,12 @@ def harmless(value: Any, modules: frozenset[str | None], depth: int = _DEEP) -> 
         return of in modules or _arithmetic(of or "")
     if written(type(value), modules):
         held = [*attributes(value).values()]
-        for method in vars(type(value)).values():
-            if not isinstance(method, FunctionType):
-                continue
+        for name, method in vars(type(value)).items():
+            if not isinstance(method, FunctionType) or name[:2] != "__" or name in _BEFORE:
+                continue  # the object is made; other methods are asked for where they are called
             space = method.__globals__
             if space.get("__name__") != "dataclasses":  # with what one prints itself
-                held += [space.get(name) for name in used_in(method.__code__)]
+                held += [space.get(used) for used in used_in(method.__code__)]
         return depth > 0 and all(harmless(one, modules, depth - 1) for one in held)
     described = isinstance(value, Robot | DHTable | DHLink)  # asked for its numbers
     return described or _arithmetic(type(value).__module__ or "")
