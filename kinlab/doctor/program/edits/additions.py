@@ -138,6 +138,7 @@ class Scope:
         self.arcs, self.sines = _set_by(tree, ARCS), _set_by(tree, ANGLES)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
+        self.constants = {n for n, x in trial.program.space.items() if isinstance(x, float)}
         for name, value in trial.program.space.items():
             if name[:1] != "_" and _is_number(value):
                 known = _shape(value)
@@ -694,7 +695,8 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
         if isinstance(piece, ast.List | ast.Tuple):
             continue  # what an array is made of is no term of it
         used = not isinstance(piece, ast.BinOp) and scope.dear(piece)
-        beside = entry and used and not _of_a_kind(piece, node)
+        known = {text, own} <= scope.constants
+        beside = entry and used and not known and not _of_a_kind(piece, node)
         if beside and text not in _entries_beside(here):
             continue
         dear = min(scope.dear(piece), _BESIDE if text in siblings else 1.0)
@@ -845,14 +847,20 @@ def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:
 
 
 def _entries_of_the_row(node: ast.expr, observed: Observed) -> Iterator[ast.expr]:
-    """The other entries of a row of which one is used: ``v[1]`` beside ``v[0]``."""
-    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
-        return
-    if type(node.slice.value) is not int:
+    """The other entries of a row of which one is used, the other columns: ``T[:3, 3]``."""
+    if not isinstance(node, ast.Subscript):
         return
     sizes = observed.shape(node.value) or ()
-    for k in range(sizes[0] if len(sizes) == 1 and sizes[0] <= _SHORT else 0):
-        yield ast.Subscript(copied(node.value), ast.Constant(k), ast.Load())
+    key = node.slice
+    if isinstance(key, ast.Constant) and type(key.value) is int:
+        for k in range(sizes[0] if len(sizes) == 1 and sizes[0] <= _SHORT else 0):
+            yield ast.Subscript(copied(node.value), ast.Constant(k), ast.Load())
+    elif isinstance(key, ast.Tuple) and isinstance(key.elts[0], ast.Slice) and sizes == (4, 4):
+        column = key.elts[-1]
+        if isinstance(column, ast.Constant) and type(column.value) is int:
+            for k in range(sizes[1]):
+                other = ast.Tuple([copied(key.elts[0]), ast.Constant(k)], ast.Load())
+                yield ast.Subscript(copied(node.value), other, ast.Load())
 
 
 def _entry_of(node: ast.Subscript, name: str) -> int | None:

@@ -19,6 +19,8 @@ _ARMS = ("p", "P", "r", "c", "C", "l", "d", "s", "o", "v")
 """How names of what leads from one point to another begin, and of velocities."""
 _NO_ARMS = ("R", "T", "I", "J", "A", "E")
 """How names of matrices begin that are no arm's."""
+_ROTATIONS = ("R", "r")
+"""How names of rotation matrices begin."""
 _VECTOR, _TENSOR = (3,), (3, 3)
 _FEW = 8
 """Angular velocities that are tried; twice as many arms."""
@@ -46,8 +48,9 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
     factor = isinstance(op, ast.MatMult)
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
         yield from _of_list_from_there_on(here, scope)
-    if shape == _TENSOR and term:
+    if shape == _TENSOR and (term or isinstance(parent, ast.List | ast.Tuple)):
         yield from _parallel_axes_of_tensors(here, scope)
+        yield from _turned_tensors(here, scope)
     sum_ = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
     sum_ = sum_ and here.field != "right"  # which stands in parentheses
     if (term or factor) and not sum_:
@@ -117,6 +120,18 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
             if first and isinstance(one, ast.BinOp):  # as it is typed: m*S @ S.T
                 times = ast.BinOp(ast.BinOp(mass, ast.Mult(), one.left), one.op, one.right)
             yield here.instead(ast.BinOp(node, ast.Add(), times), "missing term", 1.14)
+
+
+def _turned_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A tensor in other axes: ``R @ I @ R.T`` for ``I``."""
+    rotations = [one for _text, one in scope.simple(_TENSOR) if _begins(one, _ROTATIONS)]
+    if isinstance(here.node, ast.BinOp) or not _begins(here.node, _MOMENTS):
+        return
+    for one in rotations[:_FEW]:
+        turned = ast.Attribute(one, "T", ast.Load())
+        for first, last, cost in ((one, turned, 1.04), (turned, one, 1.06)):
+            inner = ast.BinOp(first, ast.MatMult(), here.node)
+            yield here.instead(ast.BinOp(inner, ast.MatMult(), last), "missing matrix", cost)
 
 
 def _spread(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
@@ -290,6 +305,11 @@ def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.e
                         continue
                     if ast.dump(other.slice) == ast.dump(scalar.slice):
                         yield ast.BinOp(other, node.op, vector)
+            elif isinstance(scalar, ast.Name):  # z*rate beside z*rate2
+                for piece in scope.pieces_here(_VECTOR).values():
+                    product = isinstance(piece, ast.BinOp) and isinstance(piece.op, ast.Mult)
+                    if product and ast.unparse(vector) in map(ast.unparse, factors(piece)):
+                        yield piece
 
 
 def _is_turned(node: ast.expr) -> bool:

@@ -39,6 +39,10 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
         return
+    if shape == _VECTOR and scope.has_numpy and isinstance(parent, ast.List | ast.Tuple):
+        zeros = ast.Attribute(ast.Name("np", ast.Load()), "zeros", ast.Load())
+        nothing = ast.Call(zeros, [ast.Constant(_VECTOR[0])], [])
+        yield here.instead(nothing, "extra term", 1.15)
     if isinstance(op, _SUMS):
         yield from _with_angles(here, scope)
     if scope.has_numpy and len(shape) == 1 and isinstance(node, ast.Name | ast.Subscript):

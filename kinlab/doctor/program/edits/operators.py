@@ -85,6 +85,7 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(kept, "extra factor", cost + _FLAT * alone)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            yield from _in_turn(here)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
                 yield here.instead(last, "order", 1.07)
@@ -130,6 +131,19 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
 
+def _in_turn(here: Here) -> Iterator[ProgramEdit]:
+    """A product of several matrices from another one on, or from the last to the first."""
+    parent = here.parent
+    if isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult):
+        return
+    every = chains.members(chains.chain(here.node, (ast.MatMult,)))
+    if len(every) > _PAIR:
+        orders = [[*every[k:], *every[:k]] for k in range(1, len(every))]
+        for first, *others in (*orders, every[::-1]):
+            by = [(ast.MatMult(), one) for one in others]
+            yield here.instead(chains.joined(first, by), "order", 1.1)
+
+
 def _turned(here: Here) -> Iterator[ProgramEdit]:
     """R I R.T for R.T I R."""
     node = here.node
@@ -163,6 +177,10 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
     if name == "range":
         yield from _range(here, scope)
     yield from _other_function(here, name)
+    if isinstance(node.func, ast.Attribute) and name in ("append", "insert") and node.args:
+        first = [ast.Constant(0)] if name == "append" else []
+        method = ast.Attribute(node.func.value, "insert" if first else "append", ast.Load())
+        yield here.instead(ast.Call(method, [*first, node.args[-1]], []), "order", 1.12)
     if isinstance(node.func, ast.Name):
         for other, count in scope.functions.items():
             if other != name and count == len(node.args) and count == scope.functions.get(name):
@@ -204,7 +222,8 @@ _FAMILIES = (
     ("dot", "cross", "outer", "multiply"),
     ("arcsin", "arccos", "arctan"),
     ("asin", "acos", "atan"),
-    ("hstack", "vstack"),
+    ("hstack", "vstack", "column_stack"),
+    ("tril", "triu"),
     ("radians", "degrees"),
     ("deg2rad", "rad2deg"),
     ("inv", "pinv"),
@@ -458,6 +477,7 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
     yield from _swapped(here, here.node)
+    yield from _across(here, elements)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
@@ -465,6 +485,15 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
+
+
+def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """What is written as rows, with columns for rows."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    if len(entries) == len(rows) > 1 and all(len(one) == len(rows) for one in entries):
+        columns = [ast.List([*one], ast.Load()) for one in zip(*entries, strict=True)]
+        if ast.dump(ast.List([*columns])) != ast.dump(ast.List([*rows])):
+            yield here.within(here.node, "elts", columns, "transposed", 1.1)
 
 
 def _opposite(node: ast.expr) -> ast.expr:
