@@ -485,6 +485,8 @@ def _from_source(function: FunctionType) -> ast.FunctionDef | None:
 
 def _out_of_reach(value: Any) -> Any:
     """Data of the module that the program does not use: an edit that names them changes nothing."""
+    if isinstance(value, np.ndarray) and _numeric(value):
+        return value.copy()
     if isinstance(value, np.ndarray):
         view = value.view()
         view.flags.writeable = False

@@ -143,6 +143,7 @@ class Trial:
     def _keep(self) -> None:
         """Keeps hold of the data that edited runs may write into."""
         names = [*self.program.data, *sorted(self.program.held), *self.sets]
+        names += [name for name, x in self.space.items() if isinstance(x, np.ndarray)]  # idle ones
         held = [self.space[name] for name in dict.fromkeys(names) if name in self.space]
         owned = [value for one in self.classes.values() for value in vars(one).values()]
         self._contents = Contents([*held, *self.bound, *owned])

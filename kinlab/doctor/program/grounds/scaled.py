@@ -267,7 +267,7 @@ def _defaults(trial: Trial) -> Iterator[NumberPlace]:
 def unused(trial: Trial) -> list[str]:
     """Names of numbers of the module that a slip has left unused: a repair may use them again."""
     used = {*trial.program.data, *trial.sets}
-    kinds = (int, float, list, tuple)
+    kinds = (int, float, list, tuple, np.ndarray)
     known = [(name, x) for name, x in trial.program.space.items() if type(x) in kinds]
     return [name for name, x in known if name not in used and of_numbers(x)]
 

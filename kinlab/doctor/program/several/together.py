@@ -29,6 +29,8 @@ _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
 """Share of the edits that lanes must follow, for what they tell to be of use."""
+_WATCHED = 2
+"""States at which that is looked at."""
 _WITHIN = 200
 """Edits of which one may be in the other."""
 _THREE, _KEPT = 600, 6_000_000
@@ -93,11 +95,12 @@ class TriedTogether:
     def _follows(self, count: int) -> bool:
         """Whether most edits do in lanes what they do alone: others are left out."""
         alone = np.arange(_NONE, count)[:, None]
-        rows = self._rows(alone, None)
+        rows = self._rows(alone, max(self.count, _WATCHED))
         if rows is None or not np.abs(rows[0]).max() <= self.known.near:
             return False
-        gap = np.abs(rows[1:] - self.known.rows[:count]).max(axis=1)
-        size = np.maximum(1.0, np.abs(self.known.rows[:count]).max(axis=1))
+        known = self.known.rows[:count, : rows.shape[1]]
+        gap = np.abs(rows[1:] - known).max(axis=1)
+        size = np.maximum(1.0, np.abs(known).max(axis=1))
         placed = np.isin(np.arange(count), [*self.lanes.placed])
         self.sound = np.flatnonzero((gap <= self.known.near * size) & placed)
         self.within = self.lanes.woven.inside()
@@ -167,13 +170,15 @@ class TriedTogether:
                 yield rank, chosen
 
     def _possible_pairs(self) -> Iterator[tuple[int, Any]]:
-        """Pairs of which nothing speaks against them, beyond the likeliest; the likeliest first."""
+        """Pairs of which nothing speaks against them, beyond the likeliest; the likeliest first.
+
+        Those of a block stay together: a run of few edits takes less than one of many.
+        """
         every = [self._apart(one, other) for rank, one, other in self._blocks() if rank > _FIRST]
         if not every:
             return
         pairs = np.concatenate(every)
         pairs = pairs[self._possible_of(pairs)]
-        pairs = pairs[np.argsort((pairs + 1).prod(axis=1), kind="stable")]
         for start in range(0, len(pairs), _BLOCK**2):
             yield _FIRST + 1 + start, pairs[start : start + _BLOCK**2]
 
