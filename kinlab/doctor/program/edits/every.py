@@ -114,7 +114,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
         yield from of_comparisons(here)
     counts = whole and isinstance(node, ast.Name | ast.BinOp)
     if index or counts:
-        if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not shifted(node):
+        inner = isinstance(here.parent, ast.BinOp) and shifted(here.parent)
+        if not isinstance(node, ast.Constant | ast.Slice | ast.Tuple) and not inner:
             limits = isinstance(here.parent, ast.Compare) and not _equal(here.parent)
             for step in (1, -1):
                 yield here.instead(plus(node, step), "index", 1.25 if limits else 1.1)
