@@ -622,9 +622,11 @@ def searched(robot, quantity, text, beside=1.0):
     return LineSearch(program, Case(**{**vars(case), "hand": hand}), engine + beside, 1e-9)
 
 
-def asked(text, robot, quantity):
-    """What is said of a text, and whether it is right once that stands in it."""
-    found = kl.diagnose(robot, quantity, written(text), samples=20)
+def asked(text, robot, quantity, file=None):
+    """What is said of a text, or of a file of it, and whether it is right once that stands in it."""
+    if file is not None:
+        file.write_text(text)
+    found = kl.diagnose(robot, quantity, written(text, file), samples=20)
     assert not found.agrees
     case, engine = prepare(robot, quantity, (), 10, 3)
     states = [*zip(*case.arguments.values(), strict=True)]

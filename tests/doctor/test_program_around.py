@@ -100,6 +100,17 @@ KEPT = {
     "names of the module": (f"{NAMES} = {NUMBERS}", "global l1, m1"),
     "the matrix exponential": ("from scipy.linalg import expm", "expm(np.zeros((2, 2)))"),
     "a logger": ("import logging\nlog = logging.getLogger('hand')", "log.info('q = %s', q)"),
+    "an object that makes its arm": (
+        f"class P:\n    def __init__(self):\n        {NAMES.replace(', ', ', self.').replace('l1', 'self.l1', 1)} = {NUMBERS}\n"
+        "        self.arm = kl.DHTable(name='own', convention='standard', links=links)\n"
+        "    def show(self):\n        import matplotlib.pyplot as plt\n        plt.show()\np = P()",
+        EACH,
+    ),
+    "a class that has the numbers": (
+        "class P:\n    " + EQUAL.replace(", ", "; ") + "\n"
+        "    def table(self):\n        return kl.DHTable('own', 'standard', links)\np = P()",
+        EACH,
+    ),
     "a clock": ("import time", "start = time.perf_counter()"),
 }
 ABOUT = {

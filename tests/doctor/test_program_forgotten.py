@@ -229,19 +229,3 @@ def test_a_function_that_nothing_calls_any_more_is_told() -> None:
     assert kl.diagnose(arm, "jacobian", written(CALLED)).agrees
     found, good = asked(CALLED.replace("R = R @ rx(alpha)", "R = R"), arm, "jacobian")
     assert good, str(found)
-
-
-LOGGED = """
-import logging
-log = logging.getLogger(__name__)
-"""
-
-
-def test_a_logger_which_leads_back_to_itself_ends_nothing() -> None:
-    robot, quantity, text = PROGRAMS["plane"]
-    text = text.replace("import numpy as np\n", "import numpy as np\n" + LOGGED, 1)
-    text = text.replace("    tau = np", "    log.debug('asked')\n    tau = np", 1)
-    assert kl.diagnose(robot, quantity, written(text)).agrees
-    text = text.replace("        Y += fy\n", "").replace("sin(angle), cos", "cos(angle), cos")
-    found, good = asked(text, robot, quantity)
-    assert good, str(found)

@@ -313,7 +313,7 @@ class Scope:
             if seen.whole and seen.shape == () and {*map(float, seen.values)} != {-1.0, 1.0}:
                 return  # it counts, and is no sign
         text = ast.unparse(node)
-        if not inner.isdisjoint(names(node)) or len(text) > _LONG:
+        if not (inner - {*self.counters}).isdisjoint(names(node)) or len(text) > _LONG:
             return
         known = self.pieces.setdefault(seen.shape, {})
         for other in (*_entries_of_the_row(node, observed), *self._of_the_object(node, seen.shape)):

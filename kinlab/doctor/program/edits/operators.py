@@ -493,7 +493,7 @@ def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     if len(entries) == len(rows) > 1 and all(len(one) == len(rows) for one in entries):
         columns = [ast.List([*one], ast.Load()) for one in zip(*entries, strict=True)]
         if ast.dump(ast.List([*columns])) != ast.dump(ast.List([*rows])):
-            cost = 1.2 if len(rows) == _PAIR else 1.3
+            cost = 1.12 if len(rows) == _PAIR else 1.3
             yield here.within(here.node, "elts", columns, "transposed", cost)
 
 
