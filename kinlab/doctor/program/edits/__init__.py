@@ -20,5 +20,7 @@ module            what it holds
                   missing
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
                   numbers
+``scope``         What is known in one part of a program: names, entries, angles, and what may
+                  stand in a place
 ================  =================================================================================
 """

@@ -6,7 +6,8 @@ import ast
 from collections.abc import Container, Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.additions import OtherAxis, Scope, Turned
+from kinlab.doctor.program.edits.additions import OtherAxis
+from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
 from kinlab.doctor.program.trial import FieldChange

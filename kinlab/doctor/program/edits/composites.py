@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from functools import reduce
 
 from kinlab.doctor.bytecode.syntax import factors, nodes
-from kinlab.doctor.program.edits.additions import Scope
+from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 

@@ -14,7 +14,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names
 from kinlab.doctor.program.edits import exchanges
-from kinlab.doctor.program.edits.additions import Scope, as_a_term
+from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
@@ -37,6 +37,7 @@ from kinlab.doctor.program.edits.operators import (
     value_of,
     whole_constant,
 )
+from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.edits.additions import ANGLES, Scope, Turned
+from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
 

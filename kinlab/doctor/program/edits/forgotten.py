@@ -6,7 +6,8 @@ import ast
 from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.additions import ANGLES, OtherAxis, Scope, Turned, summed
+from kinlab.doctor.program.edits.additions import OtherAxis, summed
+from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned
 from kinlab.doctor.program.observed import Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 

@@ -9,8 +9,8 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits import chains
-from kinlab.doctor.program.edits.additions import ANGLES, PI, Scope
 from kinlab.doctor.program.edits.data import measured, moved_on
+from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 

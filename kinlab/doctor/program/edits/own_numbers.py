@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.additions import ANGLES
 from kinlab.doctor.program.edits.data import NumberPlace, measured, numbers
+from kinlab.doctor.program.edits.scope import ANGLES
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, Here, ProgramEdit, called, number, places
 from kinlab.doctor.program.trial import Trial

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, islice, permutations
 
-from kinlab.doctor.program.edits.additions import Scope
+from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number, places
