@@ -270,6 +270,32 @@ def test_one_length_ends_a_link_and_holds_its_point_mass() -> None:
     assert "line" in str(found)
 
 
+UNIT = """
+from math import sin
+
+m1, m2, m3 = 1.0, 1.0, 1.0
+l1, l2, l3 = 1.0, 1.0, 1.0
+A, B, C = (m2 + m3)*l1*l2, m3*l2*l3, m3*l1*l3
+
+def f(q, v):
+    a, b, c = A*sin(q[1]), B*sin(q[2]), C*sin(q[1] + q[2])
+    v12, v123 = v[0] + v[1], v[0] + v[1] + v[2]
+    t1 = -a*(v12**2 - v[0]**2) - b*(v123**2 - v12**2) - c*(v123**2 - v[0]**2)
+    t2 = a*v[0]**2 - b*(v123**2 - v12**2) + c*v[0]**2
+    return [t1, t2, b*v12**2 + c*v[0]**2]
+"""
+
+
+def test_one_number_for_all_of_a_unit_arm_is_each_links_own(tmp_path) -> None:
+    lengths = (0.0, 1.0, 1.0)
+    links = [kl.DHLink(a=a, mass=1.0, com=(1.0, 0, 0)) for a in lengths]
+    arm = kl.DHTable("unit", "modified", links)
+    assert kl.diagnose(arm, "coriolis_torques", written(UNIT)).agrees
+    found, good = asked(UNIT.replace("(m2 + m3)", "m2"), arm, "coriolis_torques", tmp_path / "h.py")
+    assert good, str(found)
+    assert "(m2 + m3)*l1*l2" in found.sentence
+
+
 LOGGED = """
 import logging
 import numpy as np

@@ -115,7 +115,7 @@ def _missing(here: Here, observed: Observed, lengths: Sequence[float]) -> Iterat
     if term or given:
         for length in lengths:
             for more in (ast.Add(), ast.Sub()):
-                edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.14)
+                edit = here.instead(ast.BinOp(node, more, number(length)), "missing term", 1.24)
                 yield replace(edit, of_the_arm=True)
 
 

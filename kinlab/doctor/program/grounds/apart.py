@@ -137,7 +137,8 @@ def _stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
         return {(one.node, one.place): float(one.value) for one in leaves(trial)}
 
     expected = held()
-    expected |= {(one.node, one.place): x for one, x in put if one.part == DATA}
+    new = {(one.node, one.place): x for one, x in put if one.part == DATA}
+    expected |= {key: x for key, x in new.items() if key in expected}  # others nothing uses
     edits = together(put)
     changes = [change for edit in edits for change in edit.changes]
     try:
@@ -181,7 +182,7 @@ class _Reader:
         summed: set[int],
         names: dict[str, int],
     ) -> None:
-        self.cells, self.labels, self.negative = cells, labels, negative
+        self.cells, self.labels, self.negative = [*cells], labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
         told = self._by_owners(found, [self._label(one) for one in found], count, names)
@@ -190,6 +191,7 @@ class _Reader:
         for name, _digits, at in told:
             last[name] = max(last.get(name, 0), *at[:1], 0)
         self.listed = {name for name, most in last.items() if most + 1 == count}
+        self._with_masses_at_ends(told, count)
         self.items: list[_Item] = []
         self.fitting: set[Any] = set()
         self.odd = False
@@ -227,6 +229,37 @@ class _Reader:
         self.whole = self.whole and unsure < 2
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
+
+    def _with_masses_at_ends(self, told: Sequence[_Label], count: int) -> None:
+        """Lengths that are called l1 to ln, with nothing else for where the masses are.
+
+        Where each mass is at its link's end, in a modified table, that is the next link's length;
+        of the last link its own.
+        """
+        named = [(kinds_called(name), digits, name) for name, digits, _at in told]
+        lengths = {
+            digits - (name not in self.from_zero)
+            for kinds, digits, name in named
+            if digits is not None and kinds == ("length",)
+        }
+        at = {cell.which: k for k, cell in reversed([*enumerate(self.cells)])}
+        first = at.get(("a", 1))
+        modified = first is not None and self.cells[first].links == (1, 0)
+        if not modified or lengths != {*range(count)} or ("centre",) in (x[0] for x in named):
+            return
+        ends = [("a", k + 1) for k in range(count - 1)]
+        coms = [("com0", k) for k in range(count)]
+        if not {*ends, *coms} <= at.keys():
+            return
+        pairs = [(self.cells[at[end]].value, self.cells[at[com]].value)
+                 for end, com in zip(ends, coms, strict=False)]  # fmt: skip
+        if any(end != com for end, com in pairs):
+            return
+        self.tied |= dict(zip(coms, ends, strict=False))
+        for k, end in enumerate(ends):
+            self.cells[at[end]] = replace(self.cells[at[end]], links=(k,))
+        last = at[coms[-1]]
+        self.cells[last] = replace(self.cells[last], kind="length", links=(count - 1,))
 
     def _by_owners(
         self,

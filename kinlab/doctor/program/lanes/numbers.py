@@ -14,8 +14,8 @@ import numpy as np
 
 _STEP, _NUMBERS = 40, 25
 """What an operation amounts to beside its numbers, and how many of these amount to one."""
-_EDIT = 800
-"""What evaluating an edit amounts to beside its operations."""
+_EDIT, _ARRAY = 300, 700
+"""What evaluating an edit amounts to beside its operations; and where it gives an array."""
 
 
 _PLAIN = (float, int, complex, bool)
@@ -168,6 +168,7 @@ class Lanes:
         return Laned(values, self, self.here)
 
     def _array(self, value: Any, found: Edited) -> Any:
+        self.work += _ARRAY * len(found)
         arrays = []
         for place, new in found:
             try:
