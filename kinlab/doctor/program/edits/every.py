@@ -92,7 +92,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     elif isinstance(node, ast.Subscript):
         yield from of_subscript(here, scope, observed)
     elif isinstance(node, ast.Name):
-        yield from of_name(here, scope, observed, index or whole)
+        product = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Mult)
+        yield from of_name(here, scope, observed, index or (whole and not product))
     elif isinstance(node, ast.Attribute):
         if node.attr == "T":
             yield here.instead(node.value, "transposed", 1.02)
