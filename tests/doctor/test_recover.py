@@ -438,6 +438,8 @@ def done(code: types.CodeType) -> set[tuple[str, str]]:
     for i in dis.get_instructions(code):
         if isinstance(i.argval, types.CodeType):
             found |= done(i.argval)
+        elif isinstance(i.argval, frozenset):  # printed in an order that the process's seed gives
+            found.add((i.opname, repr(sorted(i.argval, key=repr))))
         elif isinstance(i.argval, tuple) and i.opname.count("_FAST") == 2:  # 3.13: two in one
             first, second = i.opname.replace("_LOAD", " LOAD").replace("_STORE", " STORE").split()
             found |= {(first, repr(i.argval[0])), (second, repr(i.argval[1]))}
