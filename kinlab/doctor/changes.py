@@ -24,6 +24,9 @@ Stage = Literal["robot", "arguments", "engine", "answer"]
 Arguments = dict[str, Array]
 Engine = Callable[[Robot, Arguments], Array]
 
+ANY_ZERO = ("potential_energy", "lagrangian")
+"""Quantities of which a constant more or less is no slip."""
+
 
 @dataclass(frozen=True)
 class Confusion:

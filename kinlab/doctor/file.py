@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Case, label_of
+from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.text.claims import alone, named_alone, quantity_of, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
@@ -134,7 +135,28 @@ def _by_quantity(
             settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
             if all(one.agrees for one in turned) or settled == [False, True]:
                 done[plain] = turned
+            for force in WRENCH:
+                there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
+                done[plain] = _simpler(done[plain], [*_of_quantity(plain, there, titles)])
     return done
+
+
+def _simpler(named: list[Diagnosis], with_one: list[Diagnosis]) -> list[Diagnosis]:
+    """The diagnoses with one force more that is not zero, where these are simpler.
+
+    A force that no line names may be one that stands there by another's name.
+    """
+    kinds = [[kind for one in found for kind in _kinds_of(one)] for found in (named, with_one)]
+    if not all(one.agrees or one.causes for one in with_one) or "missing term" in kinds[1]:
+        return named
+    fewer = len(kinds[1]) < len(kinds[0])
+    instead = "extra term" in kinds[0] and len(kinds[1]) <= len(kinds[0])
+    unknown = any(not one.agrees and not one.causes for one in named)
+    return with_one if fewer or instead or unknown else named
+
+
+def _kinds_of(found: Diagnosis) -> Sequence[str]:
+    return found.causes[0].kinds if found.causes else ()
 
 
 def _in_tool_axes(
@@ -239,15 +261,19 @@ def _answers(
     file: FormulaFile,
     samples: int,
     seed: int,
+    forces: Sequence[str] = (),
 ) -> Answers:
-    """The case, the engine's answers, every place there is, and the formulas with their values."""
+    """The case, the engine's answers, every place there is, and the formulas with their values.
+
+    Of a wrench the parts that no formula names are zero, but for those of ``forces``.
+    """
     case, engine = prepare(robot, plain, (), samples, seed)
     if case.quantity.read is not None:
         joints = joint_values(case, formulas, titles, file.path)
         return case, engine, list(joints), formulas, joints
     if "wrench" in case.arguments:
         named = {name for text in formulas.values() for name in tree.names(text.node)}
-        case = named_alone(case, named)
+        case = named_alone(case, named.union(forces))
         engine = case.answer(())
     shape = engine.shape[1:]
     labels = [label_of(plain, k) for k in np.ndindex(shape)]
@@ -281,6 +307,8 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
         return
     if plain == "coriolis_matrix":
         yield from _complete_rows(case, engine, formulas, values, titles)
+    if plain == "jacobian":
+        yield from _half_given(case, engine, formulas, values, titles)
     for label, answer in values.items():
         _plain, index = split_name(label)
         part = replace(case, index=index)
@@ -314,6 +342,26 @@ def _complete_rows(
         texts = {label: formulas[label] for label in labels}
         shown = ", ".join(titles[label] for label in labels)
         yield examine(row, hand, engine[:, i], f"coriolis_matrix[{i}]", shown, texts)
+
+
+def _half_given(
+    case: Case,
+    engine: Array,
+    formulas: dict[str, Written],
+    values: dict[str, Array],
+    titles: dict[str, str],
+) -> Iterable[Diagnosis]:
+    """The linear or the angular half of a Jacobian, taken out of the entries where it is whole."""
+    for rows, half in ((range(3), "jacobian[:3]"), (range(3, 6), "jacobian[3:]")):
+        labels = [f"jacobian[{i},{j}]" for i in rows for j in range(case.robot.n)]
+        if not all(label in values for label in labels):
+            continue
+        _plain, index = split_name(half)
+        wanted = engine[(slice(None), *index)]
+        hand = np.stack([values.pop(label) for label in labels], axis=-1).reshape(wanted.shape)
+        texts = {label: formulas[label] for label in labels}
+        shown = ", ".join(titles[label] for label in labels)
+        yield examine(replace(case, index=index), hand, wanted, half, shown, texts)
 
 
 def robot_of(file: FormulaFile) -> Robot:

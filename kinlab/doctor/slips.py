@@ -65,6 +65,8 @@ def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) 
                 continue  # the mirror image of an entry that is given once
             seen.append(text)
         found = of_entry(case, entry, text)
+        if not found and text is not None and (opened := text.opened()) is not text:
+            found = of_entry(case, entry, opened)
         # all repairs of a text give one formula: the likeliest is told
         per_entry.append(_varied(found)[: 1 if text is not None else _TIED])
         told = sum(len(found[0].kinds) for found in per_entry if found)
@@ -77,16 +79,24 @@ def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) 
 def _defined(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
     """A slip in a definition that makes more right than one in a formula would."""
     derived = derivation_of(case)
-    for entry in off[:_PATIENCE] if derived is not None else ():
-        text = written.get(entry.label)
-        if text is None or derived is None:
-            return None
+    if derived is None or any(entry.label not in written for entry in off):
+        return None
+    plainest = sorted(off, key=lambda entry: len(written[entry.label].definitions))
+    for entry in plainest[:_PATIENCE]:
+        text = written[entry.label]
         of = (derived, derived.entry(entry.index), case.quantity.arguments, case.arguments)
         for slip in terms.in_definitions(text, *of):
             left = _still_off(case, off, _defined_otherwise(written, slip))
-            if len(left) < len(off) - 1 or (not left and not of_entry(case, entry, text)):
+            if len(left) >= len(off):
+                continue
+            if len(left) < len(off) - 1 or _is_simpler(slip, of_entry(case, entry, text)):
                 return slip.with_error(entry.error(slip.values, entry.engine))
     return None
+
+
+def _is_simpler(slip: Slip, others: list[Slip]) -> bool:
+    """Whether a slip says in fewer words what is wrong than others of the same entry."""
+    return all(len(slip.kinds) < len(one.kinds) for one in others)
 
 
 def _defined_otherwise(written: dict[str, Written], slip: Slip) -> dict[str, Written]:

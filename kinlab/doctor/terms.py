@@ -12,10 +12,11 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
+from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
-from kinlab.doctor.text.mend import Mended, mended, together
+from kinlab.doctor.text.mend import Mended, mended, rewritten, together
 from kinlab.doctor.text.numbers_off import as_meant, beside_rounded, rounded_in
 from kinlab.doctor.text.written import Written
 from kinlab.formulas import tree
@@ -150,7 +151,7 @@ def in_text(
         if line.numeric:
             found = [one for one in found if _no_coincidence(line, one, right, derived)]
         if found:
-            return [_mended(line.text, one, here) for one in found]
+            return [_of_any_zero(line, one, right, here, label) for one in found]
     if not numbers:
         return []
     apart = [
@@ -159,6 +160,25 @@ def in_text(
     ]
     written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
+
+
+def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], label: str) -> Slip:
+    """The slip that a repair is; of a potential without what moves nothing but its zero."""
+    whole, kept = _mended(line.text, one, here), one
+    if label.split("[")[0] not in ANY_ZERO or len(one.changes) == 1:
+        return whole
+    at = dict(line.at)
+    elsewhere = {n: np.roll(x, 1) if _POSITION.fullmatch(n) else x for n, x in at.items()}
+    for change in one.changes:
+        rest = tuple(x for x in kept.changes if x is not change)
+        text = rewritten(line.source, rest) if rest else None
+        if text is None:
+            continue
+        moved = replace(line.text, text=text)
+        gap, there = (moved.values(x) - tree.evaluate(right, x) for x in (at, elsewhere))
+        if np.max(np.abs(gap - there)) <= TOLERANCES.effect_matches * line.scale:
+            kept = Mended(rest, text, kept.cost - change.cost)
+    return whole if kept is one else replace(_mended(line.text, kept, here), values=whole.values)
 
 
 def in_definitions(
@@ -224,6 +244,7 @@ def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -
     return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
 
 
+_POSITION = re.compile(r"q\d+")
 _MOTION = re.compile(r"(qdd?)\d+")
 _PARTS = (("qd", "g"), ("qdd", "g"), ("qd", "qdd"))
 """What is zero where a formula is one of its parts alone: accelerations, velocities, gravity."""

@@ -646,10 +646,11 @@ _IN_BOOKS = (
     "T K Ek kinetic kinetic_energy",
     "L lagrangian",
     "T A H fk",
-    "J planar_jacobian jacobian jacobian_tool jacobian_spatial",
-    "tau u Q inverse_dynamics inverse_dynamics_loaded lagrange_torques",
-    "tau statics statics_tool",
-    "V C H N B coriolis_torques",
+    "J Jv planar_jacobian jacobian jacobian_tool jacobian_spatial",
+    "tau u Q t inverse_dynamics inverse_dynamics_loaded lagrange_torques",
+    "tau t statics statics_tool",
+    "V C H N B cv coriolis_torques",
+    "p momentum",
 )
 """What books call the same thing: Spong's d11 and phi1, Craig's V, Siciliano's B."""
 _MEANT = tuple({word.lower() for word in group.split()} for group in _IN_BOOKS)
@@ -659,7 +660,7 @@ _POINT = {"x": "14", "y": "24", "z": "34", "px": "14", "py": "24", "pz": "34"}
 _VECTORS = "gravity_torques inverse_dynamics coriolis_torques momentum statics statics_tool"
 _MATRICES = "mass_matrix coriolis_matrix jacobian jacobian_tool jacobian_spatial fk planar_jacobian"
 LONG = {*_MATRICES.split(), *_VECTORS.split()}
-TWO = {*"MHBJTRC", "coriolis_coefficients", *_MATRICES.split()}
+TWO = {*"MHBJTRC", "Jv", "Jw", "coriolis_coefficients", *_MATRICES.split()}
 """Quantities of two indices, whose one column is no vector."""
 _PLACES = re.compile(r"(\D+?)[_\[]?([\d,]*)\]?", re.ASCII)
 

@@ -90,3 +90,84 @@ def test_a_slide_is_told_for_a_length() -> None:
     ]
     found = kl.diagnose(kl.DHTable("polar", "standard", links), "T14", "d1*cos(q1)*cos(q2)")
     assert "d1 should be q3" in found.causes[0].sentence
+
+
+_OPENED = (
+    "J11 = -l1*sin(q1) - l2*sin(q1+q2); J12 = -l2*sin({a}); "
+    "J21 = l1*{b}(q1) + l2*cos(q1+q2); J22 = l2*cos(q1+q2); det = J11*J22 - J12*J21"
+)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "told"),
+    [
+        # one in what b stands for, one beside it: b's is told there, and not in each line
+        ("planar3r", "G", "a = m3*g*lc3*cos(q1+q2+q3)\nb = (m2*lc2 + m2*l2)*g*cos(q1+q2)\nG = [(m1*l1 + m2*l1 + m3*l1)*g*cos(q1) + b + a, b + a, a]",
+         {"b": ["m2 should be m3"], "G1": ["l1 should be lc1"]}),
+        # both in what names stand for, of which one is seen in the shortest line alone
+        ("planar3r", "G", "a = m3*g*lc3*cos(q3)\nb = (m2*lc2 + m2*l2)*g*cos(q1+q2)\nG = [(m1*lc1 + m2*l1 + m3*l1)*g*cos(q1) + b + a, b + a, a]",
+         {"a": ["cos(q3) should be cos(q1 + q2 + q3)"], "b": ["m2 should be m3"]}),
+        ("planar2r", "det", _OPENED.format(a="q2", b="sin"), {"det": ["sin(q2) should be sin(q1+q2)", "sin(q1) should be cos(q1)"]}),
+    ],
+)  # fmt: skip
+def test_two_slips_of_which_some_are_in_what_names_stand_for(robot, entry, typed, told) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert len(found.causes[0].kinds) == 2, str(found)
+    assert {*found.causes[0].places} == {*told}
+    for words in told.values():
+        assert all(word in found.causes[0].sentence for word in words), str(found)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "told"),
+    [
+        # the force that nobody names is the one that stands there by another's name
+        ("planar3r", "tau2", "tau2 = -(l2*s12 + l3*s123)*fx + (l2*c12 + l3*c123)*fx + nz", "fx should be fy"),
+        ("planar2r", "tau2", "tau2 = -l2*s12*fx + l2*c12*fx", "fx should be fy"),
+        # and one that is left out on purpose stays zero
+        ("planar2r", "tau2", "tau2 = -l2*s12*fx - l2*c12*fy", "should be + l2*c12*fy"),
+        ("planar2r", "tau2", "tau2 = l2*s12*fx", "should be -l2*s12*fx"),
+    ],
+)  # fmt: skip
+def test_a_force_by_another_name_is_told_as_such(robot, entry, typed, told) -> None:
+    cause = kl.diagnose(robot, entry, typed).causes[0]
+    assert told in cause.sentence
+    assert len(cause.kinds) == 1
+
+
+_JV = "r = a2 + xt*c3; Jv = [[-a1*s1 - r*s12, {0}r*s12, -xt*c12*s3], [a1*c1 + r*c12, r*c12, -xt*s12*s3], [0, 0, xt*c3]]"  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "quantity"),
+    [
+        ("planar2r", "det J", "det J = l1*l2*sin(q2)", "planar_position_determinant"),
+        ("planar2r", "det", "det(J) = l1*l2*sin(q2)", "planar_position_determinant"),
+        ("planar2r", "|J|", "l1*l2*sin(q2)", "planar_position_determinant"),
+        ("planar2r", "p_y", "p_y = l1*s1 + l2*s12", "fk[1,3]"),
+        ("planar2r", "p2", "m2*l2*(l2*(qd1 + qd2) + l1*qd1*cos(q2))", "momentum[1]"),
+        ("planar2r", "cv", "[-m2*l1*l2*sin(q2)*qd2*(2*qd1 + qd2); m2*l1*l2*sin(q2)*qd1^2]", "coriolis_torques"),
+        ("planar2r", "t2", r"\tau_2 = l_2 c_{12} f_y - l_2 s_{12} f_x", "statics[1]"),
+        ("spatial3r", "Jv", _JV.format("-"), "jacobian[:3]"),
+        ("spatial3r", "Jw31", "1", "jacobian[5,0]"),
+    ],
+)  # fmt: skip
+def test_names_of_quantities_as_people_type_them(robot, entry, typed, quantity) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert (found.agrees, found.quantity) == (True, quantity)
+
+
+def test_half_of_a_jacobian_is_judged_as_a_whole() -> None:
+    found = kl.diagnose("spatial3r", "Jv", _JV.format("").replace("xt*c3]", "xt*s3]"))
+    assert sorted(found.causes[0].places) == ["Jv12", "Jv33"]
+
+
+def test_a_determinant_of_what_has_none_is_refused() -> None:
+    with pytest.raises(kl.errors.ExpressionError, match="names no quantity"):
+        kl.diagnose("spatial3r", "det J", "1")
+
+
+def test_what_moves_a_potentials_zero_is_no_slip_beside_one() -> None:
+    cause = kl.diagnose("planar2r", "V", "m1*g*l1*sin(q1) + m2*g*(l1*sin(q1) + l2*sin(q2) + 1)")
+    assert cause.causes[0].kinds == ("argument",), str(cause)
+    assert "+ 1)" in cause.causes[0].corrected["V"]

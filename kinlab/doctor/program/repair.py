@@ -22,7 +22,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.changes import Case, table_of
+from kinlab.doctor.changes import ANY_ZERO, Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, meanings
 from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
 from kinlab.doctor.program.edits.data import NumberPlace, numbers
@@ -89,8 +89,6 @@ _TORQUES = (
     "lagrange_torques",
 )
 """Quantities whose numbers are of one dimension, where all joints turn."""
-ANY_ZERO = ("potential_energy", "lagrangian")
-"""Quantities of which a constant more or less is no slip."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
 _SIMPLE = 12

@@ -26,14 +26,15 @@ from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 
 _VECTORS = {
-    "inverse_dynamics": "tau Q torque",
+    "inverse_dynamics": "tau Q torque t",
     "gravity_torques": "g G D",
-    "coriolis_torques": "c h V b",
+    "coriolis_torques": "c h V b cv",
+    "momentum": "p",
 }
 _MATRICES = {
     "mass_matrix": "M D H B",
     "coriolis_matrix": "C",
-    "jacobian": "J",
+    "jacobian": "J Jv",
     "fk": "T R r",
 }
 _NUMBERS = {
@@ -51,11 +52,16 @@ def _by_letter(table: dict[str, str]) -> dict[str, str]:
 
 
 _VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
+_TWO = 2
+"""Joints of a planar arm whose position's Jacobian has a determinant."""
 _PARTS = ("R", "r")
 """Letters of a part of a matrix."""
 _VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
 _MATRIX = re.compile(r"([A-Za-z]+)_?(\d)_?(\d)")
 _CUBE = re.compile(r"D_?(\d)_?(\d)_?(\d)")
+_TURNING = re.compile(r"J_?w_?(\d)_?(\d)")
+_PLACE = re.compile(r"p_([xyz])")
+_DETERMINANT = re.compile(r"\\?det ?\(?J\)?|\\?det|\|J\|")
 
 
 def quantity_of(entry: str, table: DHTable | None) -> str:
@@ -73,10 +79,18 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
         return entry.strip()
     if entry in _NUMBER_OF:
         return _NUMBER_OF[entry]
+    planar = table is not None and is_planar(table)
+    if _PLACE.fullmatch(entry):
+        return _NUMBER_OF[entry.replace("_", "")]
+    if planar and table is not None and len(table.links) == _TWO and _DETERMINANT.fullmatch(entry):
+        return "planar_position_determinant"
+    turning = _TURNING.fullmatch(entry)
+    if turning:
+        return f"jacobian[{int(turning.group(1)) + 2},{int(turning.group(2)) - 1}]"
     matrix = _MATRIX.fullmatch(entry)
     if matrix and matrix.group(1) in _MATRIX_OF:
         name = _MATRIX_OF[matrix.group(1)]
-        if name == "jacobian" and table is not None and is_planar(table):
+        if name == "jacobian" and planar:
             name = "planar_jacobian"
         return f"{name}[{int(matrix.group(2)) - 1},{int(matrix.group(3)) - 1}]"
     cube = _CUBE.fullmatch(entry)
@@ -114,6 +128,7 @@ def alone(quantity: str) -> str:
 
 # -------- A force or a moment of the tool in a torque
 
+_TORQUE = re.compile(r"tau|Q|torque|t_?\d")
 _SPELT = re.compile(r"([fFnNM])_?([xyz])")
 _MOVING = re.compile(r"qdd?\d+|m\d+|g")
 
@@ -145,7 +160,7 @@ def with_wrench(file: FormulaFile, name: str) -> str:
     used = {
         str(inner)
         for entry in file.formulas
-        if entry.startswith(("tau", "Q", "torque"))
+        if _TORQUE.match(entry)
         for inner in _names(file, tree.names(file.formulas[entry]))
     }
     if not used & {*WRENCH}:

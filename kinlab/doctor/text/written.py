@@ -162,6 +162,26 @@ class Written:
                     waiting.append(name)
         return found
 
+    def opened(self) -> Written:
+        """The same with what the writer's own names stand for, where each stands but once.
+
+        What is a part of a single other name, ``lc3`` of ``l3``, stays.
+        """
+        texts = {"": self.text, **{x: self.symbols[x] for x in self._used[1:]}}
+        met = [name for text in texts.values() for name in re.findall(r"[A-Za-z_]\w*", text)]
+        opened, left = self, dict(self.symbols)
+        for name in self.definitions:
+            several = len({*re.findall(r"[A-Za-z_]\w*", self.symbols[name])}) > 1
+            if (
+                several
+                and met.count(name) == 1
+                and name in re.findall(r"[A-Za-z_]\w*", opened.text)
+            ):
+                inner = left.pop(name)
+                text = re.sub(rf"\b{name}\b", lambda _, inner=inner: f"({inner})", opened.text)  # type: ignore[misc]
+                opened = replace(opened, text=text, symbols=left, typing=None)
+        return opened
+
     def foreign(self, names: set[str]) -> list[str]:
         """Names in the text that have no value, where the robot's are ``names``."""
         met = {

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import ast
 import math
-import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -21,7 +20,8 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
-from kinlab.doctor.program.grounds.called import kinds_called, stem, unlike
+from kinlab.doctor.program.grounds.called import kinds_called, unlike
+from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.grounds.scaled import (
     OtherArm,
     ProgramNumber,
@@ -33,7 +33,7 @@ from kinlab.doctor.program.grounds.scaled import (
     twisted_by,
 )
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, paired
+from kinlab.doctor.program.places import DATA
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial, quietly
 from kinlab.model.dh import DHLink, DHTable
 from kinlab.model.link import Convention
@@ -67,8 +67,6 @@ class _Cell:
     value: float
 
 
-_Label = tuple[str, int | None, tuple[int, ...]]
-"""The name of a number without its digits, these, and its place in a list."""
 _Option = tuple[tuple[ProgramNumber, int], ...]
 """What numbers of a program are: which cells, by their numbers."""
 
@@ -101,7 +99,7 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
     names = {name: k for k, name in enumerate(trial.program.space)}
-    reader = _Reader(table.n, cells, _labels(trial), found, negative, _summed(trial), names)
+    reader = _Reader(table.n, cells, Labels(trial, table.n), found, negative, _summed(trial), names)
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -158,7 +156,7 @@ class _Reader:
     Args:
         count: of links.
         cells: the arm's numbers.
-        labels: the names of the numbers in a program's text.
+        labels: what the program's numbers are called.
         found: the program's numbers.
         negative: the numbers in a program's text with a minus in front.
         summed: those in sums of nothing but numbers.
@@ -176,7 +174,7 @@ class _Reader:
         self,
         count: int,
         cells: Sequence[_Cell],
-        labels: dict[int, tuple[list[str], list[int]]],
+        labels: Labels,
         found: Sequence[ProgramNumber],
         negative: set[int],
         summed: set[int],
@@ -185,7 +183,7 @@ class _Reader:
         self.cells, self.labels, self.negative = [*cells], labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
-        told = self._by_owners(found, [self._label(one) for one in found], count, names)
+        told = self._by_owners(found, [labels.of(one.place) for one in found], count, names)
         self.from_zero = {name for name, digits, _at in told if digits == 0}
         last: dict[str, int] = {}
         for name, _digits, at in told:
@@ -196,7 +194,7 @@ class _Reader:
         self.fitting: set[Any] = set()
         self.odd = False
         self._look_at_names([x for x in zip(found, told, strict=True) if x[0].alone])
-        left_of: list[tuple[ProgramNumber, _Label, bool, list[int]]] = []
+        left_of: list[tuple[ProgramNumber, Label, bool, list[int]]] = []
         plain: list[float] = []
         for one, label in zip(found, told, strict=True):
             place, own = one.place, may_be_of_one_arm(one.value)
@@ -230,7 +228,7 @@ class _Reader:
         held = np.array([one.value for one in found if one.alone])
         self.whole = self.whole and all(bool(_close(held, x).any()) for x in plain)
 
-    def _with_masses_at_ends(self, told: Sequence[_Label], count: int) -> None:
+    def _with_masses_at_ends(self, told: Sequence[Label], count: int) -> None:
         """Lengths that are called l1 to ln, with nothing else for where the masses are.
 
         Where each mass is at its link's end, in a modified table, that is the next link's length;
@@ -264,37 +262,29 @@ class _Reader:
     def _by_owners(
         self,
         found: Sequence[ProgramNumber],
-        told: Sequence[_Label],
+        told: Sequence[Label],
         count: int,
         names: dict[str, int],
-    ) -> list[_Label]:
+    ) -> list[Label]:
         """Of numbers that several objects have under one name, those of each are a link's."""
         owners: dict[str, list[str]] = {}
-        of = [self._owner(one) for one in found]
+        of = [self.labels.owner(one.place) for one in found]
         for owner, (name, digits, at) in zip(of, told, strict=True):
             if owner and digits is None and not at and owner not in owners.setdefault(name, []):
                 owners[name].append(owner)
         self.whole = self.whole and all(len(x) in (1, count) for x in owners.values())
         for some in owners.values():
             some.sort(key=lambda owner: names.get(owner, len(names)))
-        kept: list[_Label] = []
+        kept: list[Label] = []
         for owner, label in zip(of, told, strict=True):
             among = owners.get(label[0], [])
             each = len(among) == count > 1 and owner in among and label[1] is None and not label[2]
             kept.append((*label[:2], (among.index(owner),)) if each else label)
         return kept
 
-    def _owner(self, one: ProgramNumber) -> str:
-        """The object or dictionary that a number is in."""
-        place = one.place
-        if place.part == DATA:
-            return str(place.node) if any(isinstance(key, str) for key in place.place) else ""
-        names, _at = self.labels.get(id(place.node), ([""], []))
-        return names[0] if len(names) > 1 else ""
-
-    def _look_at_names(self, named: Sequence[tuple[ProgramNumber, _Label]]) -> None:
+    def _look_at_names(self, named: Sequence[tuple[ProgramNumber, Label]]) -> None:
         """Which numbers the arm has as they are called, and whether any is odd among these."""
-        strange: list[_Label] = []
+        strange: list[Label] = []
         alike: set[str] = set()
         for one, label in named:
             kinds, link = kinds_called(label[0]), self._link(label)
@@ -310,7 +300,7 @@ class _Reader:
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}
             self.odd = self.odd or any(not unlike(name, other) for other in same)
 
-    def _link(self, label: _Label) -> int | None:
+    def _link(self, label: Label) -> int | None:
         """The link after which a number is called, or at whose place it stands."""
         name, digits, at = label
         if digits is not None:
@@ -327,18 +317,7 @@ class _Reader:
             size &= same | both
         return [int(k) for k in np.flatnonzero(size)]
 
-    def _label(self, one: ProgramNumber) -> _Label:
-        """The name of a number without its digits, these, and its place in a list."""
-        place = one.place
-        if place.part == DATA:
-            names = [k.strip(".") for k in place.place if isinstance(k, str)]
-            names, at = [str(place.node), *names], [k for k in place.place if type(k) is int]
-        else:
-            names, at = self.labels.get(id(place.node), ([""], []))
-        digits = [x for name in names for x in re.findall(r"\d+", name)]
-        return stem(names[-1]), int(digits[-1]) if digits else None, tuple(at)
-
-    def _as_called(self, may: list[int], label: _Label, data: bool) -> tuple[bool, list[int]]:
+    def _as_called(self, may: list[int], label: Label, data: bool) -> tuple[bool, list[int]]:
         """Of cells those that are called so, and whether any is."""
         kinds, link = kinds_called(label[0]), self._link(label)
         may = [k for k in may if self.cells[k].kind != "moment" or not self._again(k, may)]
@@ -357,7 +336,7 @@ class _Reader:
             left = [k for k in left if self.cells[k].which in firsts.values()]
         return sure, left
 
-    def _alone(self, label: _Label, left: list[int], free: list[int]) -> list[int]:
+    def _alone(self, label: Label, left: list[int], free: list[int]) -> list[int]:
         """Of the cells that a number may be one, if it is all: a point mass is at a link's end.
 
         Args:
@@ -527,41 +506,3 @@ def _along(table: DHTable, k: int, factor: Callable[[str, int], float]) -> tuple
     else:
         found = (table.links[k + 1].a, factor("a", k + 1))
     return found if found[0] else (link.d, factor("d", k))
-
-
-def _labels(trial: Trial) -> dict[int, tuple[list[str], list[int]]]:
-    """What the numbers in a program's text are called, with their places in lists."""
-    found: dict[int, tuple[list[str], list[int]]] = {}
-
-    def named(value: Any, names: list[str], at: list[int]) -> None:
-        if isinstance(value, ast.Constant):
-            found[id(value)] = names, at
-        elif isinstance(value, ast.UnaryOp):
-            named(value.operand, names, at)
-        elif isinstance(value, ast.BinOp):  # of pi/2
-            named(value.right, names, at)
-        elif isinstance(value, ast.Call):
-            for one in value.args[:1]:
-                named(one, names, at)
-            for keyword in value.keywords:
-                named(keyword.value, [*names, keyword.arg or ""], at)
-        elif isinstance(value, ast.List | ast.Tuple):
-            for k, one in enumerate(value.elts):
-                named(one, names, [*at, k])
-        elif isinstance(value, ast.Dict):
-            for key, one in zip(value.keys, value.values, strict=True):
-                named(one, [*names, str(getattr(key, "value", ""))], at)
-
-    for tree in trial.trees:
-        for node in nodes(tree):
-            if isinstance(node, ast.arguments):
-                given = [*reversed(node.posonlyargs + node.args)]
-                for argument, value in zip(given, reversed(node.defaults), strict=False):
-                    named(value, [argument.arg], [])
-                for argument, default in zip(node.kwonlyargs, node.kw_defaults, strict=True):
-                    named(default, [argument.arg], [])
-            elif isinstance(node, ast.Assign):
-                for target in node.targets:
-                    for one, value in paired(target, node.value):
-                        named(value, [getattr(one, "id", getattr(one, "attr", ""))], [])
-    return found

@@ -20,6 +20,8 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
 from kinlab.doctor.program.edits.operators import SIZES
+from kinlab.doctor.program.grounds.called import kinds_called
+from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.own.plain import attributes, home
 from kinlab.doctor.program.places import DATA, ProgramEdit, called
@@ -83,7 +85,7 @@ class ProgramNumber:
         value: what it is.
         alone: whether it stands for itself, and may be the arm's.
         given: whether it is given on as it is, and may be a plain number as well.
-        below: whether the place is what pi is divided by.
+        below: whether the place is what pi or a number is divided by.
     """
 
     place: NumberPlace
@@ -108,7 +110,7 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     found = [*numbers_of(trial, observed)]
     twisted = twisted_by(table, found)
     kinds = _kinds(robot, table, twisted)
-    meant = _alike(found, [_meant(kinds, one.value) for one in found])
+    meant = _alike(found, [_meant(kinds, one.value) for one in found], Labels(trial, table.n))
     letters = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True
@@ -138,7 +140,15 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     if larger is None:
         return None
     whole = whole and len(ways) <= _WAYS and not holds_an_arm(trial)
+    whole = whole and not _one_for_several(found, kinds)
     return OtherArm(larger, tuple(ways[:_WAYS]), whole)
+
+
+def _one_for_several(found: Sequence[ProgramNumber], kinds: Kinds) -> bool:
+    """Whether one number is the masses of several links, which are heavier each by another part."""
+    named = np.array([one.value for one in found if one.alone])
+    masses = [known[0] for what, _k, _by, known in kinds if what == "mass" and known[0]]
+    return any(1 <= np.isclose(named, m).sum() < np.isclose(masses, m).sum() for m in masses)
 
 
 def holds_an_arm(trial: Trial) -> bool:
@@ -211,7 +221,8 @@ def _key(one: ProgramNumber) -> Any:
 
 def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     """The numbers of a program, those that a slip has left unused among them."""
-    plain = {id(node): node for tree in trial.trees for node in _alone(tree)}
+    made = {name for name, x in trial.space.items() if isinstance(x, type)}
+    plain = {id(node): node for tree in trial.trees for node in _alone(tree, made)}
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
@@ -222,7 +233,7 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
             continue
         whole = below.get(id(place.node))
         if place.value and whole is not None:
-            yield ProgramNumber(place, np.pi / place.value, True, below=True)
+            yield ProgramNumber(place, _above(whole) / place.value, True, below=True)
         else:
             alone = place.part == DATA or id(place.node) in plain
             value = float(place.value)
@@ -340,7 +351,7 @@ def _meant(kinds: Kinds, value: float) -> set[tuple[str, int, float]]:
 
 
 def _alike(
-    found: Sequence[ProgramNumber], meant: Sequence[set[tuple[str, int, float]]]
+    found: Sequence[ProgramNumber], meant: Sequence[set[tuple[str, int, float]]], labels: Labels
 ) -> list[set[tuple[str, float]]]:
     """What numbers are, the same kind in all of a list, or of a column of it, where there is one.
 
@@ -355,28 +366,23 @@ def _alike(
     for one, some in zip(found, meant, strict=True):
         kind = next((common[key] for key in _groups(one.place) if common.get(key)), None)
         left = {x for x in some if kind is None or x[0] in kind}
-        out.append({(what, by) for what, _k, by in _as_called(one.place, left)})
+        called_so = _as_called(labels.of(one.place), one.place.part == DATA, left)
+        out.append({(what, by) for what, _k, by in called_so})
     return out
 
 
 def _as_called(
-    place: NumberPlace, left: set[tuple[str, int, float]]
+    label: Label, data: bool, left: set[tuple[str, int, float]]
 ) -> set[tuple[str, int, float]]:
     """Of what a number may be what its name says, and of the link at whose place it stands."""
-    if place.part != DATA:
+    name, digits, at = label
+    kinds = {"length" if kind == "centre" else kind for kind in kinds_called(name)}
+    called_so = {x for x in left if x[0] in kinds}
+    left = called_so or left
+    if not data and not called_so:  # the text's rows may be those of a matrix
         return left
-    name = [place.node, *_names_down(place)][-1].lstrip(".")
-    kind = _LETTERS.get(name[:1].lower())
-    left = {x for x in left if x[0] == kind} or left
-    digits = name.lstrip("".join(set(name) - set("0123456789")))
-    own = int(digits) - 1 if digits.isdigit() else None
-    at = next((one for one in place.place if isinstance(one, int)), own)
-    return {x for x in left if at is not None and x[1] in (-1, at)} or left
-
-
-_LETTERS = {"m": "mass", "l": "length", "a": "length", "d": "length", "r": "length"}
-_LETTERS |= {"i": "moment", "j": "moment", "g": "kept"}
-"""What numbers are called, by the first letter of their names."""
+    link = at[0] if at else digits - 1 if digits is not None else None
+    return {x for x in left if link is not None and x[1] in (-1, link)} or left
 
 
 def _groups(place: NumberPlace) -> list[Any]:
@@ -407,10 +413,11 @@ def _among(value: float, known: Array) -> bool:
     return bool(np.any(np.abs(np.abs(known) - abs(value)) <= close))
 
 
-def _alone(tree: ast.AST) -> Iterator[ast.expr]:
-    """The numbers, and parts of pi, that names are set to as they are, or that stand in lists.
+def _alone(tree: ast.AST, made: set[str]) -> Iterator[ast.expr]:
+    """The numbers, and parts of pi or 1, that names are set to as they are, or that are in lists.
 
-    What is given by its name, or what a function's arguments are by default, has a name, too.
+    What is given by its name, or to a class of those ``made``, or what a function's arguments are
+    by default, has a name, too.
     """
     for node in nodes(tree):
         waiting: list[Any] = [node.value] if isinstance(node, ast.Assign) else []
@@ -418,7 +425,7 @@ def _alone(tree: ast.AST) -> Iterator[ast.expr]:
             waiting += [one for one in (*node.defaults, *node.kw_defaults) if one is not None]
         while waiting:
             one = waiting.pop()
-            if isinstance(one, ast.Constant) or _of_pi(one):
+            if isinstance(one, ast.Constant) or _is_quotient(one):
                 yield one
             elif isinstance(one, ast.Tuple | ast.List):
                 waiting += one.elts
@@ -426,14 +433,24 @@ def _alone(tree: ast.AST) -> Iterator[ast.expr]:
                 waiting += one.values
             elif isinstance(one, ast.UnaryOp):
                 waiting.append(one.operand)
+            elif isinstance(one, ast.ListComp):
+                waiting.append(one.elt)
             elif isinstance(one, ast.Call):
                 waiting += [keyword.value for keyword in one.keywords]
-                waiting += one.args[:1] if called(one) in _ROWS else []
+                given = len(one.args) if called(one) in made else called(one) in _ROWS
+                waiting += one.args[:given]
 
 
-def _of_pi(node: ast.AST) -> bool:
+def _is_quotient(node: ast.AST) -> bool:
+    """Whether a node is pi or a number, over a number."""
     if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Div):
         return False
+    return bool(_above(node)) and isinstance(node.right, ast.Constant)
+
+
+def _above(node: ast.BinOp) -> float:
+    """The size of what is divided, pi or a number; 0 of anything else."""
     top = node.left.operand if isinstance(node.left, ast.UnaryOp) else node.left
-    pi = getattr(top, "attr", None) or getattr(top, "id", None)
-    return pi == "pi" and isinstance(node.right, ast.Constant)
+    if isinstance(top, ast.Constant) and isinstance(top.value, int | float):
+        return abs(float(top.value))
+    return np.pi * ((getattr(top, "attr", None) or getattr(top, "id", None)) == "pi")

@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.program.lanes.run import InLanes
-from kinlab.doctor.program.repair import ANY_ZERO, LineSearch
+from kinlab.doctor.program.repair import LineSearch
 from kinlab.doctor.program.several.effects import Chosen, Effects
 from kinlab.doctor.program.trial import NoProgramError
 
