@@ -5,12 +5,16 @@ With l1 = l2 = m1 = m2 = 1 and lc1 = lc2 = 0.5 many a wrong edit makes a program
 
 from __future__ import annotations
 
+import importlib.util
+import sys
+
 import numpy as np
 import pytest
 from hand_programs import repaired, written
 
 import kinlab as kl
 from kinlab.doctor.program.grounds.apart import arm_apart
+from kinlab.doctor.program.grounds.scaled import other_arm
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import changed
@@ -181,3 +185,92 @@ def test_what_a_program_has_no_name_for_stays_as_it_is() -> None:
     assert "m1" not in text
     first, last = apart(text_for(text, ROUND), arm(ROUND)).table.links
     assert first.mass == 1.0 and last.mass != 1.0 and first.a != last.a
+
+
+BY_NUMBERS = """
+import numpy as np
+
+LINKS = {1: (0.44, 2.3, 0.19, 0.05), 2: (0.37, 1.7, 0.21, 0.04), 3: (0.25, 1.2, 0.11, 0.05)}
+
+def each(k):
+    return LINKS[k]
+"""
+FROM_ONE = """
+import numpy as np
+
+LINKS = [None, (0.44, 2.3, 0.19, 0.05), (0.37, 1.7, 0.21, 0.04), (0.25, 1.2, 0.11, 0.05)]
+
+def each(k):
+    return LINKS[k]
+"""
+IN_TURN = """
+import numpy as np
+
+class Link:
+    def __init__(self, l, m, c, I):
+        self.l, self.m, self.c, self.I = l, m, c, I
+
+LINKS = [Link(0.44, 2.3, 0.19, 0.05), Link(0.37, 1.7, 0.21, 0.04), Link(0.25, 1.2, 0.11, 0.05)]
+
+def each(k):
+    return LINKS[k - 1].l, LINKS[k - 1].m, LINKS[k - 1].c, LINKS[k - 1].I
+"""
+ALIKE = """
+import numpy as np
+
+class Link:
+    def __init__(self, l, m, c, I):
+        self.l, self.m, self.c, self.I = l, m, c, I
+
+LINKS = [Link(1.0, 1.0, 0.5, 1 / 12) for _ in range(3)]
+
+def each(k):
+    return LINKS[k - 1].l, LINKS[k - 1].m, LINKS[k - 1].c, LINKS[k - 1].I
+"""
+MASSES = """
+def f(q):
+    turned = np.cumsum(q)
+    M = np.zeros((3, 3))
+    for k in (1, 2, 3):
+        m, I = each(k)[1], each(k)[3]
+        J = np.zeros((2, 3))
+        for j in range(k):
+            for i in range(j, k):
+                reach = each(i + 1)[0] if i < k - 1 else each(k)[2]
+                J[:, j] += reach * np.array([-np.sin(turned[i]), np.cos(turned[i])])
+        w = np.array([float(j < k) for j in range(3)])
+        M += m * J.T @ J + I * np.outer(w, w)
+    return M
+"""
+
+
+@pytest.mark.parametrize("links", [BY_NUMBERS, FROM_ONE, IN_TURN, ALIKE])
+def test_a_right_program_is_right_for_each_arm_that_stands_for_all(links, tmp_path) -> None:
+    path = tmp_path / "links.py"
+    path.write_text(links + MASSES)
+    spec = importlib.util.spec_from_file_location("links_of_an_arm", path)
+    module = sys.modules["links_of_an_arm"] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    own = [module.each(k) for k in (1, 2, 3)]
+    table = kl.DHTable(
+        "own",
+        "standard",
+        [
+            kl.DHLink(a=a, mass=m, com=(c - a, 0, 0), inertia=np.diag([0, i, i]))
+            for a, m, c, i in own
+        ],
+        gravity=(0, -9.81, 0),
+    )
+    robot = kl.Robot.from_dh(table)
+    assert worst(robot, "mass_matrix", module.f) < 1e-12
+    trial = Trial(read(module.f))
+    observed = Observed(trial, [(np.array([0.3, -0.7, 0.9]),)])
+    found = [arm_apart(robot, trial, observed), other_arm(robot, trial, observed)]
+    whole = [other for other in found if other is not None and other.whole]
+    assert whole
+    for other in whole:
+        errors = []
+        for way in other.ways:
+            with changed(trial, way):
+                errors.append(worst(other.robot, "mass_matrix", trial.function))
+        assert min(errors) < 1e-12
