@@ -47,13 +47,13 @@ from kinlab.tolerances import TOLERANCES
 
 _WORK = 45_000_000
 """Operations of numbers, or what amounts to them, of which all searches have their share."""
-_ALONE = 50_000_000
+_ALONE = 65_000_000
 """What may be done for single edits beside which none stands."""
-_FURTHER = 2000
+_FURTHER = 6000
 """Edits that are run all at once where there is no time to run each."""
-_QUICK = 1000
+_QUICK = 1300
 """Edits that have been run alone by then, of programs of which lanes are worth the time."""
-_MORE_WORK, _WOVEN = 15_000_000, 7000
+_MORE_WORK, _WOVEN = 30_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
 _AT_ONCE = 400
 """How many of them at a time."""
@@ -314,6 +314,7 @@ class LineSearch:
         """
         found: list[ProgramRepair] = []
         best, doubted = np.inf, False
+        limit = self.most if self.stand else _ALONE
         with quietly():
             tried = self._weighed(below)
             variants = Variants(self.trial, tried)
@@ -322,10 +323,10 @@ class LineSearch:
                 if found and self.likely(edit) > farthest:
                     continue
                 self.work += self.cost_of(edit)
-                if self.work > (self.most if self.stand else _ALONE):
-                    found = found or self._in_lanes(
-                        tried[turn:][: _FURTHER if turn > _QUICK else 0]
-                    )
+                if self.work > limit and not (found or self.stand) and turn <= _QUICK:
+                    limit = _ALONE + _MORE_WORK  # lanes would take as long
+                if self.work > limit:
+                    found = found or self._in_lanes(tried[turn:][:_FURTHER])
                     break
                 try:
                     with self.trial.changed({edit.part}, edit.changes, variants.of(edit)):

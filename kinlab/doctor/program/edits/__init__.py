@@ -12,6 +12,7 @@ module            what it holds
 ``composites``    What is missing of several names at once: a cross product, a moment about another
                   axis
 ``data``          The numbers of a program: those in its text, and those in the data that it uses
+``elsewhere``     What a program has elsewhere in the same company, or in the line of another link
 ``every``         What could stand in a place of a program instead
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement

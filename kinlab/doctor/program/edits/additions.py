@@ -16,6 +16,8 @@ _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
 _NEAR = 0.06
 """The same of a matrix that stands in front of another vector of the line."""
+_TURNING = 0.1
+"""The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
 _THRICE = 3
@@ -112,7 +114,9 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     beside = scope.factors.get(id(statement_of(here.above)), set())
     for size in {shape[0], shape[-1]}:
         for text, matrix in scope.simple((size, size)):
-            cost = 1.02 + min(scope.dear(matrix), _NEAR if text in beside else 1.0)
+            turning = not scope.fronts.isdisjoint(names(matrix))
+            near = _NEAR if text in beside else _TURNING if turning else 1.0
+            cost = 1.02 + min(scope.dear(matrix), near)
             for turned in (matrix, ast.Attribute(matrix, "T", ast.Load())):
                 if turned is not matrix and isinstance(matrix, ast.Attribute):
                     continue

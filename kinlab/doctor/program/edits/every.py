@@ -18,6 +18,7 @@ from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
+from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import of_forgotten, with_slices
 from kinlab.doctor.program.edits.operators import (
     keys_of,
@@ -46,6 +47,7 @@ from kinlab.doctor.program.trial import Trial
 def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[ProgramEdit]:
     """Every single edit of a program, of whose parts these are the scopes; the likeliest first."""
     found: list[ProgramEdit] = []
+    elsewhere = Elsewhere(trial, observed)
     for part, tree in enumerate(trial.trees):
         scope = scopes[part]
         for here in places(part, tree):
@@ -54,6 +56,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
             if isinstance(node, ast.expr):
                 if observed.of(node) is not None:
                     found += _expression(here, scope, observed)
+                    found += elsewhere.edits(here, scope, observed)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)

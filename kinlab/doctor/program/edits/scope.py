@@ -40,6 +40,7 @@ class Scope:
 
     Attributes:
         observed: what its expressions were.
+        space: what the module's names stand for.
         functions: the program's own, each with how many arguments it asks for.
         has_numpy: whether numpy is called ``np``.
         shapes: names of numbers, by their shapes.
@@ -57,6 +58,7 @@ class Scope:
         idle: calls that nothing makes, of functions or for joints that are used nowhere, by shape.
         inner: the terms of the sums that are factors, without their numbers.
         factors: what stands in front of a product of matrices, by the statements' identities.
+        fronts: names in what stands in front of any product of matrices.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
@@ -66,6 +68,7 @@ class Scope:
     def __init__(self, trial: Trial, observed: Observed, part: int) -> None:
         tree = trial.trees[part]
         self.observed = observed
+        self.space = trial.space
         parts = trial.program.parts
         self.functions = {p.name: len(p.tree.args.args) for p in parts[1:] if p.owner is None}
         self.angular = {name for name in ANGLES if callable(trial.space.get(name))}
@@ -82,6 +85,9 @@ class Scope:
         self.idle: list[tuple[Shape, ast.expr]] = []
         self.inner: set[str] = set()
         self.factors: dict[int, set[str]] = {}
+        products = (x for x in nodes(tree) if isinstance(x, ast.BinOp))
+        fronts = (x.left for x in products if isinstance(x.op, ast.MatMult))
+        self.fronts = {name for one in fronts for name in names(one)}
         self.pi = _pi_of(trial.space)
         self._inside: frozenset[str] = frozenset()
         self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}

@@ -24,13 +24,13 @@ from kinlab.doctor.program.trial import NoProgramError
 
 _BLOCK = 120
 """Edits of which each is run with each of as many others at a time."""
-_EDITS = 1600
+_EDITS = 2400
 """Edits of which any two are run together."""
 _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
 """Share of the edits that lanes must follow, for what they tell to be of use."""
-_WATCHED = 2
+_WATCHED = 1
 """States at which that is looked at."""
 _WITHIN = 200
 """Edits of which one may be in the other."""
@@ -38,7 +38,7 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 100_000_000, 75_000_000
+_ALL, _LEAST = 120_000_000, 75_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""

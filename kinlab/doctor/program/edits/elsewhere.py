@@ -1,0 +1,345 @@
+"""What a program has elsewhere in the same company, or in the line of another link.
+
+Who writes ``T[j][:3, 3] + R @ c`` in one function means it in the other; of ``v2 = ...`` and
+``v3 = ...`` one tells what the other should be.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from types import FunctionType
+from typing import Any
+
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import Here, ProgramEdit, called, paired, with_other
+from kinlab.doctor.program.trial import Trial
+
+_VECTOR = (3,)
+_THIRD, _LAST = 2, 3
+"""Columns of a pose: the axis, the point."""
+_MATRIX, _TWO = 2, 2
+"""Axes of a matrix, what is multiplied."""
+_MULTIPLY = ("mul", "matmul", "mat_mul", "mm", "dot", "prod", "matprod")
+"""How functions that multiply matrices begin."""
+_ALIKE = 12
+"""Lines of one name that are held beside one another."""
+_LETTERS = 200
+"""Letters of a line that is."""
+_NUMBERED = re.compile(r"([A-Za-z_]+?)_?(\d)")
+
+
+@dataclass(frozen=True, eq=False)
+class _Company:
+    """An expression in a larger one.
+
+    Attributes:
+        whole: the larger one.
+        field, at: where in it the expression is.
+    """
+
+    whole: ast.expr
+    field: str
+    at: int | None = None
+
+
+class Elsewhere:
+    """What the expressions of a program stand together with, and the lines of the same names.
+
+    Args:
+        trial: the program.
+        observed: its expressions.
+    """
+
+    def __init__(self, trial: Trial, observed: Observed) -> None:
+        self._company: dict[str, list[_Company]] = defaultdict(list)
+        self._lines: dict[int, list[ast.expr]] = defaultdict(list)
+        own = {part.name for part in trial.program.parts}
+        for tree in trial.trees:
+            for node in nodes(tree):
+                if isinstance(node, ast.expr):
+                    for one, of in _operands(node, own, observed):
+                        self._company[_bare(one)].append(of)
+            self._of_lines(tree)
+        self._products = _products(trial, observed)
+
+    def edits(self, here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+        """What an expression should be as it is elsewhere."""
+        node = here.node
+        shape = observed.shape(node)
+        if isinstance(node, ast.Call) and called(node) == "range":
+            yield from _other_ranges(here, scope)
+        for new in self._lines.get(id(node), ()):
+            if _known(new, scope):
+                yield here.instead(new, _kind(node, new), 1.06)
+        if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
+            return
+        crossed = isinstance(here.parent, ast.Call) and called(here.parent) == "cross"
+        if crossed and shape == _VECTOR and here.field == 1:
+            yield from _from_the_axis(here, scope)
+        if len(shape) == _MATRIX and isinstance(here.parent, ast.Assign):
+            yield from self._multiplied(here, scope, shape)
+        seen = {ast.unparse(node), ast.unparse(here.parent)}
+        for of in self._company.get(_bare(node), ()):
+            larger = _renamed(of, node)
+            text = "" if larger is None else ast.unparse(larger)
+            if larger is None or text in seen or not _known(larger, scope):
+                continue
+            seen.add(text)
+            if observed.shape(of.whole) == shape or isinstance(here.parent, ast.Assign):
+                cost = 1.1 if isinstance(node, ast.Name) else 1.06
+                yield here.instead(larger, _kind(node, larger), cost)
+
+    def _multiplied(self, here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+        """A matrix times another one, by the program's own function: ``T = mul(T, step(i))``."""
+        if isinstance(here.node, ast.Call) and called(here.node) in self._products:
+            return
+        for name in self._products:
+            for _text, matrix in scope.simple(shape):
+                function = ast.Name(name, ast.Load())
+                for both in ([matrix, here.node], [here.node, matrix]):
+                    yield here.instead(ast.Call(function, both, []), "missing matrix", 1.1)
+
+    def _of_lines(self, tree: ast.AST) -> None:
+        """Lines that set the same of other links: ``v2 = ...`` beside ``v3 = ...``."""
+        alike: dict[str, list[tuple[list[int], ast.expr]]] = defaultdict(list)
+        for line in nodes(tree):
+            if isinstance(line, ast.Assign) and len(line.targets) == 1:
+                for target, value in paired(line.targets[0], line.value):
+                    text = ast.unparse(target)
+                    numbers = [int(x) for x in re.findall(r"\d", text)]
+                    if numbers and len(ast.unparse(value)) <= _LETTERS:
+                        alike[re.sub(r"\d", "#", text)].append((numbers, value))
+        for some in alike.values():
+            for here, value in some[:_ALIKE]:
+                for there, other in some[:_ALIKE]:
+                    steps = {a - b for a, b in zip(here, there, strict=True)} - {0}
+                    if value is not other and len(steps) == 1:
+                        self._beside(value, _Shifted(*steps).visit(copied(other)))
+
+    def _beside(self, value: ast.expr, other: ast.expr) -> None:
+        """Notes what of a line should be, if it is as another one."""
+        if ast.dump(value) == ast.dump(other):
+            return
+        while (inner := _only_difference(value, other)) is not None:
+            value, other = inner
+        if isinstance(other, ast.expr) and isinstance(value, ast.expr):
+            self._lines[id(value)].append(other)
+
+
+class _Shifted(ast.NodeTransformer):
+    """Names and entries of other links, by a step: ``w2`` and ``q[1]`` for ``w1`` and ``q[0]``."""
+
+    def __init__(self, step: int) -> None:
+        self.step = step
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        found = _NUMBERED.fullmatch(node.id)
+        if found is None:
+            return node
+        number = int(found[2]) + self.step
+        return ast.Name(f"{node.id[:-1]}{max(number, 0)}", node.ctx)
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        node.value = self.visit(node.value)
+        key = node.slice
+        if isinstance(key, ast.Constant) and type(key.value) is int:
+            node.slice = ast.Constant(max(key.value + self.step, 0))
+        elif isinstance(key, ast.Name):
+            node.slice = self.visit(key)
+        return node
+
+
+def _products(trial: Trial, observed: Observed) -> list[str]:
+    """Functions of the program's own that multiply two matrices, as far as can be seen."""
+    calls = [x for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Call)]
+    found: list[str] = []
+    for part in trial.program.parts[1:]:
+        own = [x for x in calls if called(x) == part.name and len(x.args) == _TWO]
+        sizes = {observed.shape(x) for call in own for x in (call, *call.args)}
+        alike = len(sizes) == 1 and len(next(iter(sizes)) or ()) == _MATRIX
+        found += [part.name] if alike else []
+    uncalled = {*trial.space} - {called(x) for x in calls}
+    found += sorted(name for name in uncalled if _is_product(trial.space[name]))
+    return found
+
+
+def _is_product(value: Any) -> bool:
+    """Whether a function that nothing calls any more is called as one that multiplies."""
+    return isinstance(value, FunctionType) and value.__name__.lower().startswith(_MULTIPLY)
+
+
+def _operands(
+    node: ast.expr, own: set[str], observed: Observed
+) -> Iterator[tuple[ast.expr, _Company]]:
+    """The operands of a sum or a product, and what a function of the program's own is given."""
+    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub | ast.MatMult):
+        yield node.left, _Company(node, "left")
+        if not isinstance(node.op, ast.Sub):
+            yield node.right, _Company(node, "right")
+    elif isinstance(node, ast.Call) and called(node) in own and len(node.args) > 1:
+        whole = observed.shape(node)
+        for k, one in enumerate(node.args):
+            if whole and observed.shape(one) == whole:
+                yield one, _Company(node, "args", k)
+
+
+def _bare(node: ast.expr) -> str:
+    """An expression without the names of its indices: ``T[#][:3, 3]`` of ``T[i + 1][:3, 3]``."""
+    if isinstance(node, ast.Name):
+        return node.id
+    return re.sub(r"\[[a-z](?: [-+] 1)?\]", "[#]", ast.unparse(node))
+
+
+def _renamed(of: _Company, node: ast.expr) -> ast.expr | None:
+    """The larger expression with another one in it, and that one's index throughout."""
+    inner: ast.expr = getattr(of.whole, of.field)
+    if of.at is not None:
+        inner = getattr(of.whole, of.field)[of.at]
+    if inner is node:
+        return None
+    new = copied(with_other(of.whole, of.field, of.at, ast.Name("_here", ast.Load())))
+    before, now = _index(inner), _index(node)
+    if before is not None and now is not None and ast.dump(before) != ast.dump(now):
+        new = _OtherIndex(before, now).visit(new)
+    return _InPlace(node).visit(new)  # type: ignore[no-any-return]
+
+
+def _index(node: ast.expr) -> ast.expr | None:
+    """The innermost index of an expression: ``i + 1`` of ``T[i + 1][:3, 3]``."""
+    found = None
+    while isinstance(node, ast.Subscript | ast.Attribute):
+        if isinstance(node, ast.Subscript):
+            found = node.slice
+        node = node.value
+    return found
+
+
+class _OtherIndex(ast.NodeTransformer):
+    """One index for another: of ``T[i + 1]`` and ``c[i]``, both by ``j``."""
+
+    def __init__(self, before: ast.expr, now: ast.expr) -> None:
+        self.before, self.now = ast.dump(before), now
+        self.counter = before.id if isinstance(before, ast.Name) else ""
+
+    def visit_Subscript(self, node: ast.Subscript) -> ast.expr:
+        self.generic_visit(node)
+        if ast.dump(node.slice) == self.before:
+            return ast.Subscript(node.value, copied(self.now), node.ctx)
+        return node
+
+
+class _InPlace(ast.NodeTransformer):
+    """An expression where the other one was."""
+
+    def __init__(self, node: ast.expr) -> None:
+        self.node = node
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return self.node if node.id == "_here" else node
+
+
+def _from_the_axis(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A point as seen from the axis: ``p - T[j][:3, 3]`` where that is ``T[j][:3, 2]``."""
+    if isinstance(here.node, ast.BinOp) and isinstance(here.node.op, ast.Sub):
+        return
+    assert isinstance(here.parent, ast.Call)
+    axis: ast.expr | None = here.parent.args[0]
+    if isinstance(axis, ast.Name):
+        axis = _set_to(axis.id, here.above)
+    if isinstance(axis, ast.Subscript) and isinstance(axis.slice, ast.Tuple):
+        rows, column = axis.slice.elts[0], axis.slice.elts[-1]
+        if isinstance(column, ast.Constant) and column.value == _THIRD:
+            key = ast.Tuple([copied(rows), ast.Constant(_LAST)], ast.Load())
+            point = ast.Subscript(copied(axis.value), key, ast.Load())
+            yield here.instead(ast.BinOp(here.node, ast.Sub(), point), "missing term", 1.04)
+    elif isinstance(axis, ast.Subscript):
+        for name, shape in scope.lists.items():
+            if shape == _VECTOR:
+                point = ast.Subscript(ast.Name(name, ast.Load()), axis.slice, ast.Load())
+                yield here.instead(ast.BinOp(here.node, ast.Sub(), point), "missing term", 1.08)
+
+
+def _set_to(name: str, above: Sequence[ast.AST]) -> ast.expr | None:
+    """What a name was set to last in the blocks around a place."""
+    lines = [line for outer in above for line in getattr(outer, "body", ())]
+    for line in reversed(lines if all(isinstance(x, ast.stmt) for x in lines) else []):
+        if isinstance(line, ast.Assign) and len(line.targets) == 1:
+            for target, value in paired(line.targets[0], line.value):
+                if isinstance(target, ast.Name) and target.id == name:
+                    return value
+    return None
+
+
+def _other_ranges(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """What other loops run through, with this one's outer counter: ``range(i, 3)``."""
+    counters = [x.target.id for x in here.above
+                if isinstance(x, ast.For) and isinstance(x.target, ast.Name)]  # fmt: skip
+    own = {*names(here.node)}
+    for one in scope.ranges:
+        for name in dict.fromkeys(names(one)):
+            for counter in counters if name in scope.counters else ():
+                if counter not in (name, getattr(here.parent, "target", None)):
+                    new = _OtherCounter(name, counter).visit(copied(one))
+                    cost = 1.12 if counter in own else 1.16
+                    yield here.instead(new, "loop", cost)
+
+
+class _OtherCounter(ast.NodeTransformer):
+    """One counter for another."""
+
+    def __init__(self, name: str, other: str) -> None:
+        self.name, self.other = name, other
+
+    def visit_Name(self, node: ast.Name) -> ast.expr:
+        return ast.Name(self.other, node.ctx) if node.id == self.name else node
+
+
+def _only_difference(one: ast.AST, other: ast.AST) -> tuple[ast.expr, ast.expr] | None:
+    """The only expressions in which two of one kind differ; None where there are more."""
+    if type(one) is not type(other):
+        return None
+    found: list[tuple[ast.expr, ast.expr]] = []
+    for (_name, mine), (_same, theirs) in zip(
+        ast.iter_fields(one), ast.iter_fields(other), strict=True
+    ):
+        pairs = [(mine, theirs)]
+        if isinstance(mine, list):
+            if len(mine) != len(theirs):
+                return None
+            pairs = [*zip(mine, theirs, strict=True)]
+        for a, b in pairs:
+            if not isinstance(a, ast.AST):
+                if a != b:
+                    return None
+            elif ast.dump(a) != ast.dump(b):
+                if not isinstance(a, ast.expr) or not isinstance(b, ast.expr):
+                    return None
+                found.append((a, b))
+    return found[0] if len(found) == 1 else None
+
+
+def _known(new: ast.expr, scope: Scope) -> bool:
+    """Whether a part has all the names of an expression."""
+    here = {*scope.shapes, *scope.lists, *scope.counters, *scope.functions, *scope.whole}
+    return all(name in here or name in scope.space for name in names(new))
+
+
+def _kind(old: ast.expr, new: ast.expr) -> str:
+    """What is wrong where one stands for the other."""
+    before, after = ast.unparse(old), ast.unparse(new)
+    larger, smaller = (new, old) if before in after else (old, new)
+    if ast.unparse(smaller) not in ast.unparse(larger):
+        return "name"
+    told = "missing" if larger is new else "extra"
+    if isinstance(larger, ast.BinOp) and isinstance(larger.op, ast.Add | ast.Sub):
+        return f"{told} term"
+    product = isinstance(larger, ast.Call) or (
+        isinstance(larger, ast.BinOp) and isinstance(larger.op, ast.MatMult)
+    )
+    return "missing matrix" if product and told == "missing" else f"{told} factor"
