@@ -33,7 +33,13 @@ from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions
 from kinlab.doctor.program.grounds.evidence import Grounds
 from kinlab.doctor.program.grounds.products import missing_products
-from kinlab.doctor.program.grounds.scaled import OtherArm, other_arm, own_numbers, own_rows
+from kinlab.doctor.program.grounds.scaled import (
+    OtherArm,
+    numbers_of,
+    other_arm,
+    own_numbers,
+    own_rows,
+)
 from kinlab.doctor.program.grounds.suspects import suspects
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed, amounts
@@ -587,12 +593,15 @@ class LineSearch:
             own = len(own_numbers(self.case.robot)) > 0
             every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]
         every.sort(key=lambda place: (not place.value, against(place.edit(place.value))))
+        alone = {id(x.place.node) for x in numbers_of(self.trial, self.observed) if x.alone}
         for place in every:
             if self.work > (self.most if self.stand else _ALONE) + _SOLVED:
                 break
             value = self._solved(place)
-            if strange and value is not None and not self.is_own(value):
-                continue
+            if value is not None and not self.is_own(value):
+                named = place.part == DATA or id(place.node) in alone
+                if strange or (named and self.is_own(float(place.value))):
+                    continue  # a number with a name would be nobody's
             if value is not None and not self.makes_up(float(place.value), value):
                 edit = place.edit(value)
                 with changed(self.trial, (edit,)):

@@ -320,7 +320,7 @@ def _of_the_other_axis(stem: str) -> list[str]:
 class OtherAxis(Turned):
     """Of x what is there of y, with cosines for sines."""
 
-    def visit_Name(self, node: ast.Name) -> ast.expr:
+    def visit_Name(self, node: ast.Name) -> ast.Name:
         for one, other in ("xy", "yx", "XY", "YX"):
             name = node.id.replace(one, other)
             if name != node.id and name in self.known:

@@ -9,7 +9,7 @@ from functools import reduce
 from kinlab.doctor.bytecode.syntax import factors, nodes
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import Here, ProgramEdit, number
 
 _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
@@ -61,7 +61,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
         yield from _of_turning(here, scope)
         if isinstance(parent, ast.Assign | ast.AugAssign | ast.Return):
             yield from _carried_on(here, scope)
-        if isinstance(parent, ast.Call) and called(parent) == "cross" and _is_arm(node):
+        if scope.crosses(parent) and _is_arm(node):
             yield from _of_levers(here, scope)
 
 
@@ -278,7 +278,7 @@ def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     if scope.cross is None:
         return
     node = here.node
-    if isinstance(node, ast.Call) and called(node) == "cross" and _begins(node.args[0], _RATES):
+    if scope.crosses(node) and _begins(node.args[0], _RATES):
         twice = ast.Call(node.func, [node.args[0], node], [])
         yield here.instead(twice, "missing factor", 1.09)
     vectors = scope.pieces_here(_VECTOR).values()
@@ -291,7 +291,7 @@ def _of_turning(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
 def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.expr]:
     """What turns with a velocity, where a term is of an acceleration."""
     own = ast.unparse(rate)
-    if isinstance(node, ast.Call) and len(node.args) == 2 and called(node) == "cross":
+    if isinstance(node, ast.Call) and scope.crosses(node):
         if ast.unparse(node.args[0]) != own:
             yield ast.Call(node.func, [rate, node.args[1]], [])
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):

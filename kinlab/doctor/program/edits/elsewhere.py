@@ -14,13 +14,16 @@ from dataclasses import dataclass
 from types import FunctionType
 from typing import Any
 
+import numpy as np
+
+from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called, paired, with_other
 from kinlab.doctor.program.trial import Trial
 
-_VECTOR = (3,)
+_VECTOR, _ROTATION = (3,), (3, 3)
 _THIRD, _LAST = 2, 3
 """Columns of a pose: the axis, the point."""
 _MATRIX, _TWO = 2, 2
@@ -60,13 +63,18 @@ class Elsewhere:
         self._company: dict[str, list[_Company]] = defaultdict(list)
         self._lines: dict[int, list[ast.expr]] = defaultdict(list)
         own = {part.name for part in trial.program.parts}
+        self._given: dict[tuple[str, int], dict[str, ast.expr]] = defaultdict(dict)
         for tree in trial.trees:
             for node in nodes(tree):
                 if isinstance(node, ast.expr):
                     for one, of in _operands(node, own, observed):
                         self._company[_bare(one)].append(of)
+                if isinstance(node, ast.Call) and called(node) in own:
+                    for k, one in enumerate(node.args):
+                        self._given[called(node), k].setdefault(ast.unparse(one), one)
             self._of_lines(tree)
         self._products = _products(trial, observed)
+        self._roles = _roles(trial, observed)
 
     def edits(self, here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
         """What an expression should be as it is elsewhere."""
@@ -77,10 +85,22 @@ class Elsewhere:
         for new in self._lines.get(id(node), ()):
             if _known(new, scope):
                 yield here.instead(new, _kind(node, new), 1.06)
+        if isinstance(here.parent, ast.Call) and here.holder is here.parent.args:
+            mine = ast.unparse(node)
+            for text, one in self._given.get((called(here.parent), here.field), {}).items():
+                if text != mine and observed.shape(one) == (shape or ()) and _known(one, scope):
+                    yield here.instead(one, "name", 1.05 if _is_nothing(node) else 1.1)
+        if _is_nothing(node) and isinstance(here.parent, ast.Assign):
+            yield from _of_the_mirror(here)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
-        crossed = isinstance(here.parent, ast.Call) and called(here.parent) == "cross"
-        if crossed and shape == _VECTOR and here.field == 1:
+        if self._roles and shape in (_VECTOR, _ROTATION):
+            yield from self._by_own_functions(here, scope, shape)
+        named = isinstance(node, ast.Name) and isinstance(here.parent, ast.Assign)
+        if shape == _VECTOR and named:
+            zeros = ast.List([ast.Constant(0)] * 3, ast.Load())
+            yield here.instead(zeros, "extra term", 1.15)
+        if scope.crosses(here.parent) and shape == _VECTOR and here.field == 1:
             yield from _from_the_axis(here, scope)
         if len(shape) == _MATRIX and isinstance(here.parent, ast.Assign):
             yield from self._multiplied(here, scope, shape)
@@ -94,6 +114,53 @@ class Elsewhere:
             if observed.shape(of.whole) == shape or isinstance(here.parent, ast.Assign):
                 cost = 1.1 if isinstance(node, ast.Name) else 1.06
                 yield here.instead(larger, _kind(node, larger), cost)
+
+    def _by_own_functions(self, here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
+        """What the program's own functions of vectors and matrices make of an expression."""
+        node = here.node
+        own = self._roles.get(called(node), "") if isinstance(node, ast.Call) else ""
+        if own == "transposed":
+            yield here.instead(node.args[0], "transposed", 1.02)
+        elif own in ("turned", "times"):
+            yield here.instead(node.args[1], "extra factor", 1.08)
+        for name, role in self._roles.items():
+            function = ast.Name(name, ast.Load())
+            if shape == _ROTATION:
+                if role == "transposed" and own != role:
+                    yield here.instead(ast.Call(function, [node], []), "transposed", 1.04)
+                continue
+            if role == "turned":
+                for text, angle in scope.simple(()):
+                    cost = 1.06 if text in scope.unused else 1.16
+                    yield here.instead(
+                        ast.Call(function, [angle, node], []), "missing matrix", cost
+                    )
+            elif role == "times":
+                for _text, matrix in scope.simple(_ROTATION):
+                    for turned in (matrix, *self._transposed(matrix)):
+                        new = ast.Call(function, [turned, node], [])
+                        yield here.instead(new, "missing matrix", 1.1)
+            elif role == "sum" and isinstance(here.parent, ast.Assign | ast.Return | ast.Call):
+                yield from self._added(here, scope, function)
+
+    def _transposed(self, matrix: ast.expr) -> Iterator[ast.expr]:
+        for name, role in self._roles.items():
+            if role == "transposed":
+                yield ast.Call(ast.Name(name, ast.Load()), [matrix], [])
+
+    def _added(self, here: Here, scope: Scope, function: ast.expr) -> Iterator[ProgramEdit]:
+        """A vector more, or a moment, by the program's own sum."""
+        vectors = [one for _text, one in scope.simple(_VECTOR)]
+        crosses = [name for name, role in self._roles.items() if role == "cross"]
+        for one in vectors:
+            yield here.instead(ast.Call(function, [here.node, one], []), "missing term", 1.12)
+        for name in crosses:
+            for one in vectors:
+                for other in vectors if one is not here.node else ():
+                    if one is not other:
+                        product = ast.Call(ast.Name(name, ast.Load()), [one, other], [])
+                        new = ast.Call(function, [here.node, product], [])
+                        yield here.instead(new, "missing term", 1.14)
 
     def _multiplied(self, here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         """A matrix times another one, by the program's own function: ``T = mul(T, step(i))``."""
@@ -169,6 +236,56 @@ def _products(trial: Trial, observed: Observed) -> list[str]:
     return found
 
 
+def _roles(trial: Trial, observed: Observed) -> dict[str, str]:
+    """What functions of the program's own do with vectors and matrices, as far as is seen."""
+    own = {part.name for part in trial.program.parts[1:]}
+    found: dict[str, str] = {}
+    for tree in trial.trees:
+        for call in nodes(tree):
+            if isinstance(call, ast.Call) and called(call) in own - found.keys():
+                seen = [observed.of(one) for one in (*call.args, call)]
+                values = [one.values[0] for one in seen if one is not None and one.values]
+                role = _role(*values) if 1 < len(values) == len(seen) else ""
+                found |= {called(call): role} if role else {}
+    return found
+
+
+def _role(*values: Array) -> str:
+    """What makes the last of some numbers of the others."""
+    *given, answer = values
+    shapes = [one.shape for one in given]
+    if not answer.any():
+        return ""
+    if shapes == [_ROTATION] and answer.shape == _ROTATION:
+        plain = np.allclose(given[0], given[0].T)
+        return "transposed" if np.allclose(answer, given[0].T) and not plain else ""
+    if shapes == [_VECTOR, _VECTOR] and answer.shape == _VECTOR:
+        if np.allclose(answer, given[0] + given[1]) and given[0].any() and given[1].any():
+            return "sum"
+        return "cross" if np.allclose(answer, np.cross(given[0], given[1])) else ""
+    if shapes == [_ROTATION, _VECTOR] and answer.shape == _VECTOR:
+        return "times" if np.allclose(answer, given[0] @ given[1]) else ""
+    if shapes == [(), _VECTOR] and answer.shape == _VECTOR:
+        same = np.isclose(np.linalg.norm(answer), np.linalg.norm(given[1]))
+        return "turned" if same and given[0] else ""
+    return ""
+
+
+def _is_nothing(node: ast.AST) -> bool:
+    return isinstance(node, ast.Constant) and node.value == 0 and node.value is not False
+
+
+def _of_the_mirror(here: Here) -> Iterator[ProgramEdit]:
+    """The entry on the other side of the diagonal, for a zero: ``M[1, 0] = M[0, 1]``."""
+    assert isinstance(here.parent, ast.Assign)
+    target = here.parent.targets[0]
+    keys = getattr(getattr(target, "slice", None), "elts", [])
+    if isinstance(target, ast.Subscript) and len(keys) == _TWO and here.field == "value":
+        key = ast.Tuple([*map(copied, reversed(keys))], ast.Load())
+        other = ast.Subscript(copied(target.value), key, ast.Load())
+        yield here.instead(other, "name", 1.1)
+
+
 def _is_product(value: Any) -> bool:
     """Whether a function that nothing calls any more is called as one that multiplies."""
     return isinstance(value, FunctionType) and value.__name__.lower().startswith(_MULTIPLY)
@@ -193,7 +310,7 @@ def _bare(node: ast.expr) -> str:
     """An expression without the names of its indices: ``T[#][:3, 3]`` of ``T[i + 1][:3, 3]``."""
     if isinstance(node, ast.Name):
         return node.id
-    return re.sub(r"\[[a-z](?: [-+] 1)?\]", "[#]", ast.unparse(node))
+    return re.sub(r"\[(?:[a-z](?: [-+] 1)?|\d)\]", "[#]", ast.unparse(node))
 
 
 def _renamed(of: _Company, node: ast.expr) -> ast.expr | None:
@@ -326,7 +443,7 @@ def _only_difference(one: ast.AST, other: ast.AST) -> tuple[ast.expr, ast.expr] 
 
 def _known(new: ast.expr, scope: Scope) -> bool:
     """Whether a part has all the names of an expression."""
-    here = {*scope.shapes, *scope.lists, *scope.counters, *scope.functions, *scope.whole}
+    here = {*scope.shapes, *scope.lists, *scope.counters, *scope.whole, *scope.present}
     return all(name in here or name in scope.space for name in names(new))
 
 

@@ -42,7 +42,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         return
     if isinstance(node, ast.Call) and called(node) == "zeros":
         for _text, vector in scope.simple(shape):
-            yield here.instead(vector, "name", 1.12)
+            if not isinstance(getattr(vector, "slice", None), ast.Tuple):  # a part of a matrix
+                yield here.instead(vector, "name", 1.12)
     if shape == _VECTOR and scope.has_numpy and isinstance(parent, ast.List | ast.Tuple):
         zeros = ast.Attribute(ast.Name("np", ast.Load()), "zeros", ast.Load())
         nothing = ast.Call(zeros, [ast.Constant(_VECTOR[0])], [])

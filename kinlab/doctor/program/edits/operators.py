@@ -10,7 +10,7 @@ from typing import Any
 from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.data import measured, moved_on
-from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope
+from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
@@ -199,7 +199,7 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                 continue
             swapped = [*plain]
             swapped[i], swapped[j] = swapped[j], swapped[i]
-            cost = 1.02 if name == "cross" else 1.05 if name in _ORDERED else 1.15
+            cost = 1.02 if scope.crosses(node) else 1.05 if name in _ORDERED else 1.15
             yield here.within(node, "args", swapped, "order", cost + _APART * (j > i + 1))
         if name in ("arctan2", "atan2") and len(plain) == 2:
             for one in (0, 1):  # the angle from the other axis
@@ -390,11 +390,16 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
         return
     if node.id in scope.arcs and scope.has_numpy:
         yield here.instead(ast.BinOp(PI, ast.Sub(), node), "argument", 1.12)
+    across = Turned(scope.shapes).visit_Name(node).id
     for other, known in scope.shapes.items():
         if other != node.id and known == shape and other not in scope.counters:
             near = _alike(other, node.id)
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
-            yield here.instead(ast.Name(other, ast.Load()), kind, 1.1 if near else 1.25)
+            beside = other in scope.beside.get(node.id, ())
+            cost = 1.1 if near else 1.14 if beside else 1.25
+            if other == across and {other, node.id} <= scope.sines:
+                kind, cost = "sin/cos", 1.04
+            yield here.instead(ast.Name(other, ast.Load()), kind, cost)
     if shape and not isinstance(here.parent, ast.Subscript | ast.Attribute):
         for text, entry in scope.simple(shape):  # an entry of a list by a counter
             if isinstance(entry, ast.Subscript) and text != node.id:

@@ -58,6 +58,8 @@ class Scope:
         idle: calls that nothing makes, of functions or for joints that are used nowhere, by shape.
         inner: the terms of the sums that are factors, without their numbers.
         factors: what stands in front of a product of matrices, by the statements' identities.
+        beside: names that are entries of one thing: ``w, dh, dr = v``.
+        present: the names that it has.
         fronts: names in what stands in front of any product of matrices.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
@@ -117,6 +119,7 @@ class Scope:
         here = {*names(tree, ast.Load)}
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
         local |= {*names(tree)} - here
+        self.present = here | local
         self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
@@ -132,6 +135,7 @@ class Scope:
             if isinstance(node, ast.Assign) and len(node.targets) == 1:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
+        self.beside = _set_together(tree)
         self.arcs, self.sines = _set_by(tree, ARCS), _set_by(tree, ANGLES)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
@@ -354,6 +358,13 @@ class Scope:
             return _UNUSED
         return _UNUSED if self.unused.isdisjoint(names(node)) else 0.0
 
+    def crosses(self, node: ast.AST) -> bool:
+        """Whether a call takes the product of two vectors, by whatever name."""
+        if not isinstance(node, ast.Call) or len(node.args) != 2:
+            return False
+        own = self.cross is not None and ast.unparse(node.func) == ast.unparse(self.cross)
+        return own or called(node) == "cross"
+
     def is_pose(self, node: ast.AST) -> bool:
         """Whether a matrix is a transform, which nobody transposes."""
         seen = self.observed.of(node)
@@ -493,7 +504,7 @@ class Turned(ast.NodeTransformer):
                 node.func = ast.Name(other, ast.Load())
         return node
 
-    def visit_Name(self, node: ast.Name) -> ast.expr:
+    def visit_Name(self, node: ast.Name) -> ast.Name:
         other = {"s": "c", "c": "s"}.get(node.id[:1], "") + node.id[1:]
         both = node.id in self.known and other in self.known
         return ast.Name(other, node.ctx) if both else node
@@ -616,6 +627,18 @@ def _set_by(tree: ast.AST, functions: Container[str]) -> set[str]:
     lines = [node for node in nodes(tree) if isinstance(node, ast.Assign)]
     pairs = (pair for one in lines for target in one.targets for pair in _set(target, one.value))
     return {name for name, x in pairs if isinstance(x, ast.Call) and called(x) in functions}
+
+
+def _set_together(tree: ast.AST) -> dict[str, set[str]]:
+    """Names that are set to the entries of one thing."""
+    found: dict[str, set[str]] = {}
+    for node in nodes(tree):
+        if isinstance(node, ast.Assign) and not isinstance(node.value, ast.Tuple | ast.List):
+            for target in node.targets:
+                every = names(target) if isinstance(target, ast.Tuple) else []
+                for name in every:
+                    found.setdefault(name, set()).update(every)
+    return found
 
 
 def _unpacked(target: ast.expr, value: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:

@@ -14,8 +14,9 @@ import numpy as np
 
 _STEP, _NUMBERS = 40, 25
 """What an operation amounts to beside its numbers, and how many of these amount to one."""
-_EDIT, _ARRAY = 300, 700
-"""What evaluating an edit amounts to beside its operations; and where it gives an array."""
+_EDIT, _ARRAY, _PICK = 300, 700, 15
+"""What evaluating an edit amounts to beside its operations; where it gives an array; and asking
+a place for its edits."""
 
 
 _PLAIN = (float, int, complex, bool)
@@ -104,6 +105,7 @@ class Lanes:
         """What a place of the program gives: for the lanes of its edits what these make of it."""
         if self.work > self.most:
             raise TooMuchError
+        self.work += _PICK
         here = self.here
         value = old()
         known = here.edits

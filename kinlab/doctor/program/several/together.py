@@ -48,6 +48,8 @@ _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
 _BEYOND = 10_000_000
 """What one run may take beyond what is left."""
+_ONE_RUN = 20_000_000
+"""What one run may take at all: more is a recursion with edits in each call."""
 _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
 _TO_READ = 200
@@ -96,7 +98,7 @@ class TriedTogether:
     def _follows(self, count: int) -> bool:
         """Whether most edits do in lanes what they do alone: others are left out."""
         alone = np.arange(_NONE, count)[:, None]
-        rows = self._rows(alone, max(self.count, _WATCHED))
+        rows = self._rows(alone, max(self.count, _WATCHED), _BEYOND + self.left)
         if rows is None or not np.abs(rows[0]).max() <= self.known.near:
             return False
         known = self.known.rows[:count, : rows.shape[1]]
@@ -107,10 +109,11 @@ class TriedTogether:
         self.within = self.lanes.woven.inside()
         return len(self.sound) >= _SOUND * count
 
-    def _rows(self, chosen: Any, count: int | None) -> Array | None:
+    def _rows(self, chosen: Any, count: int | None, most: int = _ONE_RUN) -> Array | None:
         """What edits change together, relative to the answer's size, (C, P)."""
         before = self.lanes.work
-        found = self.lanes.answers(chosen, count, _BEYOND + max(self.left, 0))
+        most = min(_BEYOND + max(self.left, 0), most)
+        found = self.lanes.answers(chosen, count, most)
         self.left -= self.lanes.work - before
         values = None if found is None else self.search.of_lanes(found)
         if values is None:
