@@ -138,7 +138,98 @@ def f(q):
                     M[i, j] += of(a, b)*np.cos(t[a] - t[b])
     return M
 """
+LISTS = """
+from math import cos, sin
+
+l1, l2, l3 = 0.44, 0.37, 0.25
+
+def turn(t, v):
+    return [v[0]*cos(t) - v[1]*sin(t), v[0]*sin(t) + v[1]*cos(t), v[2]]
+
+def times(R, v):
+    return [sum(R[i][k]*v[k] for k in range(3)) for i in range(3)]
+
+def tr(R):
+    return [list(column) for column in zip(*R)]
+
+def add(u, v):
+    return [a + b for a, b in zip(u, v)]
+
+def moment(p, f):
+    return [p[1]*f[2] - p[2]*f[1], p[2]*f[0] - p[0]*f[2], p[0]*f[1] - p[1]*f[0]]
+
+def rot(t):
+    return [[cos(t), -sin(t), 0], [sin(t), cos(t), 0], [0, 0, 1]]
+
+def f(q, w):
+    t3 = q[0] + q[1] + q[2]
+    force = times(tr(rot(t3)), list(w[:3]))
+    n = times(tr(rot(t3)), list(w[3:]))
+    n3 = add(n, moment([l3, 0, 0], force))
+    f2, n2 = turn(q[2], force), turn(q[2], n3)
+    n2 = add(n2, moment([l2, 0, 0], f2))
+    f1, n1 = turn(q[1], f2), turn(q[1], n2)
+    n1 = add(n1, moment([l1, 0, 0], f1))
+    return [n1[2], n2[2], n3[2]]
+"""
+ENERGIES = """
+from math import cos, sin
+
+l, r = (0.44, 0.37, 0.25), (0.19, 0.21, 0.11)
+m, I = (2.3, 1.7, 1.2), (0.05, 0.04, 0.02)
+
+def square(x, y):
+    return x**2 + y**2
+
+def f(q, v):
+    a, b, c = v
+    t1, t2, t3 = q[0], q[0] + q[1], q[0] + q[1] + q[2]
+    s1, k1, s2, k2, s3, k3 = sin(t1), cos(t1), sin(t2), cos(t2), sin(t3), cos(t3)
+    d, e = a + b, a + b + c
+    x, y = -l[0]*s1*a, l[0]*k1*a
+    X, Y = x - l[1]*s2*d, y + l[1]*k2*d
+    T = 0.5*m[0]*square(-r[0]*s1*a, r[0]*k1*a) + 0.5*I[0]*a**2
+    T += 0.5*m[1]*square(x - r[1]*s2*d, y + r[1]*k2*d) + 0.5*I[1]*d**2
+    T += 0.5*m[2]*square(X - r[2]*s3*e, Y + r[2]*k3*e) + 0.5*I[2]*e**2
+    return T
+"""
+ALIAS = """
+import numpy as np
+
+X = np.cross
+D, L2, L3 = 0.31, 0.43, 0.29
+m = [4.1, 2.7, 1.3]
+PC = np.array([[0.02, -0.09, 0.03], [-0.17, 0.02, 0.05], [-0.12, 0.01, -0.02]])
+IC = [np.diag([0.05, 0.03, 0.04]), np.diag([0.01, 0.06, 0.07]), np.diag([0.004, 0.02, 0.022])]
+Z = np.array([0, 0, 1.0])
+
+def turned(t, al):
+    c, s, ca, sa = np.cos(t), np.sin(t), np.cos(al), np.sin(al)
+    return np.array([[c, -s*ca, s*sa], [s, c*ca, -c*sa], [0, sa, ca]])
+
+def f(q, v, a):
+    R = [turned(q[0], np.pi/2), turned(q[1], 0.0), turned(q[2], 0.0), np.eye(3)]
+    P = [np.array([0, D, 0]), np.array([L2, 0, 0]), np.array([L3, 0, 0])]
+    w, dw, acc = np.zeros(3), np.zeros(3), np.array([0, 0, 9.81])
+    F, N = [], []
+    for k in range(3):
+        dw = R[k].T @ (dw + a[k]*Z + X(w, v[k]*Z))
+        w = R[k].T @ (w + v[k]*Z)
+        acc = R[k].T @ acc + X(dw, P[k]) + X(w, X(w, P[k]))
+        F.append(m[k]*(acc + X(dw, PC[k]) + X(w, X(w, PC[k]))))
+        N.append(IC[k] @ dw + X(w, IC[k] @ w))
+    force, n, tau = np.zeros(3), np.zeros(3), np.zeros(3)
+    for k in (2, 1, 0):
+        force = R[k + 1] @ force
+        n = R[k + 1] @ n + X(P[k], force) + X(P[k] + PC[k], F[k]) + N[k]
+        force = force + F[k]
+        tau[k] = n @ (R[k].T @ Z)
+    return tau
+"""
 PROGRAMS = {
+    "lists": (ELBOW, "statics", LISTS),
+    "energies": (ELBOW, "kinetic_energy", ENERGIES),
+    "alias": (WALL, "inverse_dynamics", ALIAS),
     "frames": (WALL, "mass_matrix", AT_REST),
     "lines": (ELBOW, "kinetic_energy", UNROLLED),
     "product": (WALL, "fk", OWN_PRODUCT),
@@ -150,6 +241,13 @@ SLIPS = [
     ("frames", [("pc - T[j][:3, 3]", "pc"), ("a*c]", "a*s]")], "from the axis, and a sine"),
     ("lines", [("x1 - r2*sin(t2)*w2, y1", "-r2*sin(t2)*w2, y1"), ("t3, w3 = t2 + q[2]", "t3, w3 = q[2]")], "lines of other links"),
     ("lines", [("0.5*m2*(u2**2 + n2**2)", "0.5*m2*(u2**2)"), ("y1 + l2*cos(t2)*w2", "y1 + l2*cos(t2)*w1")], "a square and a rate"),
+    ("lists", [("n2 = add(n2, moment([l2, 0, 0], f2))", "n2 = n2")], "a moment by own functions"),
+    ("lists", [("force = times(tr(rot(t3))", "force = times(rot(t3)")], "an own transpose"),
+    ("lists", [("n2 = add(n2, moment([l2, 0, 0], f2))", "n2 = n2"), ("f1, n1 = turn(q[1], f2)", "f1, n1 = turn(q[0], f2)")], "a moment, and a joint"),
+    ("energies", [("0.5*I[0]*a**2", "0.5*I[0]*c**2")], "a name set beside it"),
+    ("energies", [("0.5*I[0]*a**2", "0.5*I[0]*c**2"), ("y + r[1]*k2*d", "y + r[1]*s2*d")], "a name set beside it, and a cosine"),
+    ("alias", [(" + X(w, X(w, P[k]))", "")], "a cross product by another name"),
+    ("alias", [(" + X(w, X(w, P[k]))", ""), ("[k] @ dw + X(w", "[k] @ dw - X(w")], "the same, and a sign"),
     ("product", [("T = mul(T, step(row, t))", "T = step(row, t)")], "a product of one's own"),
     ("sums", [("range(i, 3)", "range(i + 1)")], "what another loop runs through"),
 ]  # fmt: skip

@@ -59,7 +59,7 @@ _FURTHER = 6000
 """Edits that are run all at once where there is no time to run each."""
 _QUICK = 1300
 """Edits that have been run alone by then, of programs of which lanes are worth the time."""
-_MORE_WORK, _WOVEN = 30_000_000, 5000
+_MORE_WORK, _WOVEN = 22_000_000, 5000
 """Work that may be done for them; what putting one in amounts to."""
 _AT_ONCE = 400
 """How many of them at a time."""
@@ -83,6 +83,8 @@ _ALIKE = 0.03
 """Costs that are nothing to go by beside what a repair leaves right."""
 _SAME = 0.011
 """Costs that are one."""
+_ARMS = 600_000
+"""What it amounts to to find other arms."""
 _HELD = 8
 """Repairs of which it is looked whether they hold for other arms."""
 _RIVALS = 4
@@ -95,6 +97,8 @@ _TORQUES = (
     "lagrange_torques",
 )
 """Quantities whose numbers are of one dimension, where all joints turn."""
+_KINEMATIC = ("fk", "jacobian", "planar_jacobian", "jacobian_tool", "jacobian_spatial", "statics")
+"""Quantities that no mass has a part in."""
 _MORE = 6
 """States at which what is right at the first ones is tried before all of them."""
 _SIMPLE = 12
@@ -464,14 +468,18 @@ class LineSearch:
         every = (node for tree in self.trial.trees for node in nodes(tree))
         if any(isinstance(node, ast.Call) and called(node) in ROUNDING for node in every):
             return None, None
-        asked = self.case.robot, self.trial, self.observed
+        masses = self.case.quantity.name not in _KINEMATIC
+        asked = self.case.robot, self.trial, self.observed, masses
         return arm_apart(*asked), other_arm(*asked)
 
     def _arms(self, several: tuple[ProgramEdit, ...]) -> tuple[OtherArm | None, OtherArm | None]:
         """The same for the program as it stands now, with these edits in it."""
         told = [one for one in (*self.stand, *several) if not self._counts(one)]
         sets = any(one.part == DATA or one.of_the_arm or one.numbers is not None for one in told)
-        return self._other_arms() if sets and any(self._others) else self._others
+        if not sets or not any(self._others):
+            return self._others
+        self.work += _ARMS
+        return self._other_arms()
 
     def _holds(self, other: OtherArm) -> bool:
         """Whether the program as it stands now is right for another arm."""
@@ -479,6 +487,7 @@ class LineSearch:
         if there is None:
             return False
         for edits_ in other.ways:
+            self.work += self.longer * self.amounts[0] * len(there.first) // len(self.watched)
             with changed(self.trial, edits_):
                 values = there.values(there.first)
             if values is not None and there.right(values).all():

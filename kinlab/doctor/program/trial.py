@@ -41,6 +41,8 @@ class FailedError(Exception):
     """A program ended with an error of its own."""
 
 
+_DEEPEST = 2
+"""Lists in lists of which it is told whether they are the same."""
 _REMEMBERED = 20_000
 """Answers of one part that are kept."""
 _TURNS = 2_000
@@ -504,12 +506,17 @@ def _again(value: Any) -> Any:
     return copy.deepcopy(value)
 
 
-def _key(value: Any) -> Any:
-    """What a part was asked, for keeping its answer; of functions and objects nothing is kept."""
+def _key(value: Any, deep: int = 0) -> Any:
+    """What a part was asked, for keeping its answer; of functions and objects nothing is kept.
+
+    Nor of lists of matrices that are lists: to tell these apart takes longer than most answers.
+    """
     if isinstance(value, np.ndarray) and value.dtype.kind != "O":
         return (value.shape, value.dtype.str, value.tobytes())
     if isinstance(value, list | tuple):
-        return (type(value).__name__, *map(_key, value))
+        if deep == _DEEPEST:
+            raise TypeError("a list of matrices")
+        return (type(value).__name__, *(_key(one, deep + 1) for one in value))
     if value is None or isinstance(value, str | int | float | complex | np.number):
         return (type(value).__name__, value)
     raise TypeError(type(value).__name__)

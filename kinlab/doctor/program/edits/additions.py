@@ -157,6 +157,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
         dear = 0.0 if text in beside else scope.dear(scalar)
         if named and isinstance(node, ast.Subscript) and isinstance(scalar, ast.Name):
             yield here.instead(scalar, "name", 1.05 + dear)
+        elif isinstance(node, ast.Attribute) and isinstance(scalar, ast.Name):
+            yield here.instead(scalar, "name", 1.03 if node.attr == text else 1.08 + dear)
         if term:
             yield here.instead(ast.BinOp(node, ast.Mult(), scalar), "missing factor", 1.08 + dear)
             if isinstance(scalar, ast.Name | ast.Subscript):

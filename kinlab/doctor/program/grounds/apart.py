@@ -84,8 +84,12 @@ class _Item:
     alone: bool
 
 
-def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None:
+def arm_apart(
+    robot: Robot, trial: Trial, observed: Observed, masses: bool = True
+) -> OtherArm | None:
     """An arm all of whose numbers that a program has names for are different.
+
+    Where no ``masses`` are asked for, what may be a length is none.
 
     What the program has no name for stays as it is; but a centre stays in the middle of its link,
     and a moment of inertia goes with mass and length, where no program has names for these at all.
@@ -99,7 +103,9 @@ def arm_apart(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     every = (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.UnaryOp))
     negative = {id(node.operand) for node in every if isinstance(node.op, ast.USub)}
     names = {name: k for k, name in enumerate(trial.program.space)}
-    reader = _Reader(table.n, cells, Labels(trial, table.n), found, negative, _summed(trial), names)
+    unasked = frozenset[str]() if masses else frozenset(("mass", "moment", "centre"))
+    labels = Labels(trial, table.n)
+    reader = _Reader(table.n, cells, labels, found, negative, _summed(trial), names, unasked)
     items = sorted(reader.items, key=lambda item: len(item.options))
     ways = [*islice(_ways(items, frozenset()), _WAYS + 1)]
     if not ways:
@@ -161,6 +167,7 @@ class _Reader:
         negative: the numbers in a program's text with a minus in front.
         summed: those in sums of nothing but numbers.
         names: of the program, in the order in which they are defined.
+        unasked: kinds of numbers that have no part in what is asked.
 
     Attributes:
         items: numbers, and what they may be.
@@ -179,7 +186,9 @@ class _Reader:
         negative: set[int],
         summed: set[int],
         names: dict[str, int],
+        unasked: frozenset[str],
     ) -> None:
+        self.unasked = unasked
         self.cells, self.labels, self.negative = [*cells], labels, negative
         self.tied: dict[Which, Which] = {}
         self.whole = True
@@ -315,7 +324,8 @@ class _Reader:
         if same.any():
             both = np.array([cell.which[0] in ("com1", "com2") for cell in self.cells])
             size &= same | both
-        return [int(k) for k in np.flatnonzero(size)]
+        found = [int(k) for k in np.flatnonzero(size)]
+        return [k for k in found if self.cells[k].kind not in self.unasked] or found
 
     def _as_called(self, may: list[int], label: Label, data: bool) -> tuple[bool, list[int]]:
         """Of cells those that are called so, and whether any is."""

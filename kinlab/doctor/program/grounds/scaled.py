@@ -99,8 +99,12 @@ class ProgramNumber:
         return self.place, self.place.value / factor if self.below else factor * self.place.value
 
 
-def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None:
+def other_arm(
+    robot: Robot, trial: Trial, observed: Observed, masses: bool = True
+) -> OtherArm | None:
     """An arm with longer and heavier links, and other twists where the program's numbers hold them.
+
+    Where no ``masses`` are asked for, what may be a length is none.
 
     None of a robot without a table, and where no number of the program is the arm's.
     """
@@ -110,7 +114,10 @@ def other_arm(robot: Robot, trial: Trial, observed: Observed) -> OtherArm | None
     found = [*numbers_of(trial, observed)]
     twisted = twisted_by(table, found)
     kinds = _kinds(robot, table, twisted)
-    meant = _alike(found, [_meant(kinds, one.value) for one in found], Labels(trial, table.n))
+    may = [_meant(kinds, one.value) for one in found]
+    if not masses:
+        may = [{x for x in some if x[0] not in ("mass", "moment")} or some for some in may]
+    meant = _alike(found, may, Labels(trial, table.n))
     letters = vocabulary(table).values
     carried = np.array([one.value for one in found if one.alone])
     whole = True

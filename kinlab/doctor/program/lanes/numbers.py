@@ -14,7 +14,7 @@ import numpy as np
 
 _STEP, _NUMBERS = 40, 25
 """What an operation amounts to beside its numbers, and how many of these amount to one."""
-_EDIT, _ARRAY, _PICK = 300, 700, 15
+_EDIT, _ARRAY, _PICK = 300, 700, 50
 """What evaluating an edit amounts to beside its operations; where it gives an array; and asking
 a place for its edits."""
 

@@ -26,6 +26,8 @@ _BLOCK = 120
 """Edits of which each is run with each of as many others at a time."""
 _EDITS = 2400
 """Edits of which any two are run together."""
+_AT_ONCE, _FOLLOWED = 400, 25_000_000
+"""Of how many it is looked at a time; work after which no more are."""
 _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
@@ -38,7 +40,7 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 120_000_000, 75_000_000
+_ALL, _LEAST = 100_000_000, 62_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
@@ -97,17 +99,23 @@ class TriedTogether:
 
     def _follows(self, count: int) -> bool:
         """Whether most edits do in lanes what they do alone: others are left out."""
-        alone = np.arange(_NONE, count)[:, None]
-        rows = self._rows(alone, max(self.count, _WATCHED), _BEYOND + self.left)
-        if rows is None or not np.abs(rows[0]).max() <= self.known.near:
-            return False
-        known = self.known.rows[:count, : rows.shape[1]]
-        gap = np.abs(rows[1:] - known).max(axis=1)
-        size = np.maximum(1.0, np.abs(known).max(axis=1))
-        placed = np.isin(np.arange(count), [*self.lanes.placed])
-        self.sound = np.flatnonzero((gap <= self.known.near * size) & placed)
+        before, reached = self.left, 0
+        sound: list[Array] = []
+        while reached < count and before - self.left < _FOLLOWED:
+            some = np.arange(reached, min(reached + _AT_ONCE, count))
+            alone = np.concatenate([[_NONE], some])[:, None]
+            rows = self._rows(alone, max(self.count, _WATCHED), _BEYOND + self.left)
+            if rows is None or not np.abs(rows[0]).max() <= self.known.near:
+                return False
+            known = self.known.rows[some, : rows.shape[1]]
+            gap = np.abs(rows[1:] - known).max(axis=1)
+            size = np.maximum(1.0, np.abs(known).max(axis=1))
+            placed = np.isin(some, [*self.lanes.placed])
+            sound.append(some[(gap <= self.known.near * size) & placed])
+            reached += len(some)
+        self.sound = np.concatenate(sound)
         self.within = self.lanes.woven.inside()
-        return len(self.sound) >= _SOUND * count
+        return len(self.sound) >= _SOUND * reached
 
     def _rows(self, chosen: Any, count: int | None, most: int = _ONE_RUN) -> Array | None:
         """What edits change together, relative to the answer's size, (C, P)."""
