@@ -341,6 +341,14 @@ def f(q):
 # -------- A slip, made on tokens
 
 
+def with_slips(text: str, slips: list[tuple[str, str]]) -> str:
+    """A text with other pieces for some that stand in it once."""
+    for old, new in slips:
+        assert text.count(old) == 1, old
+        text = text.replace(old, new)
+    return text
+
+
 def slipped(text: str, seed: int) -> tuple[str, int] | None:
     """A text with one slip of the pen, and its line; None where this throw makes none."""
     dice = random.Random(seed)

@@ -305,10 +305,8 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
         shown = ", ".join(titles[label] for label in labels if label in titles)
         yield examine(case, hand, engine, plain, shown, formulas)
         return
-    if plain == "coriolis_matrix":
-        yield from _complete_rows(case, engine, formulas, values, titles)
-    if plain == "jacobian":
-        yield from _half_given(case, engine, formulas, values, titles)
+    if plain in ("coriolis_matrix", "jacobian"):
+        yield from _parts_given(plain, case, engine, formulas, values, titles)
     for label, answer in values.items():
         _plain, index = split_name(label)
         part = replace(case, index=index)
@@ -325,43 +323,32 @@ def _of_one_split(found: Diagnosis) -> Diagnosis:
     return _also_said(found, (told,))
 
 
-def _complete_rows(
+def _parts_given(
+    plain: str,
     case: Case,
     engine: Array,
     formulas: dict[str, Written],
     values: dict[str, Array],
     titles: dict[str, str],
 ) -> Iterable[Diagnosis]:
-    """Rows of C that are whole, taken out of the entries: one row has many valid splits."""
-    for i in range(case.robot.n):
-        labels = [f"coriolis_matrix[{i},{j}]" for j in range(case.robot.n)]
+    """Parts that are whole, taken out of the entries, which are judged each for itself.
+
+    Rows of C, for one row has many valid splits; the linear or the angular half of a Jacobian.
+    """
+    n = case.robot.n
+    parts = {f"{plain}[{i}]": [i] for i in range(n)}
+    if plain == "jacobian":
+        parts = {"jacobian[:3]": [0, 1, 2], "jacobian[3:]": [3, 4, 5]}
+    for name, rows in parts.items():
+        labels = [f"{plain}[{i},{j}]" for i in rows for j in range(n)]
         if not all(label in values for label in labels):
             continue
-        row = replace(case, index=(i,))
-        hand = np.stack([values.pop(label) for label in labels], axis=-1)
-        texts = {label: formulas[label] for label in labels}
-        shown = ", ".join(titles[label] for label in labels)
-        yield examine(row, hand, engine[:, i], f"coriolis_matrix[{i}]", shown, texts)
-
-
-def _half_given(
-    case: Case,
-    engine: Array,
-    formulas: dict[str, Written],
-    values: dict[str, Array],
-    titles: dict[str, str],
-) -> Iterable[Diagnosis]:
-    """The linear or the angular half of a Jacobian, taken out of the entries where it is whole."""
-    for rows, half in ((range(3), "jacobian[:3]"), (range(3, 6), "jacobian[3:]")):
-        labels = [f"jacobian[{i},{j}]" for i in rows for j in range(case.robot.n)]
-        if not all(label in values for label in labels):
-            continue
-        _plain, index = split_name(half)
+        _plain, index = split_name(name)
         wanted = engine[(slice(None), *index)]
         hand = np.stack([values.pop(label) for label in labels], axis=-1).reshape(wanted.shape)
         texts = {label: formulas[label] for label in labels}
         shown = ", ".join(titles[label] for label in labels)
-        yield examine(replace(case, index=index), hand, wanted, half, shown, texts)
+        yield examine(replace(case, index=index), hand, wanted, name, shown, texts)
 
 
 def robot_of(file: FormulaFile) -> Robot:
