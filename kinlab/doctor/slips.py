@@ -40,10 +40,11 @@ def slips_in(
 ) -> tuple[list[Cause], tuple[str, ...]]:
     """Causes that are slips of the pen in the entries that are off, or what is known of some."""
     defined: list[Slip] = []
-    while len(defined) < LIST and (one := _defined(case, off, written)) is not None:
+    every = off
+    while len(defined) < LIST and (one := _defined(case, every, off, written)) is not None:
         defined.append(one)
         written = _defined_otherwise(written, one)
-        off = _still_off(case, off, written)
+        off = _still_off(case, every, written)
     per_entry = [*([one] for one in defined), *_per_entry(case, off, written)]
     if not all(per_entry):
         return [], tuple(found[0].sentence for found in per_entry if found)
@@ -76,22 +77,32 @@ def _per_entry(case: Case, off: list[AnswerEntry], written: dict[str, Written]) 
     return per_entry
 
 
-def _defined(case: Case, off: list[AnswerEntry], written: dict[str, Written]) -> Slip | None:
-    """A slip in a definition that makes more right than one in a formula would."""
+def _defined(
+    case: Case, every: list[AnswerEntry], off: list[AnswerEntry], written: dict[str, Written]
+) -> Slip | None:
+    """A slip in a definition that makes more right than one in a formula would.
+
+    None that a right formula uses, and none that makes wrong what another one has made right:
+    ``every`` are the entries that were off at first.
+    """
     derived = derivation_of(case)
     if derived is None or any(entry.label not in written for entry in off):
         return None
+    wrong = {entry.label for entry in every}
+    sound = {x for label, text in written.items() if label not in wrong for x in text.definitions}
+    found: list[tuple[int, Slip]] = []
     plainest = sorted(off, key=lambda entry: len(written[entry.label].definitions))
     for entry in plainest[:_PATIENCE]:
         text = written[entry.label]
         of = (derived, derived.entry(entry.index), case.quantity.arguments, case.arguments)
         for slip in terms.in_definitions(text, *of):
-            left = _still_off(case, off, _defined_otherwise(written, slip))
-            if len(left) >= len(off):
+            left = _still_off(case, every, _defined_otherwise(written, slip))
+            if len(left) >= len(off) or (slip.defined and slip.defined[0] in sound):
                 continue
             if len(left) < len(off) - 1 or _is_simpler(slip, of_entry(case, entry, text)):
-                return slip.with_error(entry.error(slip.values, entry.engine))
-    return None
+                slip = slip.with_error(entry.error(slip.values, entry.engine))
+                found.append((len(left), slip))
+    return min(found, key=lambda one: one[0])[1] if found else None
 
 
 def _is_simpler(slip: Slip, others: list[Slip]) -> bool:

@@ -168,7 +168,7 @@ def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], l
     if label.split("[")[0] not in ANY_ZERO or len(one.changes) == 1:
         return whole
     at = dict(line.at)
-    elsewhere = {n: np.roll(x, 1) if _POSITION.fullmatch(n) else x for n, x in at.items()}
+    elsewhere = {n: np.roll(x, 1) if _MOVES.fullmatch(n) else x for n, x in at.items()}
     for change in one.changes:
         rest = tuple(x for x in kept.changes if x is not change)
         text = rewritten(line.source, rest) if rest else None
@@ -244,7 +244,7 @@ def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -
     return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
 
 
-_POSITION = re.compile(r"q\d+")
+_MOVES = re.compile(r"qd{0,2}\d+")
 _MOTION = re.compile(r"(qdd?)\d+")
 _PARTS = (("qd", "g"), ("qdd", "g"), ("qd", "qdd"))
 """What is zero where a formula is one of its parts alone: accelerations, velocities, gravity."""

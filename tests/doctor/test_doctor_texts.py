@@ -171,3 +171,16 @@ def test_what_moves_a_potentials_zero_is_no_slip_beside_one() -> None:
     cause = kl.diagnose("planar2r", "V", "m1*g*l1*sin(q1) + m2*g*(l1*sin(q1) + l2*sin(q2) + 1)")
     assert cause.causes[0].kinds == ("argument",), str(cause)
     assert "+ 1)" in cause.causes[0].corrected["V"]
+
+
+def test_what_goes_with_a_rate_is_no_potentials_zero() -> None:
+    found = kl.diagnose("single_link", "lagrangian", "1/2*(I1 + m1*l1^2/2)*qd1^2 - m1*g*l1*sin(q1)")
+    assert len(found.causes[0].kinds) == 2, str(found)
+
+
+def test_a_definition_that_another_line_needs_is_left_as_it_is() -> None:
+    typed = "h = m2*l1*l2*cos(q2); C = [[h*qd2, -h*(qd1 + qd2)], [h*qd1, 0]]"
+    cause = kl.diagnose("planar2r", "coriolis_matrix", typed).causes[0]
+    assert sorted(cause.kinds) == ["sign", "sin/cos"], cause.sentence
+    assert cause.corrected["h"] == "m2*l1*l2*sin(q2)"
+    assert cause.corrected["coriolis_matrix[0,0]"] == "-h*qd2"
