@@ -191,7 +191,7 @@ A, B = Link(m=2.0, l=0.5, r=0.5), Link(m=1.5, l=0.4, r=0.4)
 
 def f(q):
     outer = B.m*9.81*B.r*cos(q[0] + q[1])
-    return [(A.m*A.l + B.m*A.l)*9.81*cos(q[0]) + outer, outer]
+    return [(A.m*A.r + B.m*A.l)*9.81*cos(q[0]) + outer, outer]
 """
 VECTORS = """
 import numpy as np

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from kinlab.arrays import Array
+from kinlab.doctor.glossary.spatial import PlacedLinks, Thing, moving, pushing, still
 from kinlab.engine import dynamics, kinematics, links
 from kinlab.model.link import Convention, steiner
 from kinlab.model.robot import Robot
@@ -105,6 +106,12 @@ class _Gathered:
         self.tensor = np.stack([np.asarray(x.inertia) for x in table.links])
         self.I = self.R @ self.tensor @ np.swapaxes(self.R, 1, 2)
         self.gravity = np.asarray(robot.model.gravity.linear)
+        zero = np.zeros(self.n)
+        tool = kinematics.fk(robot, q), kinematics.fk(robot, zero)
+        self.bodies = PlacedLinks(
+            self.frames[1:], self.frames[:-1], table.frames(zero), tool, self.z, self.joint,
+            self.hinge, self.mass, self.c, self.I,
+        )  # fmt: skip
 
     def glossary(self) -> Glossary:
         self.geometry()
@@ -117,6 +124,7 @@ class _Gathered:
         if not self.robot.singular_mass:
             self.dynamics()
         self.vectors()
+        self.spatial()
         things = {shape: (rows, np.stack(x)) for shape, (rows, x) in self.found.items()}
         return Glossary(things, self.plane)
 
@@ -152,10 +160,20 @@ class _Gathered:
                 for k, value in enumerate(values, 2 if frame == "before" else 1):
                     self.put(what, value, k, frame, rank=rank)
 
+    def spatial(self) -> None:
+        """Screws, twists and wrenches."""
+        some: list[Thing] = [*still(self.bodies)]
+        if "wrench" in self.given:
+            some += pushing(self.bodies, self.given["wrench"])
+        if "v" in self.given:
+            some += moving(self.bodies, self.given["v"], self.given.get("a"), self.gravity)
+        for rank, what, values, frame in some:
+            self.each(what, values, frame, rank)
+
     def geometry(self) -> None:
         q, n, frames = self.given["q"], self.n, self.frames
         steps = np.linalg.inv(frames[:-1]) @ frames[1:]
-        tool = kinematics.fk(self.robot, q)
+        tool = self.bodies.tool[0]
         p, origins = tool[:3, 3], frames[:, :3, 3]
         self.each("T0", frames[1:])
         self.each("T", steps, rank=1)
@@ -254,7 +272,11 @@ class _Gathered:
         self.put("load", wrench)
         self.put("load_force", wrench[:3])
         self.put("load_moment", wrench[3:])
-        self.put("J^T F", kinematics.statics(self.robot, self.given["q"], wrench))
+        held = kinematics.statics(self.robot, self.given["q"], wrench)
+        self.put("J^T F", held)
+        self.each("tau_entry", held, rank=1)
+        force, moment = (np.broadcast_to(x, (self.n, 3)) for x in (wrench[:3], wrench[3:]))
+        self.vector(1, {"load_force": force, "load_moment": moment})
         if "v" not in self.given and not self.robot.singular_mass:
             self.wrenches(links.static_wrenches(self.robot, self.given["q"], wrench))
 

@@ -90,6 +90,14 @@ class Observed:
         ]
         return np.unique(np.concatenate([*found, np.empty(0)]))
 
+    def values(self, states: int) -> dict[Shape, Array]:
+        """All values at the first of so many states, by their shape, each as a row."""
+        found: dict[Shape, list[Array]] = {}
+        for seen in self._seen.values():
+            for value in seen.values[: -(-seen.count // states)]:
+                found.setdefault(value.shape, []).append(np.ravel(value).astype(float))
+        return {shape: np.stack(rows) for shape, rows in found.items()}
+
     def _see(self, k: int, number: int, value: Any) -> Any:
         node = self._by_number[k][number]
         seen = self._seen.setdefault(id(node), Seen())

@@ -166,6 +166,7 @@ class LineSearch:
         self.stand: tuple[ProgramEdit, ...] = ()
         self.tried: list[tuple[ProgramEdit, Array]] = []
         self.work, self.most = 0, _WORK
+        self.in_lanes = _ALONE + _MORE_WORK
         self.trial = Trial(self.program)
         every = (node for tree in self.trial.trees for node in nodes(tree))
         self._whole = {id(node) for node in every if type(getattr(node, "value", None)) is int}
@@ -309,6 +310,7 @@ class LineSearch:
         """The search for more, while edits stand in the program."""
         other = copy.copy(self)
         other.stand, other.tried, other.work, other.most = stand, [], 0, self.most // _SHARE
+        other.in_lanes = 0
         return other
 
     def look_again(self) -> None:
@@ -385,23 +387,23 @@ class LineSearch:
     def _in_lanes(self, rest: list[ProgramEdit]) -> list[ProgramRepair]:
         """Those of further edits that make the program right: they are run all at once."""
         own = self.values(self.first)
-        if self.stand or own is None:
+        if own is None:
             return []
         found: list[ProgramRepair] = []
         for k in range(0, len(rest), _AT_ONCE):
-            if self.work > _ALONE + _MORE_WORK:
+            if self.work > self.in_lanes:
                 break
             for edit, values in self._run_at_once(rest[k : k + _AT_ONCE], own):
                 self.tried.append((edit, values))
                 if self.right(values).all():
                     with changed(self.trial, (edit,)):
-                        repair = self.verdict((edit,))
+                        repair = self.verdict((*self.stand, edit))
                     found += [] if repair is None else [repair]
         return found
 
     def _run_at_once(self, some: list[ProgramEdit], own: Array) -> list[tuple[ProgramEdit, Array]]:
         """What edits make of the program, as far as lanes can follow it."""
-        states, left = self.states_at(self.first), _ALONE + _MORE_WORK - self.work
+        states, left = self.states_at(self.first), self.in_lanes - self.work
         try:
             lanes = InLanes(self.trial, self.observed, [[one] for one in some], states, False)
         except NoProgramError:

@@ -284,7 +284,7 @@ def _terms_of_others(here: Here, scope: Scope, siblings: set[str]) -> Iterator[P
             for other in scope.shapes if stem != name else ():
                 if other in (name, stem) or other.rstrip("0123456789") != stem:
                     continue
-                new = _OtherName(name, other).visit(copied(piece))
+                new = OtherName(name, other).visit(copied(piece))
                 for op, cost in ((ast.Add(), 1.12), (ast.Sub(), 1.14)):
                     yield here.instead(summed(here.node, op, new), "missing term", cost)
 
@@ -304,7 +304,7 @@ def _without_sign(term: ast.expr) -> ast.expr:
     return term.operand if isinstance(term, ast.UnaryOp) else term
 
 
-class _OtherName(ast.NodeTransformer):
+class OtherName(ast.NodeTransformer):
     """One name for another."""
 
     def __init__(self, name: str, other: str) -> None:

@@ -6,7 +6,7 @@ import ast
 from collections.abc import Container, Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.additions import OtherAxis
+from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ProgramEdit
@@ -14,7 +14,7 @@ from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
 """Lines over which a statement may have been moved."""
-_LONG = 100
+_LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
 
@@ -34,6 +34,27 @@ def of_blocks(
                 yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
+        if isinstance(node, ast.If) and node.orelse:
+            yield from _of_the_other_case(part, node, scope)
+
+
+def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[ProgramEdit]:
+    """A line as the other case has it, for another number: ``d = d + q`` beside ``th = th + q``."""
+    numbers = [name for name, shape in scope.shapes.items() if shape == ()]
+    for there, name, block in (
+        (node.orelse, "body", node.body),
+        (node.body, "orelse", node.orelse),
+    ):
+        given = {one for line in block for one in _sets(line)}
+        for line in there:
+            own = [*_sets(line)]
+            if len(own) != 1 or own[0] in given or scope.shapes.get(own[0], ()) != ():
+                continue
+            together = [one for one in numbers if one in scope.beside.get(own[0], ())]
+            for other in [*dict.fromkeys((*together, *numbers))][:_NAMES]:
+                if other != own[0] and other not in given:
+                    new = OtherName(own[0], other).visit(copied(line))
+                    yield _missing(part, node, name, block, 0, new, 1.12)
 
 
 def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
@@ -174,6 +195,8 @@ def _beside(
             continue
         others = [OtherAxis(scope.shapes).visit(copied(line))]
         if isinstance(target, ast.Subscript):
+            if (mirror := _mirrored(target)) is not None:
+                yield _missing(part, node, name, block, at + 1, mirror, 1.08)
             others += [*_of_other_entries(line, scope)]
             others += [_Stepped(step, scope.shapes).visit(copied(line)) for step in (1, -1)]
         for other in others:
@@ -252,6 +275,20 @@ def _targets(line: ast.stmt) -> list[ast.expr]:
     if isinstance(line, ast.Assign) and len(line.targets) == 1:
         return line.targets
     return [line.target] if isinstance(line, ast.AugAssign) else []
+
+
+def _mirrored(target: ast.Subscript) -> ast.stmt | None:
+    """The entry on the other side of the diagonal: ``M[j, i] = M[i, j]``."""
+    keys = target.slice.elts if isinstance(target.slice, ast.Tuple) else []
+    if len(keys) != 2 or any(isinstance(one, ast.Slice) for one in keys):
+        return None
+    if ast.unparse(keys[0]) == ast.unparse(keys[1]):
+        return None
+    other = copied(target)
+    other.slice = ast.Tuple([keys[1], keys[0]], ast.Load())
+    value = copied(target)
+    value.ctx = ast.Load()
+    return ast.Assign([other], value)
 
 
 def _of_other_entries(line: ast.stmt, scope: Scope) -> Iterator[ast.stmt]:

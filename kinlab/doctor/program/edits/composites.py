@@ -19,6 +19,8 @@ _ARMS = ("p", "P", "r", "c", "C", "l", "d", "s", "o", "v")
 """How names of what leads from one point to another begin, and of velocities."""
 _NO_ARMS = ("R", "T", "I", "J", "A", "E")
 """How names of matrices begin that are no arm's."""
+_TENSORS = ("tensor", "Tensor", "TENSOR", "theta", "Theta", "THETA")
+"""How names of tensors of inertia begin, beside those of their moments."""
 _ROTATIONS = ("R", "r")
 """How names of rotation matrices begin."""
 _VECTOR, _TENSOR = (3,), (3, 3)
@@ -50,6 +52,7 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
         yield from _of_list_from_there_on(here, scope)
     if shape == _TENSOR and (term or isinstance(parent, ast.List | ast.Tuple)):
         yield from _parallel_axes_of_tensors(here, scope)
+    if shape == _TENSOR and (term or factor or isinstance(parent, ast.List | ast.Tuple)):
         yield from _turned_tensors(here, scope)
     sum_ = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
     sum_ = sum_ and here.field != "right"  # which stands in parentheses
@@ -124,8 +127,12 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
 
 def _turned_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A tensor in other axes: ``R @ I @ R.T`` for ``I``."""
-    rotations = [one for _text, one in scope.simple(_TENSOR) if _begins(one, _ROTATIONS)]
-    if isinstance(here.node, ast.BinOp) or not _begins(here.node, _MOMENTS):
+    rotations = [
+        one
+        for _text, one in scope.simple(_TENSOR)
+        if _begins(one, _ROTATIONS) or isinstance(getattr(one, "slice", None), ast.Tuple)
+    ]
+    if isinstance(here.node, ast.BinOp) or not _begins(here.node, (*_MOMENTS, *_TENSORS)):
         return
     for one in rotations[:_FEW]:
         turned = ast.Attribute(one, "T", ast.Load())
@@ -298,6 +305,8 @@ def _turned_with(node: ast.expr, rate: ast.expr, scope: Scope) -> Iterator[ast.e
         if ast.unparse(node.right) != own:
             yield ast.BinOp(node.left, node.op, rate)
     elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+        if {scope.observed.shape(one) for one in (node.left, node.right)} == {_VECTOR}:
+            yield ast.BinOp(node.left, node.op, rate)  # a tensor's diagonal
         for scalar, vector in ((node.left, node.right), (node.right, node.left)):
             if isinstance(scalar, ast.Subscript) and scope.observed.shape(scalar) == ():
                 for text, other in scope.simple(()):

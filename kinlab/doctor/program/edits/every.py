@@ -12,7 +12,7 @@ from math import pi
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import copied, names
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
@@ -42,6 +42,7 @@ from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
 
 
 def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[ProgramEdit]:
@@ -55,14 +56,49 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
             scope.stand((*here.above, node))
             if isinstance(node, ast.expr):
                 if observed.of(node) is not None:
-                    found += _expression(here, scope, observed)
-                    found += elsewhere.edits(here, scope, observed)
+                    every = (*_expression(here, scope, observed),)
+                    every += (*elsewhere.edits(here, scope, observed),)
+                    beside = _rotations_beside(here, observed)
+                    found += [x for x in every if not (beside and _undoes(x, beside))]
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)
     found += of_data(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
+
+
+def _rotations_beside(here: Here, observed: Observed) -> set[str]:
+    """The rotation matrices that one more would stand beside in a product."""
+    node: ast.AST = here.node
+    found: list[ast.AST] = [node]
+    while isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+        found.append(node.right)
+        node = node.left
+    found.append(node)
+    inner: ast.AST = here.node
+    for above in reversed(here.above):
+        if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.MatMult):
+            break
+        found.append(above.right if above.left is inner else above.left)
+        inner = above
+    return {ast.unparse(one) for one in found if _is_rotation(observed.of(one))}
+
+
+def _is_rotation(seen: Seen | None) -> bool:
+    if seen is None or not seen.values or seen.shape not in ((2, 2), (3, 3)):
+        return False
+    one = seen.values[0]
+    return bool(np.allclose(one @ one.T, np.eye(len(one)), rtol=0, atol=TOLERANCES.same_relation))
+
+
+def _undoes(edit: ProgramEdit, beside: set[str]) -> bool:
+    """Whether a rotation stands beside its own transpose: ``R.T @ (R @ v)`` is plainly ``v``."""
+    new = edit.changes[0].new
+    if edit.kind != "missing matrix" or not isinstance(new, ast.BinOp):
+        return False
+    put = [ast.unparse(one) for one in (new.left, new.right)]
+    return any(one + ".T" in beside or one.removesuffix(".T") in beside - {one} for one in put)
 
 
 def _line(edit: ProgramEdit) -> int:
@@ -145,8 +181,11 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             yield here.within(node, "op", other, "sign", 0.98)
     elif isinstance(node, ast.Assign) and len(node.targets) == 1:
         target = node.targets[0]
-        if isinstance(target, ast.Name | ast.Subscript):
-            yield here.instead(ast.AugAssign(target, ast.Add(), node.value), "sum", 1.15)
+        if isinstance(target, ast.Name | ast.Subscript) and not isinstance(
+            node.value, ast.Constant
+        ):
+            cost = 1.08 if _overwrites(here, target) else 1.15
+            yield here.instead(ast.AugAssign(target, ast.Add(), node.value), "sum", cost)
         if isinstance(target, ast.Tuple):
             for k in range(len(target.elts) - 1):
                 swapped = [*target.elts]
@@ -167,6 +206,15 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from _in_degrees(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
+
+
+def _overwrites(here: Here, target: ast.expr) -> bool:
+    """Whether a statement may set what something else has set before: a sum may be meant."""
+    if isinstance(target, ast.Subscript):
+        return any(isinstance(one, ast.For | ast.While) for one in here.above)
+    assert isinstance(target, ast.Name)
+    every = (one for one in nodes(here.above[0]) if isinstance(one, ast.Assign))
+    return sum(target.id in names(to) for one in every for to in one.targets) > 1
 
 
 def _in_degrees(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:

@@ -17,7 +17,7 @@ _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
 _ARMS = ("p", "P", "r", "c", "C", "l", "L", "d", "s")
 """How names of what leads from one point to another begin."""
-_VECTOR = (3,)
+_VECTOR, _TWIST = (3,), (6,)
 _FEW = 8
 """Names of one kind that are tried."""
 _SUMS = ast.Add | ast.Sub
@@ -62,6 +62,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
     if isinstance(parent, _SET):
         if shape == _VECTOR:
             yield from _moments(here, scope)
+        if shape == _TWIST:
+            yield from _of_twists(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
 
@@ -94,6 +96,27 @@ def _moments(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             moment = ast.Call(scope.cross, [arm, force], [])
             new = ast.BinOp(here.node, ast.Add(), moment)
             yield here.instead(new, "missing term", 1.1 if unused else 1.14)
+
+
+def _of_twists(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """The product of two twists, or of one and a momentum: ``crm(v) @ (s*qd)``, ``crf(v) @ I @ v``.
+
+    The program's own function makes a matrix of a twist.
+    """
+    twists = [one for _text, one in scope.simple(_TWIST)][:_FEW]
+    tensors = [one for _text, one in scope.simple(_TWIST * 2)][:_FEW]
+    every = scope.pieces_here(_TWIST).values()
+    rates = [x for x in every if isinstance(x, ast.BinOp) and isinstance(x.op, ast.Mult)][:_FEW]
+    for function in scope.crossing:
+        for one in twists:
+            crossed = ast.Call(ast.Name(function, ast.Load()), [one], [])
+            products: list[ast.expr] = [
+                ast.BinOp(ast.BinOp(crossed, ast.MatMult(), tensor), ast.MatMult(), one)
+                for tensor in tensors
+            ]
+            products += [ast.BinOp(crossed, ast.MatMult(), x) for x in (*twists, *rates)]
+            for new in products:
+                yield here.instead(ast.BinOp(here.node, ast.Add(), new), "missing term", 1.12)
 
 
 def _with_vectors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -82,7 +82,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         matrices = [observed.shape(side) for side in (left, right)]
         for kept, left_out, cost in ((left, matrices[1], 1.15), (right, matrices[0], 1.17)):
             alone = observed.shape(kept) == () and bool(left_out)
-            yield here.instead(kept, "extra factor", cost + _FLAT * alone)
+            undone = kept is right and _turns_back(left, right)
+            yield here.instead(kept, "extra factor", 1.02 if undone else cost + _FLAT * alone)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
             yield from _in_turn(here)
@@ -131,6 +132,14 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
 
+def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
+    """Whether a matrix stands before its own transpose: ``R.T @ (R @ v)``."""
+    while isinstance(product, ast.BinOp) and isinstance(product.op, ast.MatMult):
+        product = product.left
+    one, other = ast.unparse(matrix), ast.unparse(product)
+    return one == f"{other}.T" or other == f"{one}.T"
+
+
 def _in_turn(here: Here) -> Iterator[ProgramEdit]:
     """A product of several matrices from another one on, or from the last to the first."""
     parent = here.parent
@@ -176,6 +185,9 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
                     yield here.within(node.args, 0, angle, "argument", 1.15)
     if name == "range":
         yield from _range(here, scope)
+    if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
+        wholes = [getattr(one, "value", one) for one in node.args]
+        yield here.within(node, "args", wholes, "loop", 1.08)
     yield from _other_function(here, name)
     if isinstance(node.func, ast.Attribute) and name in ("append", "insert") and node.args:
         first = [ast.Constant(0)] if name == "append" else []
@@ -231,6 +243,12 @@ _FAMILIES = (
     ("sqrt", "square"),
 )
 """Functions of which one is written for another."""
+
+
+def _cut(node: ast.expr) -> str:
+    """The part of a row that is taken, as it is written; empty of all of it."""
+    cut = isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Slice)
+    return ast.unparse(node.slice) if cut and isinstance(node, ast.Subscript) else ""
 
 
 def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
@@ -318,19 +336,23 @@ def _other_slices(here: Here) -> Iterator[ProgramEdit]:
 
 
 def _in_another_order(here: Here) -> Iterator[ProgramEdit]:
-    """The indices of ``D[k][i, j]`` in another order."""
-    node, outer = here.node, here.node.value
-    if not isinstance(outer, ast.Subscript) or isinstance(outer.value, ast.Subscript):
+    """The indices of ``D[k][i, j]``, and of ``D[k][i][j]``, in another order."""
+    chain = [here.node]
+    while isinstance(chain[0].value, ast.Subscript):
+        chain.insert(0, chain[0].value)
+    if len(chain) < 2 or isinstance(here.parent, ast.Subscript):
         return
-    keys = [key for one in (outer, node) for _holder, _field, key in keys_of(one)]
+    keys = [key for one in chain for _holder, _field, key in keys_of(one)]
     plain = all(isinstance(key, ast.Name) or whole_constant(key) for key in keys)
     if not plain or len(keys) > _THREE:
         return
-    count = len(keys_of(outer))
     for order in [*permutations(keys)][1:]:
         if [*map(ast.dump, order)] != [*map(ast.dump, keys)]:
-            first = ast.Subscript(outer.value, _key(order[:count]), ast.Load())
-            yield here.instead(ast.Subscript(first, _key(order[count:]), node.ctx), "index", 1.12)
+            new, left = chain[0].value, [*order]
+            for one in chain:
+                count = len(keys_of(one))
+                new, left = ast.Subscript(new, _key(left[:count]), one.ctx), left[count:]
+            yield here.instead(new, "index", 1.12)
 
 
 def _key(keys: Sequence[ast.expr]) -> ast.expr:
@@ -352,6 +374,14 @@ def keys_of(node: ast.Subscript) -> list[tuple[Any, Any, ast.expr]]:
     return [(node, "slice", node.slice)]
 
 
+def _moved(here: Here, holder: Any, field: Any, key: ast.Slice) -> Iterator[ProgramEdit]:
+    """All but the first for all but the last, and the other way round."""
+    if key.upper is None and key.lower is not None and ast.unparse(key.lower) == "1":
+        yield here.within(holder, field, ast.Slice(None, number(-1), None), "index", 1.08)
+    elif key.lower is None and key.upper is not None and ast.unparse(key.upper) == "-1":
+        yield here.within(holder, field, ast.Slice(number(1), None, None), "index", 1.08)
+
+
 def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdit]:
     """Other rows, and indices in another order: of what is read, or where a value is put."""
     for holder, field, key in keys_of(node):
@@ -361,6 +391,7 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
             elif key.upper is None and key.lower is not None:
                 yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
             ends = (key.lower, key.upper)
+            yield from _moved(here, holder, field, key)
             if ends[0] is None and ends[1] is not None and shifted(ends[1]):
                 above = ast.Slice(plus(ends[1], -1), None, None)
                 yield here.within(holder, field, above, "index", 1.15)

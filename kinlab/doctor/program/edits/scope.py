@@ -54,6 +54,7 @@ class Scope:
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
+        crossing: the program's functions that make a matrix of a twist.
         addends: the terms of the sums that are set, by what is set, without its number.
         idle: calls that nothing makes, of functions or for joints that are used nowhere, by shape.
         inner: the terms of the sums that are factors, without their numbers.
@@ -95,6 +96,7 @@ class Scope:
         self._known_here: dict[tuple[frozenset[str], Shape], dict[str, ast.expr]] = {}
         self.ranges = [copied(node) for node in calls if called(node) == "range"]
         self.cross = _cross(calls, observed, self.has_numpy)
+        self.crossing = _crossing(trial, observed)
         self.root = _root(calls, trial.space)
         inner, outer = set[str](), set[str]()
         for node in nodes(tree):
@@ -104,6 +106,8 @@ class Scope:
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
                 self.counters += [n for n in set_here if n not in (*self.counters, *passed)]
                 (inner if isinstance(node, ast.comprehension) else outer).update(set_here)
+        self._counted = frozenset(_while_counters(tree, observed))
+        self.counters += [name for name in sorted(self._counted) if name not in self.counters]
         for one in trial.trees:
             for node in nodes(one):
                 self._of_member(node, observed)
@@ -126,7 +130,7 @@ class Scope:
                 self._of_expression(node, observed, inner - outer)
                 if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
                     self._of_factors(node, observed)
-            if isinstance(node, ast.Assign):
+            if isinstance(node, ast.Assign | ast.AugAssign):
                 self._of_addends(node)
             if isinstance(node, ast.Assign | ast.AugAssign | ast.Return):
                 products = (x for x in nodes(node) if isinstance(x, ast.BinOp))
@@ -257,11 +261,11 @@ class Scope:
                     call = ast.Call(ast.Name(name, ast.Load()), args, [])
                     self.idle.append((shape, call))
 
-    def _of_addends(self, statement: ast.Assign) -> None:
+    def _of_addends(self, statement: ast.Assign | ast.AugAssign) -> None:
         known = self.addends.setdefault(stem_of([statement]), set())
         literal = isinstance(statement.value, ast.List | ast.Tuple | ast.Call)
         for value in _entries(statement.value) if literal else (statement.value,):
-            for one in summands(value) if isinstance(value, ast.BinOp) else ():
+            for one in summands(value) if isinstance(value, ast.BinOp | ast.Call) else ():
                 bare = without_numbers(one)
                 known |= {ast.unparse(one)} if bare is None else {ast.unparse(bare)}
 
@@ -375,7 +379,7 @@ class Scope:
         """Goes to a place of the part: counters of loops around it alone are known there."""
         around = [getattr(one, "generators", [one]) for one in above]
         loops = [x.target for some in around for x in some if hasattr(x, "iter")]
-        self._inside = frozenset(name for target in loops for name in names(target))
+        self._inside = self._counted.union(name for target in loops for name in names(target))
 
     def pieces_here(self, shape: Shape) -> dict[str, ast.expr]:
         """The expressions of one shape that may stand there, by their text."""
@@ -455,6 +459,29 @@ def _cross(calls: list[ast.Call], observed: Observed, has_numpy: bool) -> ast.ex
     return ast.Attribute(ast.Name("np", ast.Load()), "cross", ast.Load()) if has_numpy else None
 
 
+def _crossing(trial: Trial, observed: Observed) -> list[str]:
+    """The program's own functions that make a matrix of a twist, as to cross others with it."""
+    own = {part.name for part in trial.program.parts}
+    found: list[str] = []
+    for node in (node for tree in trial.trees for node in nodes(tree)):
+        if isinstance(node, ast.Call) and len(node.args) == 1 and called(node) in own:
+            if observed.shape(node) == (6, 6) and observed.shape(node.args[0]) == (6,):
+                found.append(called(node))
+    return [*dict.fromkeys(found)]
+
+
+def _while_counters(tree: ast.FunctionDef, observed: Observed) -> Iterator[str]:
+    """The names of whole numbers that a ``while`` loop counts on."""
+    for loop in (node for node in nodes(tree) if isinstance(node, ast.While)):
+        for node in (one for line in loop.body for one in nodes(line)):
+            target = node.targets[0] if isinstance(node, ast.Assign) else getattr(node, "target", 0)
+            if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(target, ast.Name):
+                uses = (x for x in nodes(loop) if isinstance(x, ast.Name) and x.id == target.id)
+                seen = next((y for y in map(observed.of, uses) if y is not None), None)
+                if seen is not None and seen.whole and seen.shape == ():
+                    yield target.id
+
+
 def _counts(tree: ast.FunctionDef, observed: Observed, known: list[str]) -> list[str]:
     """Names of whole numbers that a part is given, and that are no counters of its own."""
     given = {one.arg for one in tree.args.args}
@@ -518,9 +545,10 @@ def statement_of(above: Sequence[ast.AST]) -> ast.stmt:
 def stem_of(above: Sequence[ast.AST]) -> str:
     """What a statement sets, without its number or indices: ``m`` of ``m12``, ``M`` of an entry."""
     statement = statement_of(above)
-    if not isinstance(statement, ast.Assign):
+    if not isinstance(statement, ast.Assign | ast.AugAssign):
         return ""
-    return ast.unparse(statement.targets[0]).split("[")[0].rstrip("0123456789")
+    target = statement.target if isinstance(statement, ast.AugAssign) else statement.targets[0]
+    return ast.unparse(target).split("[")[0].rstrip("0123456789")
 
 
 def _given(trial: Trial, part: int, observed: Observed) -> dict[str, Shape]:

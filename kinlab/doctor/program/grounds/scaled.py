@@ -86,6 +86,7 @@ class ProgramNumber:
         alone: whether it stands for itself, and may be the arm's.
         given: whether it is given on as it is, and may be a plain number as well.
         below: whether the place is what pi or a number is divided by.
+        used: whether the program names it, and not the arm's table alone.
     """
 
     place: NumberPlace
@@ -93,6 +94,7 @@ class ProgramNumber:
     alone: bool
     given: bool = False
     below: bool = False
+    used: bool = True
 
     def times(self, factor: float) -> tuple[NumberPlace, float]:
         """What is put there so that it is so many times as large."""
@@ -170,7 +172,7 @@ def holds_an_arm(trial: Trial) -> bool:
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:
     """How many times as large twists are, where the program's numbers hold them."""
     twists = [link.alpha for link in table.links if link.alpha]
-    held = np.array([one.value for one in found if one.alone])
+    held = np.array([one.value for one in found if one.alone and one.used])
     turned = bool(twists) and all(_among(x, held) for x in twists) and not _shared(table, held)
     return _TWISTED if turned else 1.0
 
@@ -233,7 +235,8 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
-    idle = (leaf for name in unused(trial) for leaf in leaves_of(trial, name))
+    idle = [leaf for name in unused(trial) for leaf in leaves_of(trial, name)]
+    alone_idle = {leaf.node for leaf in idle if not leaf.place}
     directions = _directions(trial)
     for place in (*numbers(trial, observed), *_defaults(trial), *idle):
         if id(place.holder) in directions:
@@ -244,9 +247,9 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
         else:
             alone = place.part == DATA or id(place.node) in plain
             value = float(place.value)
-            yield ProgramNumber(
-                place, value, alone, id(place.node) in given and not may_be_of_one_arm(value)
-            )
+            plainly = id(place.node) in given and not may_be_of_one_arm(value)
+            used = place.part != DATA or place.node not in alone_idle
+            yield ProgramNumber(place, value, alone, plainly, used=used)
 
 
 def _directions(trial: Trial) -> set[int]:

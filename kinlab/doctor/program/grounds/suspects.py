@@ -14,16 +14,19 @@ from types import ModuleType
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.trial import Trial
+from kinlab.doctor.program.places import called
+from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 
 _PASSES = 12
 """Passes of a statement that are looked at."""
+TERM = 2
+"""The rank of what is a term of a sum."""
 _STATEMENTS = ast.Assign | ast.AugAssign | ast.Return
 _PIECES = ast.Name | ast.Subscript | ast.Attribute
 
@@ -38,14 +41,71 @@ def suspects(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set
     """
     if not known:
         return set()
-    look = _Look(trial, observed, known[0])
+    found, _made = _wrong(trial, _Look(trial, observed, known))
+    return found
+
+
+def behind(trial: Trial, observed: Observed, known: Sequence[Glossary]) -> set[int]:
+    """Suspects, and what may be at fault beside them, by identity.
+
+    What gives a suspect a piece that is a term alone, another's value, or nothing but zeros and
+    ones; and what is wrong by what it is made of, where suspects are taken for right.
+    """
+    if not known:
+        return set()
+    look = _Look(trial, observed, known)
+    found, made = _wrong(trial, look)
+    pieces = [piece for value in made for piece in _pieces(value)]
+    doubtful = {root(one) for one in pieces if look.is_term(one)}
+    for loop in (node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.For)):
+        if doubtful.intersection(names(loop.target)):
+            doubtful |= set(names(loop.iter))
+    named = {root(one) for one in pieces}
+    asked = set().union(*map(named_in, made))
+    for tree, part in zip(trial.trees, trial.program.parts, strict=True):
+        if part.name in asked:
+            found |= {id(inner) for inner in nodes(tree)}
+        for node in nodes(tree):
+            sets = _set_by(node)
+            alias = isinstance(node, ast.Assign) and isinstance(node.value, ast.Name)
+            if sets & doubtful or (alias and sets & named):
+                found |= {id(inner) for inner in nodes(node)}
+            if sets and id(node) in found:
+                look.given |= sets
+    further, _made = _wrong(trial, look)
+    return found | further
+
+
+def _wrong(trial: Trial, look: _Look) -> tuple[set[int], list[ast.expr]]:
+    """The nodes of statements that are wrong by what they are made of, and what these set."""
     found: set[int] = set()
+    made: list[ast.expr] = []
     for tree in trial.trees:
         for node in nodes(tree):
             given = node.value if isinstance(node, _STATEMENTS) else None
             if given is not None and any(look.wrong(value) for value in _values(given)):
                 found |= {id(inner) for inner in nodes(node)}
-    return found
+                made.append(given)
+    return found, made
+
+
+def _set_by(node: ast.AST) -> set[str]:
+    """The names that a statement sets, of lists and arrays those whose entries it sets or adds."""
+    if isinstance(node, ast.Assign | ast.AugAssign):
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+        inner = [one for to in targets for one in getattr(to, "elts", [to])]
+        return {root(one) for one in inner}
+    call = node.value if isinstance(node, ast.Expr) else None
+    if isinstance(call, ast.Call) and called(call) == "append":
+        return {root(call.func)}
+    return set()
+
+
+def root(piece: ast.AST) -> str:
+    """The name that an entry or attribute is of: ``N`` of ``N[k]``; empty where there is none."""
+    while isinstance(piece, ast.Subscript | ast.Attribute):
+        piece = piece.value
+    return piece.id if isinstance(piece, ast.Name) else ""
 
 
 def _values(value: ast.expr) -> list[ast.expr]:
@@ -55,8 +115,8 @@ def _values(value: ast.expr) -> list[ast.expr]:
 class _Look:
     """What pieces were at the first state."""
 
-    def __init__(self, trial: Trial, observed: Observed, known: Glossary) -> None:
-        self.observed, self.known = observed, known
+    def __init__(self, trial: Trial, observed: Observed, known: Sequence[Glossary]) -> None:
+        self.observed, self.known, self.states = observed, known[0], len(known)
         modules = (name for name, x in trial.space.items() if isinstance(x, ModuleType))
         self.given = {*trial.program.data, *modules}
         self.seen: dict[tuple[tuple[int, ...], bytes], bool] = {}
@@ -67,13 +127,32 @@ class _Look:
         if seen is None or seen.shape is None or seen.whole or not seen.values:
             return False
         pieces = [*_pieces(value)]
-        passes = seen.values[:_PASSES]
+        passes = self.passes(seen)
         odd = [
             k for k, one in enumerate(passes) if not zeros_and_ones(one) and not self.textbook(one)
         ]
         if not odd and all(map(zeros_and_ones, passes)):
             odd = [0] if any(self.moves(piece) for piece in pieces) else []
         return bool(odd and pieces) and all(self.vouched(one, seen, odd[0]) for one in pieces)
+
+    def is_term(self, piece: ast.expr) -> bool:
+        """Whether a piece is of zeros and ones alone, a term of a sum, or turned or transposed."""
+        seen = self.observed.of(piece)
+        if seen is None or not seen.shape:
+            return False
+        told = [one for one in self.passes(seen) if not zeros_and_ones(one)]
+        return not told or any(self._least_rank(one) >= TERM for one in told)
+
+    def passes(self, seen: Seen) -> list[Array]:
+        """What an expression was at the first state."""
+        return seen.values[: min(_PASSES, -(-seen.count // self.states))]
+
+    def _least_rank(self, value: Array) -> int:
+        """How far a thing is from being a quantity of its own: the least of what a value may be."""
+        value = np.squeeze(value)
+        rows, gap = self.known.gaps(value)
+        near = gap <= TOLERANCES.nearly_agrees * float(np.max(np.abs(value)))
+        return min((rows[int(k)][0] for k in np.flatnonzero(near)), default=TERM)
 
     def moves(self, piece: ast.expr) -> bool:
         """Whether a piece is a value that an earlier statement made, and no whole number."""

@@ -5,6 +5,7 @@ module            what it holds
 ================  =================================================================================
 ``effects``       What tried edits do to a program's answer, number by number: which of them may go
                   together
+``in_order``      Slips one after another, in the order in which a program runs into them
 ``repairs``       Two or three edits that together make a program right
 ``rest``          A wrong program asked where parts of its answer are silent: at rest, with one
                   motion alone

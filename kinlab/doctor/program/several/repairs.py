@@ -16,6 +16,7 @@ from kinlab.doctor.glossary.meaning import meaning_of
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Chosen, Effects, Way, effects_of
+from kinlab.doctor.program.several.in_order import InOrder
 from kinlab.doctor.program.several.rest import AtRest
 from kinlab.doctor.program.several.together import TriedTogether
 from kinlab.doctor.program.several.witnesses import Witnesses
@@ -43,6 +44,10 @@ _LOOKING = 1_500_000
 """What watching a program anew amounts to, beside running it."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
+_IN_ORDER = 30_000_000
+"""Work for one slip after another."""
+_ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 3
+"""Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
 _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
 _RESTING = 2
@@ -87,6 +92,12 @@ class _Several:
             found = tried.likeliest(known, known.in_a_row(2, _POSE))
         if found:
             return self._settled(search, found)
+        in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
+        one_by_one = in_order.found()
+        found = [] if one_by_one is None else [one_by_one]
+        found = found or self._last(search, in_order.reached[:_WAYS])
+        if found:
+            return self._settled(search, found)
         together = TriedTogether(search, known)
         for some in together.pairs():  # what holds for this arm alone is not told, others may be
             found = tried.likeliest(known, some)
@@ -97,8 +108,12 @@ class _Several:
             found = found or tried.likeliest(known, together.any_three())
         if found:
             return self._settled(search, found)
-        steps = Witnesses(search).steps(known, search.most // _WATCHING)
-        firsts = _apart([step.edit for step in steps])[: 1 if together.usable else _STEPS - 1]
+        most = 1 if together.usable else _STEPS - 1
+        firsts = in_order.reached[:most]
+        if not firsts:
+            edits = [edits[0] for edits in known.alike]
+            steps = Witnesses(search).steps(edits, search.most // _WATCHING)
+            firsts = [(edit,) for edit in _apart([step.edit for step in steps])[:most]]
         found = self._after(search, firsts)
         if found:
             return found
@@ -110,7 +125,7 @@ class _Several:
         if not found:
             most = 1 if together.usable else _STEPS
             gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
-            found = self._after(search, [edit for edit in gaining if edit not in firsts])
+            found = self._after(search, [(x,) for x in gaining if (x,) not in firsts])
         if not found and not search.stand:
             if not together.usable:
                 found = tried.likeliest(known, known.adding_up(3))
@@ -121,14 +136,26 @@ class _Several:
             found = self._settled(search, found)
         return found
 
-    def _after(self, search: LineSearch, firsts: list[ProgramEdit]) -> list[ProgramRepair]:
-        """What is left once an edit stands: of several the first beside which anything does."""
-        for turn, edit in enumerate(firsts):
+    def _last(self, search: LineSearch, ways: list[Way]) -> list[ProgramRepair]:
+        """The one edit more with which all is right, beside those of one of some ways."""
+        for way in ways if self.left > 0 else ():
+            with changed(search.trial, way):
+                here = _beside(search, way)
+                here.most, here.in_lanes = _ALONE, _IN_LANES
+                found = here.singles()
+                self.left -= here.work // _WAYS
+            if found:
+                return found
+        return []
+
+    def _after(self, search: LineSearch, firsts: list[Way]) -> list[ProgramRepair]:
+        """What is left once edits stand: of several ways the first beside which anything does."""
+        for turn, way in enumerate(firsts):
             if self.left <= 0:
                 break
             try:
-                with changed(search.trial, (edit,)):
-                    here = _beside(search, (edit,))
+                with changed(search.trial, way):
+                    here = _beside(search, way)
                     more = (search.most - search.work) // _STEPS
                     likeliest = 0 if turn else search.most // _STEPPING
                     here.most = min(max(here.most, more, likeliest), self.left)

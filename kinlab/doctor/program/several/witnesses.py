@@ -17,24 +17,25 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
+from kinlab.doctor.program.grounds.suspects import TERM
 from kinlab.doctor.program.places import ProgramEdit, called
 from kinlab.doctor.program.repair import LineSearch
-from kinlab.doctor.program.several.effects import Effects
 from kinlab.doctor.program.trial import FieldChange, NoProgramError
 from kinlab.doctor.program.variants import Variants
+from kinlab.tolerances import TOLERANCES
 
 _FIRST = 1
 """States at which statements are watched."""
 _GIVEN = ("q", "qd", "qdd", "positions", "velocities", "accelerations", "load")
 """What a program is given, and needs not find."""
-_SHAPES = ((), (2,), (3,), (6,), (3, 3), (4, 4))
+_SHAPES = ((), (2,), (3,), (6,), (3, 3), (4, 4), (6, 6))
 """Shapes of most values."""
 _STATEMENT, _MANY = 0.04, 5
 """What each statement that it makes right speaks for an edit, and how many do."""
-_WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 16)
+_WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 36)
 
 
 @dataclass(frozen=True)
@@ -56,11 +57,12 @@ class Watched:
 
     Attributes:
         count: how often it ran.
-        good: whether all it gave is a textbook's; None where anything could be that.
+        good: what all that it gave is: 2 of a textbook's quantities, 1 some terms of these as well,
+            0 nothing known; None where anything could be that.
     """
 
     count: int = 0
-    good: bool | None = None
+    good: int | None = None
 
 
 _NEVER = Watched()
@@ -71,18 +73,28 @@ class Witnesses:
 
     Args:
         search: whose program is wrong.
+
+    Attributes:
+        done: operations that were.
     """
 
     def __init__(self, search: LineSearch) -> None:
         self.search = search
+        self.done, self.watching = 0, False
         self.grounds = copy.copy(search.evidence)
         self.grounds.known = search.evidence.known[:_FIRST]
-        self.known: dict[tuple[Any, bytes], bool | None] = {}
+        self.known: dict[tuple[Any, bytes], int | None] = {}
+        every = (
+            row for one in self.grounds.known for rows, _ in one.things.values() for row in rows
+        )
+        ranks = sorted(every, key=lambda row: -row[0])
+        self.terms = {what for what, rank in {x.what: k for k, x in ranks}.items() if rank >= TERM}
         self.told: dict[int, Watched] = {}
         self.marks = {shape: _marks(self.grounds.known, shape) for shape in _SHAPES}
+        self.there = search.observed.values(len(search.watched))
         self.places = [place for tree in search.trial.trees for place in _places(tree)]
 
-    def steps(self, known: Effects, most: int) -> list[FirstStep]:
+    def steps(self, edits: Sequence[ProgramEdit], most: int) -> list[FirstStep]:
         """The edits that make statements right and spoil none, as many as some work allows.
 
         The likeliest come first, those with which more is right as if they were likelier.
@@ -93,22 +105,23 @@ class Witnesses:
         found: list[FirstStep] = []
         with trial.changed({*range(len(trial.trees))}, self._saws()):
             before = self._right()
+            self.known, self.watching = {}, True
             numbers = {(id(holder), field): n for n, (holder, field) in enumerate(self.places)}
-            watched = [_watched(edits[0], numbers) for edits in known.alike]
+            watched = [_watched(edit, numbers) for edit in edits]
             variants = Variants(trial, watched)
-            for edits, edit in zip(known.alike, watched, strict=True):
-                most -= self.cost_of(edit)
-                if most < 0:
+            for edit, one in zip(edits, watched, strict=True):
+                self.done += self.cost_of(edit)
+                if self.done > most:
                     break
                 try:
-                    with trial.changed({edit.part}, edit.changes, variants.of(edit)):
+                    with trial.changed({one.part}, one.changes, variants.of(one)):
                         after = self._right()
                 except NoProgramError:
                     continue
                 gained = min(_gained(before, after), _MANY)
                 if gained:
-                    cost = known.likely(edits[0]) - _STATEMENT * gained
-                    found.append(FirstStep(edits[0], cost))
+                    cost = self.search.likely(edit) - _STATEMENT * gained
+                    found.append(FirstStep(edit, cost))
         return sorted(found, key=lambda step: step.cost)
 
     def cost_of(self, edit: ProgramEdit) -> int:
@@ -136,12 +149,12 @@ class Witnesses:
     def _see(self, n: int, value: Any) -> Any:
         told = self.told.setdefault(n, Watched())
         told.count += 1
-        if told.good is not False and (good := self._textbook(value)) is not None:
-            told.good = good
+        if told.good != 0 and (good := self._textbook(value)) is not None:
+            told.good = good if told.good is None else min(good, told.good)
         return value
 
-    def _textbook(self, value: Any) -> bool | None:
-        """Whether it is what a textbook has; None of numbers that anything could be."""
+    def _textbook(self, value: Any) -> int | None:
+        """Whether it is what a textbook has, or a term; None of numbers that anything could be."""
         if isinstance(value, list | tuple):
             try:
                 value = np.array(value, dtype=float)
@@ -155,10 +168,10 @@ class Witnesses:
             self.known[key] = self._looked_up(array)
         return self.known[key]
 
-    def _looked_up(self, array: Array) -> bool | None:
+    def _looked_up(self, array: Array) -> int | None:
         flat = array.ravel()
         if not np.isfinite(flat).all():
-            return False
+            return 0
         if zeros_and_ones(flat):
             return None
         marks = self.marks.get(array.shape)
@@ -167,9 +180,19 @@ class Witnesses:
             mark, wide = float(flat @ weights), 1e-6 * float(np.abs(flat) @ weights)
             k = bisect_left(marks, mark - wide)
             if k == len(marks) or marks[k] > mark + wide:
-                return False
+                return 0
+        if self.watching and self._is_there(array):
+            return None  # another's value, which what was left out leaves
         sense = self.grounds.thing([array])
-        return None if sense is not None and sense.what in _GIVEN else sense is not None
+        if sense is None:
+            return 0
+        return None if sense.what in _GIVEN else 1 if sense.what in self.terms else 2
+
+    def _is_there(self, value: Array) -> bool:
+        """Whether an expression had a value before there was an edit."""
+        near = TOLERANCES.same_relation * float(np.abs(value).max())
+        some = self.there.get(value.shape)
+        return some is not None and bool((np.abs(some - value.ravel()).max(axis=1) <= near).any())
 
 
 def _gained(before: dict[int, Watched], after: dict[int, Watched]) -> int:
@@ -177,9 +200,9 @@ def _gained(before: dict[int, Watched], after: dict[int, Watched]) -> int:
     gained = 0
     for n, now in after.items():
         old = before.get(n, _NEVER)
-        if old.good is True and now.good is False:
+        if old.good and now.good == 0:
             return 0
-        gained += old.good is False and now.good is True and now.count >= old.count
+        gained += (now.good or 0) > (old.good or 0) and now.count >= old.count > 0
     return gained
 
 
@@ -198,14 +221,21 @@ def _marks(known: Sequence[Glossary], shape: tuple[int, ...]) -> list[float]:
 
 def _watched(edit: ProgramEdit, numbers: dict[tuple[int, Any], int]) -> ProgramEdit:
     """An edit where the values that it sets are watched, too."""
-    at = [numbers.get((id(c.holder), c.field)) for c in edit.changes]
-    if all(n is None for n in at):
-        return edit
-    changes = [
-        c if n is None or not isinstance(c.new, ast.expr) else replace(c, new=_saw(n, c.new))
-        for c, n in zip(edit.changes, at, strict=True)
-    ]
-    return replace(edit, changes=tuple(changes))
+    changes = tuple(_change(c, edit.node, numbers) for c in edit.changes)
+    return edit if changes == edit.changes else replace(edit, changes=changes)
+
+
+def _change(change: FieldChange, node: Any, numbers: dict[tuple[int, Any], int]) -> FieldChange:
+    n, new = numbers.get((id(change.holder), change.field)), change.new
+    if n is not None and isinstance(new, ast.expr):
+        return replace(change, new=_saw(n, new))
+    n = numbers.get((id(node), "value"))
+    if n is not None and isinstance(node, ast.Assign) and isinstance(new, ast.AugAssign):
+        load = copied(new.target)
+        load.ctx = ast.Load()
+        whole = _saw(n, ast.BinOp(load, new.op, node.value))
+        return replace(change, new=ast.Assign([new.target], whole))
+    return change
 
 
 def _saw(n: int, value: Any) -> ast.expr:
@@ -219,7 +249,10 @@ def _places(tree: ast.AST) -> Iterator[tuple[Any, Any]]:
     Of what is given as a row of entries each entry is one.
     """
     for node in nodes(tree):
-        if isinstance(node, ast.Assign | ast.Return) and isinstance(node.value, _COMPUTED):
+        alone = isinstance(node, ast.Assign) and isinstance(node.value, ast.Name)
+        if alone or (
+            isinstance(node, ast.Assign | ast.Return) and isinstance(node.value, _COMPUTED)
+        ):
             yield node, "value"
         elif isinstance(node, ast.Call) and called(node) == "append" and len(node.args) == 1:
             yield node.args, 0

@@ -1,0 +1,116 @@
+"""Slips one after another, in the order in which a program runs into them.
+
+Of a program with several slips the statement to look at first is one that is wrong though all its
+parts are right. An edit with which it gives what a textbook has stands from then on, and shows the
+next such statement: three slips of a recursion take three looks, not all threes of edits.
+"""
+
+from __future__ import annotations
+
+from kinlab.doctor.program.grounds.suspects import behind
+from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
+from kinlab.doctor.program.several.effects import Effects, Way
+from kinlab.doctor.program.several.witnesses import FirstStep, Witnesses
+from kinlab.doctor.program.trial import NoProgramError
+
+_SLIPS = 4
+"""Edits that may stand."""
+_WAYS, _TRIED = 2, 12
+"""Edits from which is gone on at first, and of which it is looked whether all is right."""
+_EACH = 12_000_000
+"""Work for one look."""
+_LOOKING = 700_000
+"""What watching a program anew amounts to, beside running it."""
+
+
+class InOrder:
+    """The search for one slip after another.
+
+    Args:
+        search: whose single edits were tried already.
+        known: what they do to the answer: one of each effect is enough.
+        most: operations that may be done.
+
+    Attributes:
+        reached: the edits that were gone on from, the longest first.
+    """
+
+    def __init__(self, search: LineSearch, known: Effects, most: int) -> None:
+        self.search, self.left = search, most
+        self.reached: list[Way] = []
+        self.firsts = [edits[0] for edits in known.alike]
+        like_others = {edit for edits in known.alike for edit in edits[1:]}
+        self.edits = [edit for edit, _values in search.tried if edit not in like_others]
+
+    def found(self) -> ProgramRepair | None:
+        """The edits that make the program right, if the last of them does."""
+        repair = self._from((), set())
+        self.reached.sort(key=len, reverse=True)
+        return repair
+
+    def _from(self, stand: Way, before: set[int]) -> ProgramRepair | None:
+        """What makes it right beside edits that stand.
+
+        Args:
+            stand: the edits.
+            before: what was suspected already before the last of them.
+        """
+        steps, suspected = self._steps(stand, before)
+        ways = [(*stand, step.edit) for step in steps]
+        for way in ways[:_TRIED]:
+            repair = self._verdict(way)
+            if repair is not None:
+                return repair
+        for way in ways[: _WAYS if len(stand) < _WAYS else 1]:
+            repair = self._from(way, suspected) if len(way) < _SLIPS else None
+            if repair is not None:
+                return repair
+        return None
+
+    def _verdict(self, way: Way) -> ProgramRepair | None:
+        try:
+            with changed(self.search.trial, way):
+                return self.search.verdict(way)
+        except NoProgramError:
+            return None
+
+    def _steps(self, stand: Way, before: set[int]) -> tuple[list[FirstStep], set[int]]:
+        """Edits of what is suspected with which more of the program is right, and what that is.
+
+        What an edit that stands has brought under suspicion is looked at first.
+        """
+        search = self.search
+        if self.left <= 0:
+            return [], before
+        if stand and {*stand} not in map(set, self.reached):
+            self.reached.append(stand)
+        try:
+            with changed(search.trial, stand):
+                here = search.beside(stand)
+                here.look_again()
+                self.left -= _LOOKING
+                suspected = behind(here.trial, here.observed, here.known)
+                placed = {id(change.holder) for edit in stand for change in edit.changes}
+                every = self.edits if stand else self.firsts
+                some = [x for x in every if id(x.node) in suspected and not _at(x, placed)]
+                new = [x for x in some if id(x.node) not in before]
+                old = [x for x in some if id(x.node) in before]
+                steps = self._looked(here, new) or self._looked(here, old)
+        except NoProgramError:
+            return [], before
+        return steps, suspected
+
+    def _looked(self, here: LineSearch, some: list[ProgramEdit]) -> list[FirstStep]:
+        """Those of some edits that are a step."""
+        if not some:
+            return []
+        witnesses = Witnesses(here)
+        steps = witnesses.steps(some, min(self.left, _EACH))
+        self.left -= witnesses.done
+        self.search.work += witnesses.done
+        return steps
+
+
+def _at(edit: ProgramEdit, placed: set[int]) -> bool:
+    return any(id(change.holder) in placed for change in edit.changes)
