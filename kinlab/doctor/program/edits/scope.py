@@ -464,9 +464,9 @@ def _crossing(trial: Trial, observed: Observed) -> list[str]:
     own = {part.name for part in trial.program.parts}
     found: list[str] = []
     for node in (node for tree in trial.trees for node in nodes(tree)):
-        if isinstance(node, ast.Call) and len(node.args) == 1 and called(node) in own:
-            if observed.shape(node) == (6, 6) and observed.shape(node.args[0]) == (6,):
-                found.append(called(node))
+        alone = isinstance(node, ast.Call) and len(node.args) == 1 and called(node) in own
+        if alone and isinstance(node, ast.Call) and observed.shape(node) == (6, 6):
+            found += [called(node)] * (observed.shape(node.args[0]) == (6,))
     return [*dict.fromkeys(found)]
 
 
