@@ -9,7 +9,7 @@ from itertools import combinations
 from kinlab.doctor.bytecode.syntax import copied, nodes
 from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
@@ -35,6 +35,10 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
     for text in names:
         if len(uses[text]) > 1:
+            for entry in _entries_beside(uses[text][0]):
+                if ast.unparse(entry) not in uses:
+                    new = _Renamed({text: entry}).of(value)
+                    yield here.within(here.node, "value", new, "index", 1.1)
             for other, node in scope.simple(shapes[text] or ()):
                 if other != text and other[0] == text[0] and other not in uses:
                     new = _Renamed({text: node}).of(value)
@@ -43,6 +47,16 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
         yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def _entries_beside(node: ast.expr) -> Iterator[ast.expr]:
+    """The entries before and behind one of a row: ``q[1]`` and ``q[3]`` of ``q[2]``."""
+    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Constant):
+        return
+    own = node.slice.value
+    for k in (own - 1, own + 1) if type(own) is int else ():
+        if k >= 0:
+            yield ast.Subscript(node.value, number(k), ast.Load())
 
 
 def of_repeated(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:

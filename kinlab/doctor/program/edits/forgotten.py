@@ -35,6 +35,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield here.instead(number(0.0), "extra term", 1.18)
         if isinstance(op, _SUMS):
             yield from _with_vectors(here, scope)
+        if isinstance(parent, _SET):
+            yield from _energies(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
@@ -50,6 +52,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         yield here.instead(nothing, "extra term", 1.15)
     if isinstance(op, _SUMS):
         yield from _with_angles(here, scope)
+    if shape == _VECTOR and isinstance(op, ast.Add):
+        yield from _turned_beside(here)
     if scope.has_numpy and len(shape) == 1 and isinstance(node, ast.Name | ast.Subscript):
         added = isinstance(parent, _SET) or isinstance(op, ast.Mult)
         outer = ast.Attribute(ast.Name("np", ast.Load()), "outer", ast.Load())
@@ -119,6 +123,18 @@ def _of_twists(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 yield here.instead(ast.BinOp(here.node, ast.Add(), new), "missing term", 1.12)
 
 
+def _energies(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Half a moment or a mass that nothing uses any more, times the square of a rate."""
+    simple = dict(scope.simple(()))
+    idle = [one for text, one in simple.items() if text in scope.unused]
+    for one in [one for one in idle if isinstance(one, ast.Name)][:_FEW]:
+        for text, rate in [*simple.items()][: 4 * _FEW]:
+            if text not in scope.unused:
+                half = ast.BinOp(number(0.5), ast.Mult(), one)
+                term = ast.BinOp(half, ast.Mult(), ast.BinOp(rate, ast.Pow(), number(2)))
+                yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
+
+
 def _with_vectors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A number in a sum of vectors, whose vector is forgotten: ``qdd*z``."""
     parent = here.parent
@@ -127,6 +143,17 @@ def _with_vectors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     shape = scope.observed.shape(other) or ()
     for _text, vector in [*scope.simple(shape)][: 2 * _FEW] if shape else ():
         yield here.instead(ast.BinOp(here.node, ast.Mult(), vector), "missing factor", 1.07)
+
+
+def _turned_beside(here: Here) -> Iterator[ProgramEdit]:
+    """A vector as the frame has it whose origin it is added to: ``T[:3, 3] + T[:3, :3] @ c``."""
+    parent = here.parent
+    assert isinstance(parent, ast.BinOp)
+    origin = parent.right if parent.left is here.node else parent.left
+    if isinstance(origin, ast.Subscript) and ast.unparse(origin.slice) == "(:3, 3)":
+        key = ast.Tuple([ast.Slice(None, number(3), None) for _axis in range(2)], ast.Load())
+        turn = ast.Subscript(origin.value, key, ast.Load())
+        yield here.instead(ast.BinOp(turn, ast.MatMult(), here.node), "missing matrix", 1.02)
 
 
 def _with_angles(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

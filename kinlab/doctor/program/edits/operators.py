@@ -29,6 +29,8 @@ _THREE = 3
 """Indices of which any order is tried."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_DIAGONALS = ("tril", "triu", "eye", "diag")
+"""Functions whose last argument is the number of a diagonal."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 
@@ -183,6 +185,13 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             for text, angle in scope.angles.items():
                 if text != argument:
                     yield here.within(node.args, 0, angle, "argument", 1.15)
+    if scope.crosses(node):
+        for factor in node.args:
+            yield here.instead(factor, "extra factor", 1.1)
+    if name in _DIAGONALS and len(node.args) > 1:
+        diagonal = getattr(node.args[-1], "operand", node.args[-1])
+        for k in (0, 1, -1) if whole_constant(diagonal) else ():
+            yield here.within(node.args, len(node.args) - 1, number(k), "index", 1.04)
     if name == "range":
         yield from _range(here, scope)
     if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:

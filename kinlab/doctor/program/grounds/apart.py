@@ -226,7 +226,8 @@ class _Reader:
             else:
                 key = (label[:2], label[2][1:]) if one.alone else ()
                 own = may_be_of_one_arm(one.value)
-                unknown.setdefault((key, one.value, own), []).append((one, left))
+                value = -one.value if id(one.place.node) in self.negative else one.value
+                unknown.setdefault((key, value, own), []).append((one, left))
         unsure = 0
         for (*_key, own), group in unknown.items():
             kinds = [*self._kinds(group)]

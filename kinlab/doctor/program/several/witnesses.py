@@ -35,6 +35,8 @@ _SHAPES = ((), (2,), (3,), (6,), (3, 3), (4, 4), (6, 6))
 """Shapes of most values."""
 _STATEMENT, _MANY = 0.04, 5
 """What each statement that it makes right speaks for an edit, and how many do."""
+_FRUITLESS = 2
+"""The part of the work after which no step is looked for where there is none yet."""
 _WEIGHTS = np.random.default_rng(5).uniform(0.5, 1.5, 36)
 
 
@@ -111,7 +113,7 @@ class Witnesses:
             variants = Variants(trial, watched)
             for edit, one in zip(edits, watched, strict=True):
                 self.done += self.cost_of(edit)
-                if self.done > most:
+                if self.done > (most if found else most // _FRUITLESS):
                     break
                 try:
                     with trial.changed({one.part}, one.changes, variants.of(one)):
