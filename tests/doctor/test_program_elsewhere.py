@@ -73,6 +73,7 @@ def f(q, a):
     g = [(energy(q + h[i]) - energy(q - h[i]))/2e-5 for i in range(3)]
     return masses(q) @ a + g
 """
+HEIGHT = FRAMES.replace("def f(q, a):", "def f(q):").replace("return masses(q) @ a + g", "return g")
 AT_REST = FRAMES.replace("def f(q, a):", "def f(q):").replace("return masses(q) @ a + g", "return masses(q)")  # fmt: skip
 UNROLLED = """
 from math import cos, sin
@@ -231,6 +232,12 @@ PROGRAMS = {
     "energies": (ELBOW, "kinetic_energy", ENERGIES),
     "alias": (WALL, "inverse_dynamics", ALIAS),
     "frames": (WALL, "mass_matrix", AT_REST),
+    "height": (WALL, "gravity_torques", HEIGHT),
+    "summed": (
+        ELBOW,
+        "mass_matrix",
+        SUMS.replace("np.cumsum(q)", "np.tril(np.ones((3, 3)), 0) @ q"),
+    ),
     "lines": (ELBOW, "kinetic_energy", UNROLLED),
     "product": (WALL, "fk", OWN_PRODUCT),
     "sums": (ELBOW, "mass_matrix", SUMS),
@@ -241,6 +248,8 @@ SLIPS = [
     ("frames", [("pc - T[j][:3, 3]", "pc"), ("a*c]", "a*s]")], "from the axis, and a sine"),
     ("lines", [("x1 - r2*sin(t2)*w2, y1", "-r2*sin(t2)*w2, y1"), ("t3, w3 = t2 + q[2]", "t3, w3 = q[2]")], "lines of other links"),
     ("lines", [("0.5*m2*(u2**2 + n2**2)", "0.5*m2*(u2**2)"), ("y1 + l2*cos(t2)*w2", "y1 + l2*cos(t2)*w1")], "a square and a rate"),
+    ("lines", [("(u2**2 + n2**2) + 0.5*I2*w2**2", "(u2**2 + n2**2)"), ("y1 + l2*cos(t2)*w2", "y1 + l2*cos(t2)*w1")], "an energy and a rate"),
+    ("height", [(" + T[i + 1][:3, :3] @ rc[i])[2]", " + rc[i])[2]"), ("9.81*m[i]", "-9.81*m[i]")], "a vector that is not turned, and a sign"),
     ("lists", [("n2 = add(n2, moment([l2, 0, 0], f2))", "n2 = n2")], "a moment by own functions"),
     ("lists", [("force = times(tr(rot(t3))", "force = times(rot(t3)")], "an own transpose"),
     ("lists", [("n2 = add(n2, moment([l2, 0, 0], f2))", "n2 = n2"), ("f1, n1 = turn(q[1], f2)", "f1, n1 = turn(q[0], f2)")], "a moment, and a joint"),
@@ -248,6 +257,8 @@ SLIPS = [
     ("energies", [("0.5*I[0]*a**2", "0.5*I[0]*c**2"), ("y + r[1]*k2*d", "y + r[1]*s2*d")], "a name set beside it, and a cosine"),
     ("alias", [(" + X(w, X(w, P[k]))", "")], "a cross product by another name"),
     ("alias", [(" + X(w, X(w, P[k]))", ""), ("[k] @ dw + X(w", "[k] @ dw - X(w")], "the same, and a sign"),
+    ("alias", [("IC[k] @ dw + X(w", "X(w, IC[k] @ dw) + X(w"), ("acc = R[k].T @ acc", "acc = R[k] @ acc")], "a cross product too many, and a transpose"),
+    ("summed", [("np.ones((3, 3)), 0)", "np.ones((3, 3)), -1)")], "another diagonal"),
     ("product", [("T = mul(T, step(row, t))", "T = step(row, t)")], "a product of one's own"),
     ("sums", [("range(i, 3)", "range(i + 1)")], "what another loop runs through"),
 ]  # fmt: skip

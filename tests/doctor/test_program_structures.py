@@ -203,6 +203,7 @@ SLIPS = [
     ("screws", [("        S[:3, 3] = -np.cross(w, p)\n", "")], "the moment of a screw"),
     ("screws", [("        S[:3, 3] = -np.cross(w, p)\n        T = T @ expm(S * t)\n", "        T = T @ expm(S * t)\n        S[:3, 3] = -np.cross(w, p)\n")], "lines in the other order"),
     ("screws", [("T @ expm(S * t)", "T + expm(S * t)")], "a sum for a product"),
+    ("columns", [("np.cos(q[1] + q[2]), np.sin(q[1] + q[2])", "np.cos(q[0] + q[2]), np.sin(q[0] + q[2])")], "an entry beside it, twice"),
     ("columns", [("    J[:3, 0] = np.cross(z0, pe - p0)\n", "")], "a column"),
     ("bodies", [("body.inertia*np", "body.mass*np")], "a field that nothing else uses"),
     ("bodies", [("np.outer(turning, turning)", "turning")], "an outer product"),
