@@ -128,6 +128,13 @@ def paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.ex
         yield target, value
 
 
+def root(piece: ast.AST) -> str:
+    """The name that an entry or attribute is of: ``N`` of ``N[k]``; empty where there is none."""
+    while isinstance(piece, ast.Subscript | ast.Attribute):
+        piece = piece.value
+    return piece.id if isinstance(piece, ast.Name) else ""
+
+
 def called(node: ast.Call) -> str:
     """The last name of what is called: ``cross`` of ``np.cross``."""
     target = node.func

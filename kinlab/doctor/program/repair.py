@@ -125,6 +125,8 @@ _STANDING = 2
 """Edits beside which some number would do too easily."""
 _TURNS = 8
 """Steps in which a wrong number is solved for."""
+_MADE = 0.97
+"""Cost of an exchange after which a row is the robot's."""
 _ROW = 3
 """Numbers of a row that tell whose it is."""
 _DIGITS = 6
@@ -379,6 +381,7 @@ class LineSearch:
             if edit.cost < below and not (self._mirrors(edit, named) or _moves_one_of(rows, edit))
         ]
         most = _WEIGHED // 3 if self.stand else _WEIGHED
+        every = [replace(x, cost=_MADE) if _makes_one_of(rows, x) else x for x in every]
         every = sorted(every, key=_at_best)[:most]
         weigh = self.dimensions.against
         every = [replace(x, cost=x.cost + more) if (more := weigh(x)) else x for x in every]
@@ -768,6 +771,26 @@ class LineSearch:
 def _at_best(edit: ProgramEdit) -> float:
     """What an edit costs if nothing speaks against it."""
     return edit.cost - LIKE * (edit.kind == "name")
+
+
+def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
+    """Whether numbers that are exchanged stand then as the robot has them in a row."""
+    if edit.kind != "entries swapped" or _moves_one_of(rows, edit):
+        return False
+    first, row = edit.changes[0], getattr(edit.node, "elts", None)
+    if edit.part != DATA:
+        values = [getattr(one, "value", None) for one in first.new] if row else []
+    elif isinstance(first.holder, list):
+        values = [*first.holder]
+        for change in edit.changes:
+            if change.holder is first.holder and isinstance(change.field, int):
+                values[change.field] = change.new
+    else:
+        values = [*first.new] if isinstance(first.new, tuple) else []
+    if len(values) < _ROW or not all(isinstance(x, int | float) for x in values):
+        return False
+    new = np.array(values, dtype=float)
+    return any(own.shape == new.shape and np.allclose(own, new) for own in rows)
 
 
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:

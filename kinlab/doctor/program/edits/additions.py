@@ -91,7 +91,7 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A name for a zero that is given on, or that is an entry."""
     for _text, scalar in scope.simple(()):
-        if isinstance(scalar, ast.Name):
+        if isinstance(scalar, ast.Name) or scope.is_idle(scalar):
             yield here.instead(scalar, "name", 1.12 + scope.dear(scalar))
 
 

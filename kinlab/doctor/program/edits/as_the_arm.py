@@ -28,6 +28,8 @@ _ROWS = 4
 """Rows that several columns of the table may make of one."""
 _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
+_SEVERAL = 0.005
+"""What it costs more where several numbers of a row are off."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -57,8 +59,7 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
-        if not several:
-            yield from (cell.edit(right) for some in cells.values() for cell, right in some)
+        yield from (cell.edit(right) for some in cells.values() for cell, right in some)
 
 
 def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
@@ -108,11 +109,12 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
     kind = "entries swapped" if sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
-        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
+        return ProgramEdit(first.part, tuple(changes), kind, _COST + _SEVERAL, first.node)
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
     told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
-    return ProgramEdit(DATA, tuple(changes), kind, _COST, first.place.node, (k,), exchanged=told)
+    cost, node = _COST + _SEVERAL, first.place.node
+    return ProgramEdit(DATA, tuple(changes), kind, cost, node, (k,), exchanged=told)
 
 
 def _typed(value: float) -> ast.expr:

@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.places import ProgramEdit, paired, root
 from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
@@ -31,6 +31,7 @@ def of_blocks(
                 yield from _loops(part, node, name, block)
                 yield from _twice(part, node, name, block)
                 yield from _beside(part, node, name, block, scope)
+                yield from _of_twins(part, node, name, block)
                 yield from _of_unused(part, tree, node, name, block, scope)
         if isinstance(node, ast.For | ast.While):
             yield from _updates(part, tree, node, scope, observed)
@@ -209,6 +210,27 @@ def _beside(
                 turned = copied(other)
                 turned.value = ast.UnaryOp(ast.USub(), turned.value)
                 yield _missing(part, node, name, block, at + 1, turned, 1.16)
+
+
+def _of_twins(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
+    """What is done to one of two things that begin alike, to the other: ``low[i] -= h``."""
+    begun: dict[str, list[str]] = {}
+    for line in block:
+        for target in line.targets if isinstance(line, ast.Assign) else ():
+            assert isinstance(line, ast.Assign)
+            for one, value in paired(target, line.value):
+                if isinstance(one, ast.Name) and not isinstance(value, ast.Constant):
+                    begun.setdefault(ast.unparse(value), []).append(one.id)
+    added = [(at, one) for at, one in enumerate(block) if isinstance(one, ast.AugAssign)]
+    moved = {root(line.target) for _at, line in added}
+    for at, line in added:
+        own = root(line.target)
+        for alike in begun.values():
+            for other in alike if own in alike else ():
+                if other not in moved:
+                    new = OtherName(own, other).visit(copied(line))
+                    new.op = ast.Sub() if isinstance(line.op, ast.Add) else ast.Add()
+                    yield _missing(part, node, name, block, at + 1, new, 1.05)
 
 
 def _of_unused(

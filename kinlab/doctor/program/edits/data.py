@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, places
 from kinlab.doctor.program.trial import FieldChange, Trial, is_data
@@ -20,6 +21,8 @@ _TABLE = 60
 """Numbers of an array of which any may be wrong."""
 _ROWS = 8
 """Rows of a table, and numbers of a row, of which any two may have been exchanged."""
+_AXIS = 1.06
+"""Cost of another direction for an axis: no row of lengths has but one of them."""
 _PAIR = 2
 """Numbers that are reversed where they are exchanged."""
 _NAMES = 12
@@ -49,6 +52,8 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         yield from _exchanged(name, value, (), trial.space, name)
     for held in trial.bound:
         yield from _exchanged("self", held, ())
+    for kept in trial.classes.values():
+        yield from _exchanged(kept.__name__, kept, ())
     yield from _names_exchanged(trial)
 
 
@@ -89,12 +94,15 @@ def _exchanged(
         yield from _of_tuple(name, value, place, holder, field)
     if isinstance(value, dict) or not is_data(value) or not 1 < len(value) <= _ROWS:
         return
+    if isinstance(value, np.ndarray) and value.ndim > 1 and value.shape[0] == value.shape[1]:
+        yield from _of_diagonal(name, value, place)
     if all(_is_plain(one) for one in value):
         for i, j in combinations(range(len(value)), 2):
             if value[i] != value[j]:
                 both = (FieldChange(value, i, value[j]), FieldChange(value, j, value[i]))
                 told = (_row(value), _row(_swapped(value, i, j)))
-                yield _swap(both, "entries swapped", name, place, told)
+                edit = _swap(both, "entries swapped", name, place, told)
+                yield replace(edit, cost=_AXIS) if np.count_nonzero(value) == 1 else edit
         if len(value) > _PAIR:
             back = [*value][::-1]
             turned = tuple(FieldChange(value, k, x) for k, x in enumerate(back) if value[k] != x)
@@ -124,6 +132,19 @@ def _exchanged(
         if not np.array_equal(rows[i], rows[j]):
             changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
             yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
+
+
+def _of_diagonal(name: str, value: Array, place: tuple[Any, ...]) -> Iterator[ProgramEdit]:
+    """Two numbers of a matrix's diagonal for one another: the moments about two axes."""
+    diagonal = [value[k, k] for k in range(len(value))] if value.ndim == _PAIR else []
+    for i, j in combinations(range(len(diagonal)), 2):
+        if diagonal[i] != diagonal[j]:
+            both = (
+                FieldChange(value, (i, i), diagonal[j]),
+                FieldChange(value, (j, j), diagonal[i]),
+            )
+            told = (_row(diagonal), _row(_swapped(diagonal, i, j)))
+            yield _swap(both, "entries swapped", name, place, told)
 
 
 def _of_tuple(

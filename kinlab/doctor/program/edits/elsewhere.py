@@ -97,6 +97,11 @@ class Elsewhere:
         if self._roles and shape in (_VECTOR, _ROTATION):
             yield from self._by_own_functions(here, scope, shape)
         named = isinstance(node, ast.Name) and isinstance(here.parent, ast.Assign)
+        given = isinstance(here.parent, ast.Call) and called(here.parent) in scope.functions
+        if given and isinstance(node, ast.Name) and len(shape) == 1 and scope.has_numpy:
+            function = ast.Attribute(ast.Name("np", ast.Load()), "zeros", ast.Load())
+            nothing = ast.Call(function, [ast.Constant(shape[0])], [])
+            yield here.instead(nothing, "extra term", 1.13)
         if shape == _VECTOR and named:
             zeros = ast.List([ast.Constant(0)] * 3, ast.Load())
             yield here.instead(zeros, "extra term", 1.15)

@@ -44,6 +44,9 @@ from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
+_ROWS = 6
+"""Rows of as many joints of which any may share out what is added to one entry."""
+
 
 def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[ProgramEdit]:
     """Every single edit of a program, of whose parts these are the scopes; the likeliest first."""
@@ -195,6 +198,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
             yield from _target(here, target, observed)
     if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Subscript):
         yield from _target(here, node.target, observed)
+        yield from _for_all_joints(here, scope, observed)
     if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr):
         yield from _counted(here, scope)
         yield from exchanges.of_statement(here, scope, observed)
@@ -268,6 +272,22 @@ class _Moved(ast.NodeTransformer):
 
     def visit_Name(self, node: ast.Name) -> ast.expr:
         return plus(node, self.step) if node.id == self.counter else node
+
+
+def _for_all_joints(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
+    """What is added to one entry, where each has a share of it: ``tau += n*Jw`` for ``tau[i]``."""
+    node, shape = here.node, observed.shape(here.node.target.value)
+    if not isinstance(node.target.slice, ast.Name) or shape is None or len(shape) != 1:
+        return
+    target, key = copied(node.target.value), node.target.slice
+    target.ctx = ast.Store()
+    for _text, row in [*scope.simple(shape)][:_ROWS]:
+        if ast.unparse(row) != ast.unparse(target):
+            new = ast.AugAssign(target, node.op, ast.BinOp(node.value, ast.Mult(), row))
+            yield here.instead(new, "missing factor", 1.12)
+    slice_ = ast.Slice(None, plus(key, 1), None)
+    before = ast.Subscript(copied(node.target.value), slice_, ast.Store())
+    yield here.instead(ast.AugAssign(before, node.op, node.value), "index", 1.12)
 
 
 def _equal(test: ast.Compare) -> bool:

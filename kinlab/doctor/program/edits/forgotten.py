@@ -41,6 +41,7 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _crosswise(here)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
+        yield from _of_another_row(here, scope)
         return
     if isinstance(node, ast.Call) and called(node) == "zeros":
         for _text, vector in scope.simple(shape):
@@ -70,6 +71,22 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _of_twists(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
+
+
+def _of_another_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """An entry of a row that nothing uses, for one link: ``half[i] if i == k else L[i]``."""
+    node = here.node
+    if not isinstance(node, ast.Subscript) or not isinstance(node.slice, ast.Name):
+        return
+    for text, one in scope.simple(()):
+        if isinstance(one, ast.Subscript) and scope.is_idle(one) and text != ast.unparse(node):
+            if ast.dump(one.slice) != ast.dump(node.slice):
+                continue
+            for other in dict.fromkeys((*scope.counters, *scope.whole)):
+                if other != node.slice.id:
+                    last = ast.Name(other, ast.Load())
+                    test = ast.Compare(node.slice, [ast.Eq()], [last])
+                    yield here.instead(ast.IfExp(test, one, node), "condition", 1.12)
 
 
 def _is_entry(parent: ast.AST) -> bool:

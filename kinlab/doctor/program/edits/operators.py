@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.data import measured, moved_on
 from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned
@@ -29,6 +29,8 @@ _THREE = 3
 """Indices of which any order is tried."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_OF_RODS = {3: 12, 12: 3}
+"""A rod's moments of inertia about its end, and about its middle, are its mass by these."""
 _DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
 _ARGUMENTS, _APART = 4, 0.03
@@ -183,8 +185,9 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
         if node.args:
             argument = ast.unparse(node.args[0])
             for text, angle in scope.angles.items():
-                if text != argument:
-                    yield here.within(node.args, 0, angle, "argument", 1.15)
+                if text != argument:  # what is odd among others is rather meant as they are
+                    odd = scope.taken[argument] == 1 < scope.taken[text] + 1
+                    yield here.within(node.args, 0, angle, "argument", 1.08 if odd else 1.15)
     if scope.crosses(node):
         for factor in node.args:
             yield here.instead(factor, "extra factor", 1.1)
@@ -290,11 +293,13 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
         if ast.dump(others) != ast.dump(node):
             yield here.within(node, "args", [*others.args], "loop", 1.12)
     inner = scope.counters
+    loops = [one for one in here.above if isinstance(one, ast.For) and one.iter is not node]
+    around = {name for one in loops for name in names(one.target)}
     if len(args) == 1:
         for name in inner:
-            load = ast.Name(name, ast.Load())
+            load, cost = ast.Name(name, ast.Load()), 1.13 if name in around else 1.2
             for new in ([load], [plus(load, 1)], [load, args[0]], [plus(load, 1), args[0]]):
-                yield here.within(node, "args", new, "loop", 1.2)
+                yield here.within(node, "args", new, "loop", cost)
         yield here.within(node, "args", [ast.Constant(1), args[0]], "loop", 1.2)
     else:
         yield here.within(node, "args", [args[1]], "loop", 1.25)
@@ -315,6 +320,8 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             yield from _swapped(here, node.slice)
         return
     keys = keys_of(node)
+    if isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
+        yield here.instead(node.value, "index", 1.1)
     yield from of_keys(here, node, 1.1)
     yield from _other_slices(here)
     yield from _in_another_order(here)
@@ -500,10 +507,19 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             for step in (1, -1):
                 yield here.within(here.node, "value", value + step, "index", 1.15)
         return
-    if value == 0 and scope.has_numpy and measured(here.parent):
+    given = here.parent if isinstance(here.parent, ast.Call) else None
+    own = given is not None and isinstance(given.func, ast.Name)
+    own = own and given is not None and called(given) not in (*SIZES, *ANGLES)
+    if value == 0 and scope.has_numpy and (own or measured(here.parent)):
         half: ast.expr = ast.BinOp(PI, ast.Div(), number(2))
         for turned in (half, ast.UnaryOp(ast.USub(), half)):
             yield here.instead(turned, "number", 1.13)
+    if (
+        isinstance(value, int)
+        and value in _OF_RODS
+        and isinstance(getattr(here.parent, "op", None), ast.Div)
+    ):
+        yield here.within(here.node, "value", _OF_RODS[value], "number", 1.05)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new

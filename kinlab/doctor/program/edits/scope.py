@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Container, Iterator, Sequence
 from functools import lru_cache
 from math import pi
@@ -49,10 +50,12 @@ class Scope:
         keys: of dictionaries, by the shapes of what is there.
         counters: names that count.
         ranges: what they count through.
+        idle_attributes: of objects those that no function uses.
         unused: names that are set, in the part or in the module, and used nowhere.
         arcs: names of angles whose sine, cosine or tangent was known.
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
+        taken: how often they are.
         pieces: expressions that occur, and entries of lists by a counter, by shape and text.
         crossing: the program's functions that make a matrix of a twist.
         addends: the terms of the sums that are set, by what is set, without its number.
@@ -82,6 +85,7 @@ class Scope:
         self.keys: dict[str, Shape] = {}
         self.counters: list[str] = []
         self.angles: dict[str, ast.expr] = {}
+        self.taken: Counter[str] = Counter()
         self.pieces: dict[Shape, dict[str, ast.expr]] = {}
         calls = [node for node in nodes(tree) if isinstance(node, ast.Call)]
         self.addends: dict[str, set[str]] = {}
@@ -145,8 +149,9 @@ class Scope:
         self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
         self.constants = {n for n, x in trial.program.space.items() if isinstance(x, float)}
         for name, value in trial.program.space.items():
-            if name[:1] != "_" and _is_number(value):
-                known = _shape(value)
+            of_each = isinstance(value, dict) and all(type(key) is int for key in value)
+            if name[:1] != "_" and (_is_number(value) or of_each):
+                known = _shape([*value.values()] if isinstance(value, dict) else value)
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {name for one in self.angles.values() for name in names(one)}
@@ -165,7 +170,11 @@ class Scope:
                 for k in range(shape[0]):
                     entry = ast.Subscript(copied(plain), ast.Constant(k), ast.Load())
                     self.pieces.setdefault((), {}).setdefault(ast.unparse(entry), entry)
+        loads = {n.attr for one in trial.trees for n in nodes(one) if isinstance(n, ast.Attribute)
+                 and isinstance(n.ctx, ast.Load)}  # fmt: skip
+        self.idle_attributes = {name for name in self.attributes if name not in loads}
         self._of_its_object(parts[part])
+        self._of_idle_attributes(parts[part])
         self._of_siblings(trial)
         self._of_idle_joints(trial, part)
         self._of_idle_functions(trial, part)
@@ -190,6 +199,26 @@ class Scope:
         for name, shape in self.attributes.items():
             one = ast.Attribute(own, name, ast.Load())
             self.pieces.setdefault(shape, {}).setdefault(ast.unparse(one), one)
+
+    def _of_idle_attributes(self, method: OwnFunction) -> None:
+        """What the object of a method has and no function uses: ``self.I2``, ``self.d[i]``."""
+        if method.owner is None or not method.tree.args.args or method.kept is staticmethod:
+            return
+        for name in sorted(self.idle_attributes):
+            own = ast.Name(method.tree.args.args[0].arg, ast.Load())
+            one, shape = ast.Attribute(own, name, ast.Load()), self.attributes[name]
+            self.pieces.setdefault(shape, {}).setdefault(ast.unparse(one), one)
+            for counter in (*self.counters, *self.whole) if shape else ():
+                entry = ast.Subscript(copied(one), ast.Name(counter, ast.Load()), ast.Load())
+                self.pieces.setdefault(shape[1:], {}).setdefault(ast.unparse(entry), entry)
+
+    def is_idle(self, node: ast.AST) -> bool:
+        """Whether it is what is set and used nowhere, or an entry of that."""
+        while isinstance(node, ast.Subscript):
+            node = node.value
+        if isinstance(node, ast.Attribute):
+            return node.attr in self.idle_attributes
+        return isinstance(node, ast.Name) and node.id in self.unused
 
     def _of_siblings(self, trial: Trial) -> None:
         """What other objects of the module have where one has it: ``two.m`` beside ``one.m``."""
@@ -329,6 +358,7 @@ class Scope:
             known.setdefault(ast.unparse(bare), copied(bare))
         if isinstance(own, ast.Call) and called(own) in ANGLES and own.args:
             self.angles.setdefault(ast.unparse(own.args[0]), own.args[0])
+            self.taken[ast.unparse(own.args[0])] += 1
             turned = Turned().visit(copied(own))
             if isinstance(turned.func, ast.Attribute) or turned.func.id in self.angular:
                 known.setdefault(ast.unparse(turned), turned)
@@ -358,6 +388,8 @@ class Scope:
         """What a piece costs more than one that is used nowhere."""
         if isinstance(node, ast.Name):
             return 0.0 if node.id in self.unused else _UNUSED / 2
+        if self.idle_attributes and self.is_idle(node):
+            return 0.0
         if not self.unused:
             return _UNUSED
         return _UNUSED if self.unused.isdisjoint(names(node)) else 0.0

@@ -44,6 +44,8 @@ _WAYS = 64
 """Ways of understanding a program's numbers that are tried."""
 _LEAST, _SPREAD, _TURN = 0.75, 1.1, (5**0.5 - 1) / 2
 """How much larger numbers of the arm are: never twice alike, and no simple parts of each other."""
+_AXES = 2
+"""Axes of a matrix."""
 _ENDS = ("base", "tool")
 """What the transforms before and behind a table are called."""
 Which = tuple[str, int]
@@ -224,7 +226,9 @@ class _Reader:
                 some = self._alone(label, left, [k for k in self._alike(one) if k not in others])
                 self.items.append(_Item(tuple(((one, k),) for k in some), not label[2]))
             else:
-                key = (label[:2], label[2][1:]) if one.alone else ()
+                inner = label[2][1:]  # a tensor has the same number on both sides of its diagonal
+                inner = tuple(sorted(inner)) if len(inner) == _AXES else inner
+                key = (label[:2], inner) if one.alone else ()
                 own = may_be_of_one_arm(one.value)
                 value = -one.value if id(one.place.node) in self.negative else one.value
                 unknown.setdefault((key, value, own), []).append((one, left))
@@ -300,7 +304,7 @@ class _Reader:
             kinds, link = kinds_called(label[0]), self._link(label)
             some = [c for c in self.cells if c.kind in kinds and link in (None, *c.links)]
             every = [cell for cell in self.cells if cell.kind in kinds]
-            if _among(some, one.value):
+            if _among(some, one.value) and not self._is_of_another(kinds[0], link, one.value):
                 node = one.place.node if one.place.part == DATA else id(one.place.node)
                 self.fitting.add((node, one.place.place))
                 alike.add(label[0])
@@ -309,6 +313,12 @@ class _Reader:
         for name, *_place in strange:
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}
             self.odd = self.odd or any(not unlike(name, other) for other in same)
+
+    def _is_of_another(self, kind: str, link: int | None, value: float) -> bool:
+        """Whether it is another link's number of what is first called so."""
+        every = [cell for cell in self.cells if cell.kind == kind]
+        own = [cell for cell in every if link in (None, *cell.links)]
+        return _among(every, value) and not _among(own, value)
 
     def _link(self, label: Label) -> int | None:
         """The link after which a number is called, or at whose place it stands."""

@@ -6,7 +6,7 @@ import re
 
 _CALLED = (
     (re.compile(r"(lc|lg|com|cm|cen|rc)|(c|s)[xyz]?$"), ("centre",)),
-    (re.compile(r"(i|j)[xyz]{0,2}[cg]?$|inert|moment"), ("moment",)),
+    (re.compile(r"(i|j)[xyz]{0,2}[cg]?$|inert|moment|tens"), ("moment",)),
     (re.compile(r"m$|mass"), ("mass",)),
     (re.compile(r"al|twist"), ("twist",)),
     (re.compile(r"[la]$|len|linkl"), ("length",)),
@@ -24,7 +24,9 @@ def stem(name: str) -> str:
 
 def kinds_called(name: str) -> tuple[str, ...]:
     """What may be called so; nothing where that cannot be told."""
-    return next((kinds for begin, kinds in _CALLED if begin.match(stem(name))), ())
+    found = next((kinds for begin, kinds in _CALLED if begin.match(stem(name))), ())
+    first = name.strip("_").partition("_")[0]  # ``A_PREV``
+    return found or (kinds_called(first) if first != name else ())
 
 
 def unlike(one: str, other: str) -> bool:

@@ -18,7 +18,7 @@ from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.grounds.called import unlike
-from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
@@ -39,6 +39,8 @@ _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
 _OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
 """The arm's own numbers, which do not vary: any value may meet one."""
+_WHOLLY = ("sign", "factor")
+"""Kinds of edit that leave a value right at no pass, where they change it as a whole."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
 
@@ -56,6 +58,8 @@ class Grounds:
         self.trial = trial
         self.known = known
         self.right: set[int] = set()
+        self.partly: set[int] = set()
+        self.flags: set[int] = set()
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
@@ -81,6 +85,11 @@ class Grounds:
                 self._of_data[name] = self._against_data(name)
             return self._of_data[name]
         if edit.kind in _SPOILING and id(edit.node) in self.right:
+            return _SPOILED
+        whole = edit.changes[0].holder is not edit.node
+        if whole and edit.kind in _WHOLLY and id(edit.node) in self.partly:
+            return _SPOILED
+        if edit.kind == "factor" and id(edit.node) in self.flags:
             return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
@@ -125,8 +134,13 @@ class Grounds:
             if isinstance(node.value, ast.Tuple):
                 for one in node.value.elts:
                     self._right_alone(one, observed)
+                    self.partly |= {id(one)} if self._at_a_pass(one, observed) else set()
             senses = self._of(node.value, observed)
             good = senses is not None
+            if not good and self._at_a_pass(node.value, observed):
+                self.partly.add(id(node.value))
+            if _are_flags(observed.of(node.value)):
+                self.flags |= {id(inner) for inner in nodes(node.value)}
             if good and not isinstance(node.value, ast.Name):
                 self.right |= {id(inner) for inner in nodes(node)}
             near = self._is_whole(node.value, observed)
@@ -140,6 +154,22 @@ class Grounds:
                 returned.append(near or steps)
         if part and returned and all(returned):
             self.sound.add(part)
+
+    def _at_a_pass(self, node: ast.expr, observed: Observed) -> bool:
+        """Whether a vector or matrix is a thing of its own at one of the passes."""
+        seen = observed.of(node)
+        if seen is None or not seen.shape or not self.known or not seen.values:
+            return False
+        for value in (
+            seen.values[: seen.count // len(self.known)] if np.size(seen.values[0]) else ()
+        ):
+            rows, gap = self.known[0].gaps(value)
+            near = TOLERANCES.same_relation * float(np.max(np.abs(value)))
+            if np.array_equal(value, np.eye(len(value))):  # nothing turned or moved yet
+                return True
+            if not zeros_and_ones(value) and bool(rows) and bool(gap.min() <= near):
+                return True
+        return False
 
     def _right_alone(self, node: ast.expr, observed: Observed) -> None:
         if self._of(node, observed) is not None:
@@ -219,6 +249,13 @@ class Grounds:
         """The parts that are named in a tree."""
         inside = named_in(tree)
         return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
+
+
+def _are_flags(seen: Seen | None) -> bool:
+    """Whether an array is of zeros and ones at every pass, and of more than zeros at one."""
+    if seen is None or not seen.shape:
+        return False
+    return all(map(zeros_and_ones, seen.values)) and any(map(np.any, seen.values))
 
 
 def zeros_and_ones(value: Array) -> bool:

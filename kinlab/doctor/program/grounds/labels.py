@@ -37,7 +37,8 @@ class Labels:
     def of(self, place: NumberPlace) -> Label:
         """What a number is called."""
         names, at = self._written(place)
-        digits = [x for name in names for x in re.findall(r"\d+", name)]
+        told = names[-1:] if at else names  # a list's own name: the arm's may be UR5
+        digits = [x for name in told for x in re.findall(r"\d+", name)]
         return stem(names[-1]), int(digits[-1]) if digits else None, tuple(at)
 
     def owner(self, place: NumberPlace) -> str:

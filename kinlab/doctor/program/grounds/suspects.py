@@ -19,7 +19,7 @@ from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary
 from kinlab.doctor.program.grounds.evidence import zeros_and_ones
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import called
+from kinlab.doctor.program.places import called, root
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 
@@ -99,13 +99,6 @@ def _set_by(node: ast.AST) -> set[str]:
     if isinstance(call, ast.Call) and called(call) == "append":
         return {root(call.func)}
     return set()
-
-
-def root(piece: ast.AST) -> str:
-    """The name that an entry or attribute is of: ``N`` of ``N[k]``; empty where there is none."""
-    while isinstance(piece, ast.Subscript | ast.Attribute):
-        piece = piece.value
-    return piece.id if isinstance(piece, ast.Name) else ""
 
 
 def _values(value: ast.expr) -> list[ast.expr]:

@@ -22,6 +22,16 @@ a place for its edits."""
 _PLAIN = (float, int, complex, bool)
 
 
+def operation(lanes: int) -> float:
+    """What an operation of numbers with so many lanes amounts to."""
+    return _STEP + lanes / _NUMBERS
+
+
+def lanes_within(work: float) -> int:
+    """How many lanes the numbers of an operation may have for it to amount to no more."""
+    return int((work - _STEP) * _NUMBERS)
+
+
 class TooMuchError(Exception):
     """More work than may be done: a recursion with an edit in each call."""
 
@@ -101,8 +111,11 @@ class Lanes:
         self.lost = np.zeros(len(chosen), dtype=bool)
         self.work, self.most = 0, most
 
-    def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any]) -> Any:
-        """What a place of the program gives: for the lanes of its edits what these make of it."""
+    def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any] | None) -> Any:
+        """What a place of the program gives: for the lanes of its edits what these make of it.
+
+        Without a function for them these lanes are lost.
+        """
         if self.work > self.most:
             raise TooMuchError
         self.work += _PICK
@@ -115,8 +128,12 @@ class Lanes:
         for edit in edits:
             if edit not in known:
                 continue
-            self.here = inner = here.inner(edit)
+            inner = here.inner(edit)
             self.work += _EDIT
+            if new is None:
+                self.lose(inner)
+                continue
+            self.here = inner
             try:
                 found.append((inner, new(edit)))
             except Exception:  # noqa: BLE001  what edited programs may raise
@@ -135,6 +152,8 @@ class Lanes:
             return self._number(value, found)
         if isinstance(value, np.ndarray):
             return self._array(value, found)
+        if type(value) is dict:
+            return self._fields(value, found)
         rows = type(value) in (list, tuple)
         same: Edited = []
         for place, new in found:
@@ -168,6 +187,22 @@ class Lanes:
             values[place.where(self.here)] = new
         self.work += _STEP + len(values) // _NUMBERS
         return Laned(values, self, self.here)
+
+    def _fields(self, value: dict[Any, Any], found: Edited) -> dict[Any, Any]:
+        same: Edited = []
+        for place, new in found:
+            if type(new) is dict and new.keys() == value.keys():
+                same.append((place, new))
+            else:
+                self.lose(place)
+        return (
+            {
+                key: self.joined(old, [(place, new[key]) for place, new in same])
+                for key, old in value.items()
+            }
+            if same
+            else value
+        )
 
     def _array(self, value: Any, found: Edited) -> Any:
         self.work += _ARRAY * len(found)

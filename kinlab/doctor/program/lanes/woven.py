@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from kinlab.doctor.bytecode.syntax import nodes, shallow
+from kinlab.doctor.bytecode.syntax import names, nodes, shallow
 from kinlab.doctor.program.lanes.ways import WRITES, apart, function_of, loaded, may_run_apart
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import (
@@ -27,7 +27,7 @@ from kinlab.doctor.program.places import (
     hanging,
     with_other,
 )
-from kinlab.doctor.program.trial import FieldChange, NoProgramError, Trial
+from kinlab.doctor.program.trial import FieldChange, Trial
 
 _SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
 """Statements whose expressions are asked."""
@@ -35,7 +35,7 @@ _COUNTS = ("range", "len", "isinstance", "sorted", "map", "next")
 """Calls that no number with lanes can be given."""
 _RUNS = ("enumerate", "zip", "reversed")
 """Calls that give what they are given one after another."""
-_EDIT = "_edit"
+_EDIT, _ASKED = "_edit", "_asked"
 _LISTS = ast.ListComp | ast.SetComp | ast.GeneratorExp
 
 Key = tuple[int, str, int | None]
@@ -227,9 +227,17 @@ class Woven:
                 return best if sound or passed else None
             if not isinstance(parent, ast.AST) or id(parent) not in self._above:
                 return None
-            if isinstance(parent, ast.Lambda | ast.JoinedStr | ast.NamedExpr | ast.arguments):
+            if isinstance(parent, ast.Lambda):
+                return best if name == "body" and self._in_a_value(parent) else None
+            if isinstance(parent, ast.JoinedStr | ast.NamedExpr | ast.arguments):
                 return None
             at = self._above[id(parent)]
+
+    def _in_a_value(self, node: ast.AST) -> bool:
+        """Whether a statement whose expressions are asked sets what a node is in."""
+        while id(node) in self._above and not isinstance(node, ast.stmt):
+            node, name, _k = self._above[id(node)]
+        return isinstance(node, _SIMPLE) and name == "value"
 
     def _follows(self, parent: ast.AST, name: str, node: Any) -> bool:
         """Whether a node may have lanes where it stands."""
@@ -293,6 +301,8 @@ class Woven:
                 found.append(statement)
             elif isinstance(statement, _SIMPLE):
                 found += self._statement(statement, alone)
+            elif isinstance(statement, ast.ClassDef):
+                found += self._of_class(statement, alone)
             elif isinstance(statement, ast.match_case | ast.ExceptHandler):
                 one: Any = shallow(statement)
                 one.body = self._body(statement.body, alone)
@@ -301,6 +311,17 @@ class Woven:
                 found += self._block(statement, alone)
             found += self._added(body, k + 1, alone)
         return found
+
+    def _of_class(self, statement: ast.ClassDef, alone: bool) -> list[ast.stmt]:
+        """A class: what is asked of its members stands before it, where functions find it."""
+        own = {name for one in statement.body for name in names(one, ast.Store)}
+        if own.intersection(name for one in statement.body for name in names(one, ast.Load)):
+            return [statement]
+        other = shallow(statement)
+        every = self._body(statement.body, alone)
+        asked = [one for one in every if isinstance(one, ast.Assign) and _is_asked(one)]
+        other.body = [one for one in every if one not in asked]
+        return [*asked, other]
 
     def _added(self, body: list[ast.stmt], at: int, alone: bool) -> list[ast.stmt]:
         """The lines that edits put at a place of a block, each for its lanes."""
@@ -371,7 +392,7 @@ class Woven:
             return self._inside(node, scope, asked)
         if key not in asked:
             self._names += 1
-            label = f"_asked{self._names}"
+            label = f"{_ASKED}{self._names}"
             asked[key] = (None, label, scope)
             numbers: Any = tuple(number for number, _new in edited)
             new = _chosen([(number, self._inside(new, scope, asked)) for number, new in edited])
@@ -384,8 +405,11 @@ class Woven:
             target = ast.Name(label, ast.Store())
             asked[key] = (ast.Assign([target], function_of(call, scope)), label, scope)
         _statement, label, own = asked[key]
-        if not {*own} <= {*scope}:
-            raise NoProgramError("an expression that stands in two places")
+        if not {*own} <= {*scope}:  # an edit puts it where its names are others: without edits
+            inside = function_of(self._inside(node, scope, asked))
+            numbers = tuple(number for number, _new in edited)
+            lost = [ast.Constant(numbers), inside, ast.Constant(None)]
+            return ast.Call(ast.Name("_pick", ast.Load()), lost, [])
         names: list[ast.expr] = [ast.Name(one, ast.Load()) for one in own]
         return ast.Call(ast.Name(label, ast.Load()), names, [])
 
@@ -397,6 +421,8 @@ class Woven:
             targets = [one for part in node.generators for one in nodes(part.target)]
             scope = (*scope, *(one.id for one in targets if isinstance(one, ast.Name)))
             scope = tuple(dict.fromkeys(scope))
+        if isinstance(node, ast.Lambda):
+            scope = tuple(dict.fromkeys((*scope, *_given(node))))
         other = shallow(node)
         own = id(self._same.get(id(node), node))
         for name, value in ast.iter_fields(node):
@@ -422,8 +448,6 @@ class Woven:
     def _piece(
         self, value: Any, key: Key | None, scope: tuple[str, ...], asked: dict[Key, Any]
     ) -> Any:
-        if isinstance(value, ast.Lambda):
-            return value
         if isinstance(value, ast.expr):
             return self._edited(value, key, scope, asked)
         if isinstance(value, ast.keyword):
@@ -437,6 +461,16 @@ class Woven:
         if id(node) in self._above:
             return False
         return any(id(one) in self._holding for one in nodes(node))
+
+
+def _is_asked(line: ast.Assign) -> bool:
+    target = line.targets[0]
+    return isinstance(target, ast.Name) and target.id.startswith(_ASKED)
+
+
+def _given(function: ast.Lambda) -> list[str]:
+    """The names of what a function is given."""
+    return [node.arg for node in nodes(function.args) if isinstance(node, ast.arg)]
 
 
 def _counts(node: ast.expr) -> bool:

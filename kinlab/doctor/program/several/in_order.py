@@ -8,7 +8,7 @@ next such statement: three slips of a recursion take three looks, not all threes
 from __future__ import annotations
 
 from kinlab.doctor.program.grounds.suspects import behind
-from kinlab.doctor.program.places import ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.effects import Effects, Way
 from kinlab.doctor.program.several.witnesses import FirstStep, Witnesses
@@ -97,9 +97,15 @@ class InOrder:
                 new = [x for x in some if id(x.node) not in before]
                 old = [x for x in some if id(x.node) in before]
                 steps = self._looked(here, new) or self._looked(here, old)
+                if not steps:  # what is made of wrong numbers alone is wrong by nothing else
+                    steps = self._looked(here, [x for x in every if self._is_of_data(x)])
         except NoProgramError:
             return [], before
         return steps, suspected
+
+    def _is_of_data(self, edit: ProgramEdit) -> bool:
+        parts = self.search.program.parts
+        return edit.part == DATA or bool(parts[edit.part].sets)
 
     def _looked(self, here: LineSearch, some: list[ProgramEdit]) -> list[FirstStep]:
         """Those of some edits that are a step."""

@@ -7,7 +7,7 @@ first that explain most; then what is left is looked for beside an edit that mak
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import chain
+from itertools import chain, combinations
 from typing import Any
 
 import numpy as np
@@ -94,7 +94,7 @@ class _Several:
             return self._settled(search, found)
         in_order = InOrder(search, known, 0 if search.stand else _IN_ORDER)
         one_by_one = in_order.found()
-        found = [] if one_by_one is None else [one_by_one]
+        found = [] if one_by_one is None else self._fewer(search, [one_by_one])
         found = found or self._last(search, in_order.reached[:_WAYS])
         if found:
             return self._settled(search, found)
@@ -147,6 +147,16 @@ class _Several:
             if found:
                 return found
         return []
+
+    def _fewer(self, search: LineSearch, found: list[ProgramRepair]) -> list[ProgramRepair]:
+        """A repair of three edits or more, with one for two of them where one does as well."""
+        own = found[0].edits[len(search.stand) :]
+        for two in combinations(own, 2) if len(own) > _DEEPEST else ():
+            rest = tuple(edit for edit in own if edit not in two)
+            better = self._last(search, [rest])
+            if better:
+                return self._fewer(search, better)
+        return found
 
     def _after(self, search: LineSearch, firsts: list[Way]) -> list[ProgramRepair]:
         """What is left once edits stand: of several ways the first beside which anything does."""

@@ -17,6 +17,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import ANY_ZERO
+from kinlab.doctor.program.lanes.numbers import lanes_within, operation
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.repair import LineSearch
 from kinlab.doctor.program.several.effects import Chosen, Effects
@@ -26,8 +27,11 @@ _BLOCK = 120
 """Edits of which each is run with each of as many others at a time."""
 _EDITS = 2400
 """Edits of which any two are run together."""
-_AT_ONCE, _FOLLOWED = 400, 25_000_000
-"""Of how many it is looked at a time; work after which no more are."""
+_AT_ONCE, _FOLLOWED = 400, 5
+"""Of how many it is looked at a time; of all work the part after which no more are."""
+_WIDE, _DOUBTED, _SPARED, _TURNS = 600, 10, 0.45, 2
+"""Edits of which any two may be run where not all of the likeliest can; how much later those come
+that something speaks against; the share of the work for each such run, and how many these are."""
 _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
@@ -40,7 +44,7 @@ _THREE, _KEPT = 600, 6_000_000
 """Edits of which any three may go together, fewer where their pairs have more numbers."""
 _TRIED = 2000
 """Threes that are run, of each way to tell them."""
-_ALL, _LEAST = 110_000_000, 60_000_000
+_ALL, _LEAST = 110_000_000, 75_000_000
 """Work that may be done for single edits and those tried together; the least for these."""
 _LIKELY, _PRODUCT = 300, 600_000
 """Edits of which any three are run together, the product of whose ranks is no larger."""
@@ -50,7 +54,7 @@ _BITS = 63
 """Numbers of an answer by which threes are told apart beforehand."""
 _BEYOND = 10_000_000
 """What one run may take beyond what is left."""
-_ONE_RUN = 20_000_000
+_ONE_RUN = 45_000_000
 """What one run may take at all: more is a recursion with edits in each call."""
 _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
@@ -71,6 +75,7 @@ class TriedTogether:
 
     Attributes:
         left: work that may still be done.
+        each: how many operations a run takes.
         usable: whether lanes can follow the program.
     """
 
@@ -79,7 +84,7 @@ class TriedTogether:
         self.left = search.most if search.stand else max(_LEAST, _ALL - search.work)
         self.count = 1 + (search.case.quantity.name in ANY_ZERO)
         self.sound = np.empty(0, dtype=int)
-        self.usable = False
+        self.usable, self.each = False, 0.0
         states = search.states_at(search.first)
         edits = known.alike[:_EDITS]
         for counts in (True, False):  # whole numbers may be what something is counted by
@@ -101,12 +106,14 @@ class TriedTogether:
         """Whether most edits do in lanes what they do alone: others are left out."""
         before, reached = self.left, 0
         sound: list[Array] = []
-        while reached < count and before - self.left < _FOLLOWED:
+        while reached < count and before - self.left < max(before // _FOLLOWED, 1):
             some = np.arange(reached, min(reached + _AT_ONCE, count))
             alone = np.concatenate([[_NONE], some])[:, None]
+            done = self.lanes.work
             rows = self._rows(alone, max(self.count, _WATCHED), _BEYOND + self.left)
             if rows is None or not np.abs(rows[0]).max() <= self.known.near:
                 return False
+            self.each = max(self.each, (self.lanes.work - done) / operation(len(alone)))
             known = self.known.rows[some, : rows.shape[1]]
             gap = np.abs(rows[1:] - known).max(axis=1)
             size = np.maximum(1.0, np.abs(known).max(axis=1))
@@ -169,7 +176,12 @@ class TriedTogether:
 
     def _in_turn(self) -> Iterator[tuple[int, Any]]:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
-        likely = True
+        likely, most = True, self._within(_SPARED * self.left)
+        if most < min(_BLOCK, len(self.sound)) ** 2 // 2:
+            lots = np.array_split(self._few(_TURNS * most), _TURNS)
+            for turn, some in enumerate(one for one in lots if len(one)):
+                yield 1 + turn, some
+            return
         for rank, one, other in self._blocks():
             if likely and rank > _FIRST:
                 likely = False
@@ -180,6 +192,17 @@ class TriedTogether:
                 chosen = chosen[~self._possible_of(chosen)]
             if len(chosen):
                 yield rank, chosen
+
+    def _within(self, work: float) -> int:
+        """How many pairs may be run at once with so much work."""
+        return lanes_within(work / self.each) if self.each else _BLOCK**2
+
+    def _few(self, most: int) -> Any:
+        """Of all pairs so many, the likeliest; those later that something speaks against."""
+        some = self.sound[:_WIDE]
+        pairs = self._apart(some, some)
+        far = (pairs + 1).prod(axis=1) * np.where(self._possible_of(pairs), 1, _DOUBTED)
+        return pairs[np.argsort(far, kind="stable")[: max(most, 0)]]
 
     def _possible_pairs(self) -> Iterator[tuple[int, Any]]:
         """Pairs of which nothing speaks against them, beyond the likeliest; the likeliest first.
