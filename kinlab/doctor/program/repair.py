@@ -41,6 +41,7 @@ from kinlab.doctor.program.grounds.scaled import (
     own_rows,
 )
 from kinlab.doctor.program.grounds.suspects import suspects
+from kinlab.doctor.program.grounds.terms import missing_terms
 from kinlab.doctor.program.lanes.run import InLanes
 from kinlab.doctor.program.observed import Observed, amounts
 from kinlab.doctor.program.places import DATA, ROUNDING, ProgramEdit, called, row_of
@@ -372,6 +373,7 @@ class LineSearch:
         every += of_table(self.trial, self.observed, self.case.robot)
         every += of_own_numbers(self.trial, self.observed, self.case.robot)
         every += missing_products(self.trial, self.observed, scopes, self.dimensions)
+        every += missing_terms(self.trial, self.observed, scopes, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [edit for edit in every if edit.part != DATA or not sure(edit)]
         named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
@@ -520,7 +522,8 @@ class LineSearch:
         (before, _), (apart, larger) = self._others, self._arms(several)
         if before is not None and apart is not None:
             odd = apart.odd and len(several) > 1 and not self._holds(apart)
-            if odd or before.fitting - apart.fitting:
+            put = {(edit.node, edit.place) for edit in several if edit.of_the_arm}
+            if odd or before.fitting - apart.fitting - put:
                 return True  # a name has a number that none has of those that are called so
             if apart.whole and self._at_arm(apart) is not None:
                 return not self._holds(apart)

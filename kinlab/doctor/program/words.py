@@ -463,7 +463,7 @@ def _robots_own(edit: ProgramEdit, search: LineSearch) -> bool:
     own = None if edit.place else vocabulary(table).values.get(edit.node)
     old, new = edit.numbers
     named_so = own is not None and float(own) == old
-    return named_so or (search.is_own(old) and not search.is_own(new))
+    return named_so or (search.is_own(old) and not (search.is_own(new) or edit.of_the_arm))
 
 
 def _of_rounding(edit: ProgramEdit, search: LineSearch) -> bool:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import names
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, places
 from kinlab.doctor.program.trial import FieldChange, Trial, is_data
@@ -50,11 +51,43 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         for new, kind in _whole(value):
             yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
         yield from _exchanged(name, value, (), trial.space, name)
+    yield from _kinds_of_joints(trial)
     for held in trial.bound:
         yield from _exchanged("self", held, ())
     for kept in trial.classes.values():
         yield from _exchanged(kept.__name__, kept, ())
     yield from _names_exchanged(trial)
+
+
+def _kinds_of_joints(trial: Trial) -> Iterator[ProgramEdit]:
+    """Names for the kinds of the joints: ``"RRPR"``, ``["R", "R", "P", "R"]``."""
+    used = {name for tree in trial.trees for name in names(tree)}
+    for name in sorted(used & trial.space.keys()):
+        value = trial.space[name]
+        listed = isinstance(value, list | tuple) and {type(x) for x in value} == {str}
+        if not listed and not isinstance(value, str):
+            continue
+        word = "".join(one[:1] for one in value)
+        whole = {one[:1]: one for one in value}
+        for new, kind, cost in other_words(word):
+            other: Any = type(value)(whole[x] for x in new) if listed else new
+            change = FieldChange(trial.space, name, other)
+            told = (repr(value), repr(other))
+            yield ProgramEdit(DATA, (change,), kind, cost, name, exchanged=told)
+
+
+def other_words(word: str) -> Iterator[tuple[str, str, float]]:
+    """A word of two letters with two of its letters for one another, or one for the other."""
+    if not 1 < len(word) <= _ROWS or len({*word}) != _PAIR or not word.isalpha():
+        return
+    for i, j in combinations(range(len(word)), 2):
+        if word[i] != word[j]:
+            letters = [*word]
+            letters[i], letters[j] = letters[j], letters[i]
+            yield "".join(letters), "entries swapped", 1.04
+    for i, letter in enumerate(word):
+        (other,) = {*word} - {letter}
+        yield word[:i] + other + word[i + 1 :], "condition", 1.08
 
 
 def _whole_entries(trial: Trial) -> Iterator[NumberPlace]:
@@ -129,6 +162,15 @@ def _exchanged(
                 changes = tuple(one for k in off for one in _of_row(value, k, i, j))
                 yield _swap(changes, "columns swapped", name, place, (f"[:, {i}]", f"[:, {j}]"))
     for i, j in combinations(range(len(rows)), 2):
+        for k in range(len(rows[0]) if len(count) <= _ROWS else 0):
+            if rows[i][k] != rows[j][k]:
+                one, other = (
+                    _with_entry(rows[i], k, rows[j][k]),
+                    _with_entry(rows[j], k, rows[i][k]),
+                )
+                changes = (*_row_put(value, i, one), *_row_put(value, j, other))
+                told = (f"[{i}][{k}]", f"[{j}][{k}]")
+                yield _swap(changes, "entries swapped", name, place, told)
         if not np.array_equal(rows[i], rows[j]):
             changes = (*_row_put(value, i, rows[j]), *_row_put(value, j, rows[i]))
             yield _swap(changes, "rows swapped", name, place, (f"[{i}]", f"[{j}]"))
@@ -202,6 +244,12 @@ def _row_put(table: Any, k: int, row: Any) -> tuple[FieldChange, ...]:
     if isinstance(table, np.ndarray):
         return tuple(FieldChange(table, (k, i), float(x)) for i, x in enumerate(row))
     return (FieldChange(table, k, row),)
+
+
+def _with_entry(row: Any, k: int, value: Any) -> Any:
+    new = [*row]
+    new[k] = value
+    return np.array(new) if isinstance(row, np.ndarray) else type(row)(new)
 
 
 def _swapped(row: Any, i: int, j: int) -> Any:

@@ -29,6 +29,7 @@ from kinlab.doctor.program.edits.operators import (
     of_comparisons,
     of_constant,
     of_keys,
+    of_letters,
     of_name,
     of_operator,
     of_sequence,
@@ -63,6 +64,8 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     every += (*elsewhere.edits(here, scope, observed),)
                     beside = _rotations_beside(here, observed)
                     found += [x for x in every if not (beside and _undoes(x, beside))]
+                elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                    found += of_letters(here)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)

@@ -17,7 +17,7 @@ _RATES = ("w", "o", "W", "O")
 """How names of angular velocities begin."""
 _ARMS = ("p", "P", "r", "c", "C", "l", "L", "d", "s")
 """How names of what leads from one point to another begin."""
-_VECTOR, _TWIST = (3,), (6,)
+_VECTOR, _TWIST, _HOMOGENEOUS = (3,), (6,), (4,)
 _FEW = 8
 """Names of one kind that are tried."""
 _SUMS = ast.Add | ast.Sub
@@ -51,6 +51,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
         zeros = ast.Attribute(ast.Name("np", ast.Load()), "zeros", ast.Load())
         nothing = ast.Call(zeros, [ast.Constant(_VECTOR[0])], [])
         yield here.instead(nothing, "extra term", 1.15)
+    if shape == _VECTOR and isinstance(node, ast.Subscript):
+        yield from _of_idle_points(here, scope)
     if isinstance(op, _SUMS):
         yield from _with_angles(here, scope)
     if shape == _VECTOR and isinstance(op, ast.Add):
@@ -171,6 +173,24 @@ def _turned_beside(here: Here) -> Iterator[ProgramEdit]:
         key = ast.Tuple([ast.Slice(None, number(3), None) for _axis in range(2)], ast.Load())
         turn = ast.Subscript(origin.value, key, ast.Load())
         yield here.instead(ast.BinOp(turn, ast.MatMult(), here.node), "missing matrix", 1.02)
+
+
+def _of_idle_points(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """For the origin of a frame a point in it that nothing uses any more: ``(T @ tool)[:3]``."""
+    node = here.node
+    if ast.unparse(node.slice) != "(:3, 3)" or not scope.is_pose(node.value):
+        return
+    for _text, point in scope.simple(_HOMOGENEOUS):
+        if scope.is_idle(point):
+            moved = ast.BinOp(node.value, ast.MatMult(), point)
+            rows = ast.Slice(None, number(_VECTOR[0]), None)
+            yield here.instead(ast.Subscript(moved, rows, ast.Load()), "missing matrix", 1.06)
+    for _text, point in scope.simple(_VECTOR):
+        if scope.is_idle(point):
+            key = ast.Tuple([ast.Slice(None, number(3), None) for _axis in range(2)], ast.Load())
+            turn = ast.Subscript(node.value, key, ast.Load())
+            moved = ast.BinOp(turn, ast.MatMult(), point)
+            yield here.instead(ast.BinOp(node, ast.Add(), moved), "missing term", 1.06)
 
 
 def _with_angles(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

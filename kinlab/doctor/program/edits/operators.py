@@ -7,9 +7,9 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
 from kinlab.doctor.program.edits import chains
-from kinlab.doctor.program.edits.data import measured, moved_on
+from kinlab.doctor.program.edits.data import measured, moved_on, other_words
 from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
@@ -29,6 +29,8 @@ _THREE = 3
 """Indices of which any order is tried."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_HALF = 1.03
+"""Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _OF_RODS = {3: 12, 12: 3}
 """A rod's moments of inertia about its end, and about its middle, are its mass by these."""
 _DIAGONALS = ("tril", "triu", "eye", "diag")
@@ -159,15 +161,25 @@ def _in_turn(here: Here) -> Iterator[ProgramEdit]:
 
 def _turned(here: Here) -> Iterator[ProgramEdit]:
     """R I R.T for R.T I R."""
-    node = here.node
-    first, last = node.left, node.right
-    inner = first.right if isinstance(first, ast.BinOp) else None
-    if inner is None or not isinstance(first.op, ast.MatMult):
+    parent = here.parent
+    if (
+        isinstance(parent, ast.BinOp)
+        and isinstance(parent.op, ast.MatMult)
+        and here.field == "left"
+    ):
         return
-    for one, other in ((first.left, last), (last, first.left)):
-        if isinstance(one, ast.Attribute) and ast.dump(one.value) == ast.dump(other):
-            turned = ast.BinOp(ast.BinOp(last, ast.MatMult(), inner), ast.MatMult(), first.left)
-            yield here.instead(turned, "transposed", 1.03)
+    every = chains.members(chains.chain(here.node, (ast.MatMult,)))
+    for k in range(len(every) - _PAIR):
+        first, last = every[k], every[k + _PAIR]
+        if f"{ast.unparse(first)}.T" == ast.unparse(last) or _is_turned_into(last, first):
+            one, *others = [*every[:k], last, every[k + 1], first, *every[k + _THREE :]]
+            by = [(ast.MatMult(), other) for other in others]
+            yield here.instead(chains.joined(one, by), "transposed", 1.03)
+
+
+def _is_turned_into(one: ast.expr, other: ast.expr) -> bool:
+    """Whether one of two matrices is the transpose of the first."""
+    return f"{ast.unparse(one)}.T" == ast.unparse(other)
 
 
 def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
@@ -444,6 +456,8 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             beside = other in scope.beside.get(node.id, ())
             cost = 1.1 if near else 1.14 if beside else 1.25
+            if scope.are_halves(other, node.id):
+                cost = _HALF
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
@@ -539,6 +553,8 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
         return
     yield from _swapped(here, here.node)
     yield from _across(here, elements)
+    yield from _between(here, elements)
+    yield from _signs_of_two(here, elements)
     turned = [_opposite(one) for one in elements]
     if sum(one is not old for one, old in zip(turned, elements, strict=True)) >= _PAIR:
         unpacked = isinstance(here.node, ast.Tuple) and isinstance(here.parent, ast.Assign)
@@ -546,6 +562,62 @@ def of_sequence(here: Here) -> Iterator[ProgramEdit]:
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
+
+
+def _between(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """What two rows, or two calls of one function, have at the same place, for one another."""
+    several = [_members_of(one) for one in rows]
+    if not 1 < len(rows) <= _LONGEST or len({len(one) for one in several}) > 1:
+        return
+    if len({type(one) for one in rows}) > 1 or len({ast.unparse(x.func) for x in rows
+                                                    if isinstance(x, ast.Call)}) > 1:  # fmt: skip
+        return
+    for i, j in combinations(range(len(rows)), 2):
+        for k in range(len(several[0])):
+            one, other = several[i][k], several[j][k]
+            if ast.dump(one) != ast.dump(other):
+                new = [*rows]
+                new[i] = _with_member(rows[i], k, other)
+                new[j] = _with_member(rows[j], k, one)
+                yield here.within(here.node, "elts", new, "entries swapped", 1.13)
+
+
+def _members_of(row: ast.expr) -> list[ast.expr]:
+    """What a row has, or what a call is given."""
+    if isinstance(row, ast.Call):
+        return [*row.args, *(word.value for word in row.keywords)]
+    if isinstance(row, ast.Dict):
+        return row.values
+    return row.elts if isinstance(row, ast.List | ast.Tuple) else []
+
+
+def _with_member(row: ast.expr, k: int, new: ast.expr) -> ast.expr:
+    other: Any = shallow(row)
+    if isinstance(row, ast.Call):
+        other.args = [new if i == k else x for i, x in enumerate(row.args)]
+        count = len(row.args)
+        words = [ast.keyword(x.arg, new if i + count == k else x.value)
+                 for i, x in enumerate(row.keywords)]  # fmt: skip
+        other.keywords = words
+    else:
+        field = "values" if isinstance(row, ast.Dict) else "elts"
+        setattr(other, field, [new if i == k else x for i, x in enumerate(_members_of(row))])
+    return other
+
+
+def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
+    """Two rows or columns of a rotation matrix with the other sign: a frame is turned over."""
+    entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
+    if len(entries) != len(rows) or {len(one) for one in entries} != {_THREE}:
+        return
+    for some in combinations(range(_THREE), 2):
+        for columns in (False, True):
+            turned = [
+                ast.List([_opposite(x) if (k if columns else i) in some else x
+                          for k, x in enumerate(row)], ast.Load())
+                for i, row in enumerate(entries)
+            ]  # fmt: skip
+            yield here.within(here.node, "elts", turned, "sign", 1.15)
 
 
 def _across(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
@@ -576,6 +648,12 @@ def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:
             moved = j == _PLACE and getattr(row.elts[j], "value", None) == 1
             cost = 1.12 + _FLAT * moved  # of what is a place, and no direction
             yield here.within(row, "elts", swapped, "entries swapped", cost)
+
+
+def of_letters(here: Here) -> Iterator[ProgramEdit]:
+    """The kinds of joints in the order of a word, ``"RRPR"``: two for one another, or one other."""
+    for word, kind, cost in other_words(here.node.value):
+        yield here.within(here.node, "value", word, kind, cost)
 
 
 def of_comparison(here: Here) -> Iterator[ProgramEdit]:

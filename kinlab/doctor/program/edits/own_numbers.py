@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,8 @@ _TURNED = 0.02
 """What it costs more to put a number in with the other sign."""
 _SUMMED = 0.04
 """The same of a number that is a sum of two, in place of one of these."""
+_OF_POINTS = 1.14
+"""Cost of a point's coordinate for a number."""
 _MOST = 16
 """Numbers of one kind of which any may be meant."""
 
@@ -44,6 +47,7 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
             continue
         for value, cost in _meant(place, kinds | {"gravity": [weight]}, summed, given):
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
+    yield from _of_points(table, every, kinds["length"])
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
     left_out = [x for x in lengths if not among(x, given)]
@@ -70,6 +74,25 @@ def _from_the_joint(table: DHTable) -> list[float]:
     """How far centres of mass are from their links' joints, along each axis."""
     sums = [np.add((k.a, k.d, k.d), np.ravel(k.com)) for k in table.links]
     return [float(f"{abs(x):.12g}") for x in np.ravel(sums)]
+
+
+def _of_points(
+    table: DHTable, every: Sequence[NumberPlace], lengths: Sequence[float]
+) -> Iterator[ProgramEdit]:
+    """The coordinates of points at the zero position: sums of lengths that follow one another."""
+    steps = [abs(np.array([k.a for k in table.links])), abs(np.array([k.d for k in table.links]))]
+    runs = [(i, j) for i, j in combinations(range(table.n + 1), 2) if j - i > 1]
+    sums = {float(one[i:j].sum()) for one in steps for i, j in runs}
+    points = sorted({float(f"{x:.12g}") for x in sums if x and not among(x, lengths)})[:_MOST]
+    floats = [place for place in every if isinstance(place.value, float)]
+    if not any(among(abs(place.value), points) for place in floats):
+        return
+    for place in floats:
+        size = abs(place.value)
+        for value in points if among(size, points) or among(size, lengths) else ():
+            if abs(value - size) > TOLERANCES.same_number * value:
+                edit = place.edit(float(np.copysign(value, place.value)), "number", _OF_POINTS)
+                yield replace(edit, of_the_arm=True)
 
 
 def _meant(

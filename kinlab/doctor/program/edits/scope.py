@@ -164,7 +164,8 @@ class Scope:
             plain = ast.Name(name, ast.Load())
             if name in self.unused:
                 self.pieces.setdefault(shape, {}).setdefault(name, plain)
-            if shape and (name in self.unused or len(shape) > 1):
+            forgotten = name in trial.program.data and name not in self.present
+            if shape and (name in self.unused or len(shape) > 1 or forgotten):
                 self.lists.setdefault(name, shape[1:])
             if name in self.unused and len(shape) == 1 and shape[0] <= _JOINTS:
                 for k in range(shape[0]):
@@ -211,6 +212,13 @@ class Scope:
             for counter in (*self.counters, *self.whole) if shape else ():
                 entry = ast.Subscript(copied(one), ast.Name(counter, ast.Load()), ast.Load())
                 self.pieces.setdefault(shape[1:], {}).setdefault(ast.unparse(entry), entry)
+
+    def are_halves(self, one: str, other: str) -> bool:
+        """Whether one of two numbers of one link is half of the other: ``lc1`` of ``l1``."""
+        digits = {name[len(name.rstrip("0123456789")) :] for name in (one, other)}
+        values = [self.space.get(name) for name in (one, other)]
+        floats = [x for x in values if isinstance(x, float)]
+        return len(digits) == 1 and len(floats) == 2 and min(floats) * 2 == max(floats)
 
     def is_idle(self, node: ast.AST) -> bool:
         """Whether it is what is set and used nowhere, or an entry of that."""

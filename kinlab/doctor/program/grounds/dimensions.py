@@ -100,6 +100,13 @@ class Dimensions:
         """The dimension of an expression of the program as the logarithm of a factor."""
         return self._known.get(id(node))
 
+    def of_made(self, node: ast.expr) -> float | None:
+        """The same of an expression made of those of the program."""
+        try:
+            return self._of_new(node)
+        except _ApartError:
+            return None
+
     def of_text(self, text: str) -> float | None:
         """The same of a name or an entry, by what it is as text."""
         return self._texts.get(text)
@@ -165,6 +172,9 @@ class Dimensions:
             return self._of_new(node.operand)
         if isinstance(node, ast.BinOp):
             return self._of_operation(node)
+        if isinstance(node, ast.List | ast.Tuple):
+            told = [self._of_new(x) for x in node.elts if getattr(x, "value", 1)]
+            return told[0] if told and all(_alike(told[0], x) for x in told) else None
         if isinstance(node, ast.Call):
             return self._of_call(node)
         if isinstance(node, ast.Attribute) and node.attr == "T":
@@ -326,6 +336,9 @@ def _kind(
 ) -> str | None:
     """What a number is; ``"none"`` of what has no dimension, None where that is not told."""
     size = abs(float(place.value))
+    row = place.holder if isinstance(place.holder, np.ndarray | list) else []
+    if size == 1.0 and np.count_nonzero(np.asarray(row, dtype=object)) == 1 < len(row):
+        return "none"  # an axis
     may = [kind for kind, known in kinds.items() if among(size, known)]
     may += ["gravity"] if may_be_gravity(size) else []
     name = place.node if place.part == DATA else named.get(id(place.node))

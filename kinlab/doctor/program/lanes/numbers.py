@@ -6,6 +6,7 @@ for its lanes alone and put among the others': inside such a place numbers are n
 
 from __future__ import annotations
 
+import copy
 import operator
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -111,7 +112,9 @@ class Lanes:
         self.lost = np.zeros(len(chosen), dtype=bool)
         self.work, self.most = 0, most
 
-    def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any] | None) -> Any:
+    def pick(
+        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any] | None
+    ) -> Any:
         """What a place of the program gives: for the lanes of its edits what these make of it.
 
         Without a function for them these lanes are lost.
@@ -154,7 +157,9 @@ class Lanes:
             return self._array(value, found)
         if type(value) is dict:
             return self._fields(value, found)
-        rows = type(value) in (list, tuple)
+        if type(value) not in (list, tuple) and hasattr(value, "__dict__") and not callable(value):
+            return self._object(value, found)
+        rows = isinstance(value, list | tuple)
         same: Edited = []
         for place, new in found:
             if rows and type(new) is type(value) and len(new) == len(value):
@@ -163,10 +168,26 @@ class Lanes:
                 self.lose(place)
         if not same:
             return value
-        return type(value)(
+        make = getattr(type(value), "_make", type(value))  # of a tuple with names
+        return make(
             self.joined(old, [(place, new[k]) for place, new in same])
             for k, old in enumerate(value)
         )
+
+    def _object(self, value: Any, found: Edited) -> Any:
+        """An object of the program's with what its members are in some lanes."""
+        own = vars(value)
+        same: Edited = []
+        for place, new in found:
+            if type(new) is type(value) and vars(new).keys() == own.keys():
+                same.append((place, vars(new)))
+            elif new is not value:
+                self.lose(place)
+        if not same:
+            return value
+        other = copy.copy(value)
+        vars(other).update(self._fields(own, same))
+        return other
 
     def _number(self, value: Any, found: Edited) -> Any:
         sound = [(place, new) for place, new in found if new is not value]

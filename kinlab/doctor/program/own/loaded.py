@@ -127,6 +127,7 @@ class ModuleLines:
                 break
             kept += found
             wanted = wanted.union(*(one.uses for one in found))
+        kept += [one for one in lines if one not in kept and self._is_idle(one, wanted | alone)]
         if not kept:
             return None
         body = [one.node for one in lines if one in kept]
@@ -134,6 +135,20 @@ class ModuleLines:
         tree.lineno = tree.end_lineno = body[0].lineno
         tree.col_offset = tree.end_col_offset = 0
         return tree
+
+    def _is_idle(self, line: _Line, known: set[str]) -> bool:
+        """Whether a line makes numbers of known ones that nothing uses: a slip may have lost them.
+
+        Only what is made of the numbers that the program has.
+        """
+        if not isinstance(line.node, ast.Assign):
+            return False
+        used = {name for name in line.uses - line.sets if not callable(self.space.get(name))}
+        used = {name for name in used if not isinstance(self.space.get(name), ModuleType)}
+        numbers = (self.space.get(name) for name in line.sets)
+        others = (one for one in self.lines if one is not line)
+        alone = all(line.sets.isdisjoint(one.uses | one.sets) for one in others)
+        return alone and bool(used) and used <= known and all(map(_is_number, numbers))
 
     def _runs(self, line: _Line, made: set[str], harmless: Callable[[Any], bool]) -> bool:
         """Whether nothing but arithmetic happens when it is run again, on copies of the data."""
@@ -171,6 +186,10 @@ def drawing(value: Any) -> bool:
     kinds = (value, source, type(source))
     homes = (getattr(one, "__module__", None) or "" for one in kinds)
     return isinstance(value, Iterator) or any(str(x).startswith("numpy.random") for x in homes)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, float | np.ndarray)
 
 
 _NO_ARGUMENTS = ast.arguments([], [], None, [], [], None, [])
