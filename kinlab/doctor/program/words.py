@@ -406,6 +406,9 @@ def _text(node: ast.AST) -> str:
     """A piece of a program as it is usually typed."""
     if isinstance(node, ast.If) and getattr(node.test, "value", None) is True:  # a line and another
         return "; ".join(map(_text, node.body))
+    if isinstance(node, ast.If) and not hasattr(node, "lineno"):  # made, and of a line each
+        one, last = (" ".join(map(_text, block)) for block in (node.body, node.orelse))
+        return f"if {_text(node.test)}: {one}; else: {last}"
     text = ast.unparse(node).replace("_turn() and ", "")  # what ends loops is not the user's
     text = re.sub(rf" if (\w+) is {DEFAULT} else \1", "", text)
     return _typed(text.partition("\n")[0].rstrip(":"))

@@ -19,7 +19,7 @@ from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
-from kinlab.doctor.program.edits.forgotten import of_forgotten, with_slices
+from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
 from kinlab.doctor.program.edits.operators import (
     keys_of,
     negated,
@@ -211,6 +211,7 @@ def _statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Program
         yield from _comparison_of(here, node.test)
     if isinstance(node, ast.Assign):
         yield from _in_degrees(here, scope, observed)
+        yield from of_kinds_of_joints(here, scope)
     if isinstance(node, ast.Assign | ast.AugAssign) and isinstance(here.holder, list):
         yield here.instead(ast.Pass(), "extra statement", 1.22)
 

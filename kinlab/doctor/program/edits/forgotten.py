@@ -66,6 +66,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
     if isinstance(parent, ast.Call) and here.holder is parent.args:
         yield from _by_unused(here, scope)
     yield from _calls(here, scope, shape)
+    if shape == _TWIST and isinstance(node, ast.Call) and called(node) == "array":
+        yield from _of_kinds(here, scope)
     if isinstance(parent, _SET):
         if shape == _VECTOR:
             yield from _moments(here, scope)
@@ -73,6 +75,40 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _of_twists(here, scope)
         if len(shape) == 2:
             yield from _turned_matrices(here, scope, shape)
+
+
+def _of_kinds(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A hinge's axis for any joint, of which a slide has the other half of its twist."""
+    row = here.node.args[0] if here.node.args else None
+    if not isinstance(row, ast.List | ast.Tuple) or len(row.elts) != _TWIST[0]:
+        return
+    half = _TWIST[0] // 2
+    turned = ast.List([*row.elts[half:], *row.elts[:half]], ast.Load())
+    other = ast.Call(here.node.func, [turned], [])
+    for test in scope.tests_here():
+        for both in ((here.node, other), (other, here.node)):
+            yield here.instead(ast.IfExp(test, *both), "condition", 1.08)
+
+
+def of_kinds_of_joints(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """A rate that turns a link, for any joint, where a slide's moves it: ``v = v + qd[i]*z``."""
+    node = here.node
+    value = node.value
+    if not isinstance(value, ast.BinOp) or not isinstance(value.op, ast.Add):
+        return
+    own, rate = node.targets[0], value.right
+    if not isinstance(own, ast.Name) or not isinstance(rate, ast.BinOp):
+        return
+    shape = scope.shapes.get(own.id)
+    if not shape or not isinstance(rate.op, ast.Mult):
+        return
+    for name, known in scope.shapes.items():
+        if known == shape and name != own.id and name in scope.set_here:
+            moved = ast.BinOp(ast.Name(name, ast.Load()), ast.Add(), rate)
+            other = ast.Assign([ast.Name(name, ast.Store())], moved)
+            for test in scope.tests_here():
+                for one, last in ((other, node), (node, other)):
+                    yield here.instead(ast.If(test, [one], [last]), "condition", 1.1)
 
 
 def _of_another_row(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -63,7 +63,8 @@ class Scope:
         inner: the terms of the sums that are factors, without their numbers.
         factors: what stands in front of a product of matrices, by the statements' identities.
         beside: names that are entries of one thing: ``w, dh, dr = v``.
-        present: the names that it has.
+        tests: conditions on what a counter counts, of kinds of joints that nothing asks, too.
+        present, set_here: the names that it has, and those that it sets.
         fronts: names in what stands in front of any product of matrices.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
@@ -128,6 +129,7 @@ class Scope:
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
         local |= {*names(tree)} - here
         self.present = here | local
+        self.set_here = {*names(tree, ast.Store)}
         self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
@@ -144,6 +146,7 @@ class Scope:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
         self.beside = _set_together(tree)
+        self.tests = _tests(tree, trial, self.counters)
         self.arcs, self.sines = _set_by(tree, ARCS), _set_by(tree, ANGLES)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
         self.whole = [*self.counters, *_counts(tree, observed, self.counters)]
@@ -431,6 +434,11 @@ class Scope:
             self._known_here[self._inside, shape] = known
         return known
 
+    def tests_here(self) -> list[ast.expr]:
+        """The conditions that may stand there."""
+        outside = {*self.counters} - self._inside
+        return [one for one in self.tests.values() if outside.isdisjoint(names(one))]
+
     def simple(self, shape: Shape) -> Iterator[tuple[str, ast.expr]]:
         """Names, entries of lists and attributes of one shape."""
         for text, node in self.pieces_here(shape).items():
@@ -695,6 +703,24 @@ def _set_by(tree: ast.AST, functions: Container[str]) -> set[str]:
     lines = [node for node in nodes(tree) if isinstance(node, ast.Assign)]
     pairs = (pair for one in lines for target in one.targets for pair in _set(target, one.value))
     return {name for name, x in pairs if isinstance(x, ast.Call) and called(x) in functions}
+
+
+def _tests(tree: ast.AST, trial: Trial, counters: Sequence[str]) -> dict[str, ast.expr]:
+    """Conditions on what a counter counts, by their text."""
+    asked = [node.test for node in nodes(tree) if isinstance(node, ast.If | ast.IfExp)]
+    found = [one for one in asked if not {*counters}.isdisjoint(names(one))]
+    used = {name for one in trial.trees for name in names(one)}
+    for name, value in trial.space.items():
+        kinds = {*value} if isinstance(value, str | list | tuple) and name not in used else set()
+        if len(kinds) != 2 or not all(isinstance(one, str | bool) for one in kinds):
+            continue
+        for counter in counters:
+            entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Name(counter, ast.Load()))
+            entry.ctx = ast.Load()
+            kind = sorted(kinds)[0]
+            test = ast.Compare(entry, [ast.Eq()], [ast.Constant(kind)])
+            found.append(entry if isinstance(kind, bool) else test)
+    return {ast.unparse(one): copied(one) for one in found}
 
 
 def _set_together(tree: ast.AST) -> dict[str, set[str]]:

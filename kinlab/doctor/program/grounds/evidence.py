@@ -18,6 +18,7 @@ from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.grounds.called import unlike
+from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import DATA, ProgramEdit
 from kinlab.doctor.program.trial import Trial, named_in
@@ -74,6 +75,7 @@ class Grounds:
                     own = float(seen.values[0])
                     self.values |= {own, 1 / own} if own else set()
         self._below()
+        self.sound |= true_helpers(trial, observed)
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""

@@ -1,0 +1,176 @@
+"""Functions of a program that are what textbooks have, of whatever they are given.
+
+The matrix of a cross product, a rotation about an axis, an adjoint, an exponential: such a function
+need not be given what is right to be right itself. What it is, is looked at in each of its calls.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+
+import numpy as np
+from scipy.linalg import expm
+
+from kinlab.arrays import Array
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.observed import Observed, Shape
+from kinlab.doctor.program.places import called
+from kinlab.doctor.program.trial import Trial
+from kinlab.tolerances import TOLERANCES
+
+_AXES = np.eye(3)
+_MOST = 6
+"""Calls that are looked at."""
+
+
+def true_helpers(trial: Trial, observed: Observed) -> set[int]:
+    """The parts of a program that are one of those functions in each of their calls."""
+    names = [part.name for part in trial.program.parts]
+    found: set[int] = set()
+    for k in range(1, len(names)):
+        calls = [*_calls(trial, observed, names[k])] if names.count(names[k]) == 1 else []
+        if calls and any(_tells(given) for given, _value in calls):
+            shapes = tuple(x.shape for x in calls[0][0]), calls[0][1].shape
+            known = _KNOWN.get(shapes)
+            if known is not None and _is_one_of([*known(calls[0])], calls, known):
+                found.add(k)
+    return found
+
+
+Call = tuple[list[Array], Array]
+"""What a function was given, and its answer."""
+Known = Callable[[Call], Iterator[Array]]
+"""What textbooks' functions would answer, in the same order for any call."""
+
+
+def _is_one_of(first: Sequence[Array], calls: Sequence[Call], known: Known) -> bool:
+    """Whether one of the textbooks' functions answers as the program's does."""
+    same = np.ones(len(first), dtype=bool)
+    for call in calls:
+        size = max(1.0, float(np.max(np.abs(call[1]))))
+        gaps = [float(np.max(np.abs(one - call[1]))) for one in known(call)]
+        same &= np.array(gaps) <= TOLERANCES.same_relation * size
+    return bool(same.any())
+
+
+def _tells(given: Sequence[Array]) -> bool:
+    """Whether anything but zeros and units is given, of which much would be one thing."""
+    return all(bool(np.any((x != 0) & (np.abs(x) != 1))) for x in given)
+
+
+def _calls(trial: Trial, observed: Observed, name: str) -> Iterator[Call]:
+    """The calls of a function of the program's, of one kind of arguments."""
+    kind: tuple[Shape | None, ...] | None = None
+    for node in (node for tree in trial.trees for node in nodes(tree)):
+        if not isinstance(node, ast.Call) or called(node) != name or node.keywords:
+            continue
+        seen = [observed.of(one) for one in (*node.args, node)]
+        shapes = tuple(None if one is None else one.shape for one in seen)
+        told = [one for one in seen if one is not None]
+        if len(told) < len(seen) or None in shapes or len({one.count for one in told}) > 1:
+            continue
+        kind = kind or shapes
+        every = zip(*(one.values for one in told), strict=False)
+        for (*given, value), _k in zip(every, range(_MOST), strict=False):
+            if shapes == kind:
+                yield given, value
+
+
+def _cross(v: Array) -> Array:
+    """The matrix of the product with a vector (Lynch & Park, eq. 3.30)."""
+    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
+
+
+def _blocks(matrices: Sequence[Sequence[Array]]) -> Iterator[Array]:
+    """A matrix of blocks with the linear part first, and with the angular one first."""
+    (a, b), (c, d) = matrices
+    yield np.block([[a, b], [c, d]])
+    yield np.block([[d, c], [b, a]])
+
+
+def _twists(s: Array) -> Iterator[Array]:
+    """The matrix of a twist (Lynch & Park, eq. 3.85), the angular part first, or the linear one."""
+    for angular, linear in ((s[:3], s[3:]), (s[3:], s[:3])):
+        yield np.block([[_cross(angular), linear[:, None]], [np.zeros((1, 4))]])
+
+
+def _pose(turn: Array, place: Array) -> Array:
+    return np.block([[turn, place[:, None]], [np.array([[0, 0, 0, 1.0]])]])
+
+
+def _of_angle(call: Call) -> Iterator[Array]:
+    """Elementary rotations and translations of a number (Spong, eq. 2.8 and 2.63)."""
+    x, size = float(call[0][0]), call[1].shape[0]
+    if size == 2:
+        yield np.array([[np.cos(x), -np.sin(x)], [np.sin(x), np.cos(x)]])
+        return
+    for axis in _AXES:
+        turn = expm(x * _cross(axis))
+        yield turn if size == 3 else _pose(turn, np.zeros(3))
+        if size == 4:
+            yield _pose(np.eye(3), x * axis)
+
+
+def _adjoint(call: Call) -> Iterator[Array]:
+    """Of a pose (Lynch & Park, definition 3.20)."""
+    turn, place = call[0][0][:3, :3], call[0][0][:3, 3]
+    yield from _blocks([[turn, _cross(place) @ turn], [np.zeros((3, 3)), turn]])
+
+
+def _of_turn_and_place(call: Call) -> Iterator[Array]:
+    """The adjoint, and Featherstone's transforms of motions (Rigid Body Dynamics, eq. 2.24)."""
+    turn, place = call[0]
+    if call[1].shape == (4, 4):
+        yield _pose(turn, place)
+        return
+    nothing = np.zeros((3, 3))
+    yield from _blocks([[turn, _cross(place) @ turn], [nothing, turn]])
+    for axes in (turn, turn.T):
+        yield from _blocks([[axes, -axes @ _cross(place)], [nothing, axes]])
+
+
+def _crossed_twists(call: Call) -> Iterator[Array]:
+    """The products of a twist with motions and with forces (Featherstone, eq. 2.31 and 2.32)."""
+    (twist,) = call[0]
+    first, last, nothing = _cross(twist[:3]), _cross(twist[3:]), np.zeros((3, 3))
+    for motion in (
+        np.block([[first, nothing], [last, first]]),  # the angular part first
+        np.block([[last, first], [nothing, last]]),
+    ):
+        yield motion
+        yield -motion.T
+
+
+def _exponential(call: Call) -> Iterator[Array]:
+    """Of a twist and an angle (Lynch & Park, eq. 3.88), of an axis and one (eq. 3.51)."""
+    axis, angle = call[0]
+    if len(axis) == 3:
+        yield expm(float(angle) * _cross(axis))
+    else:
+        yield from (expm(float(angle) * one) for one in _twists(axis))
+
+
+def _inverse(call: Call) -> Iterator[Array]:
+    if abs(np.linalg.det(call[0][0])) > TOLERANCES.same_relation:
+        yield np.linalg.inv(call[0][0])
+    else:
+        yield np.full(call[1].shape, np.nan)
+
+
+_KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
+    (((3,),), (3, 3)): lambda call: iter([_cross(call[0][0])]),
+    (((),), (2, 2)): _of_angle,
+    (((),), (3, 3)): _of_angle,
+    (((),), (4, 4)): _of_angle,
+    (((4, 4),), (4, 4)): _inverse,
+    (((4, 4),), (6, 6)): _adjoint,
+    (((6,),), (6, 6)): _crossed_twists,
+    (((6,),), (4, 4)): lambda call: _twists(call[0][0]),
+    (((6,), ()), (4, 4)): _exponential,
+    (((3,), ()), (3, 3)): _exponential,
+    (((3, 3), (3,)), (4, 4)): _of_turn_and_place,
+    (((3, 3), (3,)), (6, 6)): _of_turn_and_place,
+    (((3,), (3,)), (3,)): lambda call: iter([np.cross(*call[0])]),
+}
+"""By the shapes of what is given and of the answer."""
