@@ -185,9 +185,9 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
     line = edited[0]
     one = len(line.kinds) == 1
     known = [cause for cause in read if one and _same_slip(cause, line.kinds[0])]
-    if not known:
+    if len({cause.sentence for cause in known}) != 1:  # of several meanings none is told
         return [line]
-    cause = min(known, key=lambda one: one.cost)
+    cause = known[0]
     said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
     places = (*line.places, *cause.places)
     return [replace(line, sentence=said, kinds=cause.kinds, places=places)]

@@ -29,6 +29,8 @@ _THREE = 3
 """Indices of which any order is tried."""
 _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
+_HALVES, _TYPED = (2, 0.5), 1.045
+"""Factors that stand in front, and the cost of one that does not belong there."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _OF_RODS = {3: 12, 12: 3}
@@ -89,7 +91,9 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         for kept, left_out, cost in ((left, matrices[1], 1.15), (right, matrices[0], 1.17)):
             alone = observed.shape(kept) == () and bool(left_out)
             undone = kept is right and _turns_back(left, right)
-            yield here.instead(kept, "extra factor", 1.02 if undone else cost + _FLAT * alone)
+            cost = 1.02 if undone else cost + _FLAT * alone
+            typed = kept is right and getattr(left, "value", 0) in _HALVES
+            yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
             yield from _in_turn(here)
