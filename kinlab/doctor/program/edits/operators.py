@@ -176,9 +176,9 @@ def _turned(here: Here) -> Iterator[ProgramEdit]:
     for k in range(len(every) - _PAIR):
         first, last = every[k], every[k + _PAIR]
         if f"{ast.unparse(first)}.T" == ast.unparse(last) or _is_turned_into(last, first):
-            one, *others = [*every[:k], last, every[k + 1], first, *every[k + _THREE :]]
-            by = [(ast.MatMult(), other) for other in others]
-            yield here.instead(chains.joined(one, by), "transposed", 1.03)
+            new = [*every[:k], last, every[k + 1], first, *every[k + _THREE :]]
+            by = [(ast.MatMult(), other) for other in new[1:]]
+            yield here.instead(chains.joined(new[0], by), "transposed", 1.03)
 
 
 def _is_turned_into(one: ast.expr, other: ast.expr) -> bool:
@@ -595,8 +595,8 @@ def _members_of(row: ast.expr) -> list[ast.expr]:
     return row.elts if isinstance(row, ast.List | ast.Tuple) else []
 
 
-def _with_member(row: ast.expr, k: int, new: ast.expr) -> ast.expr:
-    other: Any = shallow(row)
+def _with_member(row: Any, k: int, new: ast.expr) -> Any:
+    other = shallow(row)
     if isinstance(row, ast.Call):
         other.args = [new if i == k else x for i, x in enumerate(row.args)]
         count = len(row.args)

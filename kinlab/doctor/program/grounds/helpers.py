@@ -153,9 +153,9 @@ def _exponential(call: Call) -> Iterator[Array]:
 
 def _inverse(call: Call) -> Iterator[Array]:
     if abs(np.linalg.det(call[0][0])) > TOLERANCES.same_relation:
-        yield np.linalg.inv(call[0][0])
+        yield np.asarray(np.linalg.inv(call[0][0]), dtype=float)
     else:
-        yield np.full(call[1].shape, np.nan)
+        yield np.zeros(call[1].shape)
 
 
 _KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
@@ -171,6 +171,6 @@ _KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
     (((3,), ()), (3, 3)): _exponential,
     (((3, 3), (3,)), (4, 4)): _of_turn_and_place,
     (((3, 3), (3,)), (6, 6)): _of_turn_and_place,
-    (((3,), (3,)), (3,)): lambda call: iter([np.cross(*call[0])]),
+    (((3,), (3,)), (3,)): lambda call: iter([_cross(call[0][0]) @ call[0][1]]),
 }
 """By the shapes of what is given and of the answer."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from kinlab.doctor.bytecode.syntax import copied, names
 from kinlab.doctor.program.edits.additions import OtherName
 from kinlab.doctor.program.edits.scope import Scope, summands
@@ -17,8 +19,8 @@ from kinlab.tolerances import TOLERANCES
 _VECTOR = (3,)
 _VECTORS, _SCALARS, _MADE = 10, 10, 4
 """Names and numbers of which a term may be, and things that are made of several."""
-_MOST = 40
-"""Terms that may be missing in one place."""
+_MOST, _FEW = 40, 12
+"""Terms that may be missing in one place; of a dimension that is not known."""
 _IDLE, _USED = 1.08, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
 _NEXT = 1.05
@@ -81,16 +83,19 @@ def _of_dimension(
     here: Here, scope: Scope, known: Dimensions, shape: Shape
 ) -> Iterator[ProgramEdit]:
     size, own = known.of(here.node), ast.unparse(here.node)
+    seen = scope.observed.of(here.node)  # nothing but zeros has no dimension
+    zeros = seen is not None and not any(map(np.any, seen.values))
     found: list[tuple[float, ast.expr]] = []
     for term in _terms(scope, shape):
         made, idle = known.of_made(term), not scope.unused.isdisjoint(names(term))
-        sure = size is not None and made is not None
-        if not (sure or idle) or ast.unparse(term) in own:  # of nothing but zeros none is told
+        told = None if size is None or made is None else abs(made - size)
+        if (told is None and not idle) or ast.unparse(term) in own:
             continue
-        if not sure or abs(made - size) <= TOLERANCES.tried_further:
-            found.append((_IDLE if idle else _USED, term))
+        if told is None or told <= TOLERANCES.tried_further:
+            sure = told is not None or zeros
+            found.append((_IDLE if idle and sure else _USED, term))
     found.sort(key=lambda one: one[0])
-    for cost, term in found[:_MOST]:
+    for cost, term in found[: _MOST if size is not None or zeros else _FEW]:
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
 
 
