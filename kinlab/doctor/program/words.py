@@ -406,8 +406,9 @@ def _text(node: ast.AST) -> str:
     """A piece of a program as it is usually typed."""
     if isinstance(node, ast.If) and getattr(node.test, "value", None) is True:  # a line and another
         return "; ".join(map(_text, node.body))
-    if isinstance(node, ast.If) and not hasattr(node, "lineno"):  # made, and of a line each
-        one, last = (" ".join(map(_text, block)) for block in (node.body, node.orelse))
+    inner = [*node.body, *node.orelse] if isinstance(node, ast.If) else []
+    if isinstance(node, ast.If) and node.lineno in [one.lineno for one in inner]:  # it was made
+        one, last = ("; ".join(map(_text, block)) for block in (node.body, node.orelse))
         return f"if {_text(node.test)}: {one}; else: {last}"
     text = ast.unparse(node).replace("_turn() and ", "")  # what ends loops is not the user's
     text = re.sub(rf" if (\w+) is {DEFAULT} else \1", "", text)

@@ -267,8 +267,9 @@ def _terms(here: Here, scope: Scope, shape: Shape, whole: bool) -> Iterator[Prog
 
 def _of_one_joint(one: ast.expr, other: ast.expr) -> bool:
     """Whether two numbers are one joint's: ``friction[j]*v[j]``."""
-    entries = isinstance(one, ast.Subscript) and isinstance(other, ast.Subscript)
-    return entries and ast.dump(one.slice) == ast.dump(other.slice)
+    if not isinstance(one, ast.Subscript) or not isinstance(other, ast.Subscript):
+        return False
+    return ast.dump(one.slice) == ast.dump(other.slice)
 
 
 def _turned_terms(here: Here, scope: Scope, siblings: set[str]) -> Iterator[ProgramEdit]:

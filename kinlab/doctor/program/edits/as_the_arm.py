@@ -28,7 +28,7 @@ _ROWS = 4
 """Rows that several columns of the table may make of one."""
 _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
-_SEVERAL = 0.005
+_SEVERAL = 0.01
 """What it costs more where several numbers of a row are off."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""

@@ -39,6 +39,8 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _energies(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
+        if isinstance(op, ast.Mult) and isinstance(node, ast.Call) and called(node) == "cos":
+            yield here.instead(ast.BinOp(number(1), ast.Sub(), node), "missing term", 1.1)
         if isinstance(op, ast.Mult) and not isinstance(node, ast.Name | ast.Call):
             yield from _inside_products(here, scope)
         yield from _of_another_row(here, scope)
@@ -103,7 +105,7 @@ def of_kinds_of_joints(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     if not shape or not isinstance(rate.op, ast.Mult):
         return
     for name, known in scope.shapes.items():
-        if known == shape and name != own.id and name in scope.set_here:
+        if known == shape and name != own.id and scope.set_at.get(name, node.lineno) < node.lineno:
             moved = ast.BinOp(ast.Name(name, ast.Load()), ast.Add(), rate)
             other = ast.Assign([ast.Name(name, ast.Store())], moved)
             for test in scope.tests_here():

@@ -64,7 +64,7 @@ class Scope:
         factors: what stands in front of a product of matrices, by the statements' identities.
         beside: names that are entries of one thing: ``w, dh, dr = v``.
         tests: conditions on what a counter counts, of kinds of joints that nothing asks, too.
-        present, set_here: the names that it has, and those that it sets.
+        present, set_at: the names that it has, and the lines in which it sets them first.
         fronts: names in what stands in front of any product of matrices.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
@@ -129,7 +129,12 @@ class Scope:
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
         local |= {*names(tree)} - here
         self.present = here | local
-        self.set_here = {*names(tree, ast.Store)}
+        stores = (
+            x for x in nodes(tree) if isinstance(x, ast.Name) and isinstance(x.ctx, ast.Store)
+        )
+        self.set_at: dict[str, int] = {}
+        for store in sorted(stores, key=lambda one: one.lineno):
+            self.set_at.setdefault(store.id, store.lineno)
         self.shapes |= _given(trial, part, observed)
         for node in nodes(tree):
             if isinstance(node, ast.expr):
@@ -707,8 +712,11 @@ def _set_by(tree: ast.AST, functions: Container[str]) -> set[str]:
 
 def _tests(tree: ast.AST, trial: Trial, counters: Sequence[str]) -> dict[str, ast.expr]:
     """Conditions on what a counter counts, by their text."""
-    asked = [node.test for node in nodes(tree) if isinstance(node, ast.If | ast.IfExp)]
+    every = [node for one in trial.trees for node in nodes(one)]
+    asked = [node.test for node in every if isinstance(node, ast.If | ast.IfExp)]
+    here = {*names(tree), *counters}
     found = [one for one in asked if not {*counters}.isdisjoint(names(one))]
+    found = [one for one in found if here.union(trial.space) >= {*names(one)}]
     used = {name for one in trial.trees for name in names(one)}
     for name, value in trial.space.items():
         kinds = {*value} if isinstance(value, str | list | tuple) and name not in used else set()

@@ -290,13 +290,39 @@ def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[Pr
     put: list[tuple[NumberPlace, float]] = []
     named = _named(trial)
     every = [*numbers(trial, observed), *_unused(trial)]
-    for place in every:
-        kind = _kind(place, kinds, angles, named)
+    told = [_kind(place, kinds, angles, named) for place in every]
+    typed, columns = _typed_columns(trial), dict[Any, set[str]]()
+    for place, kind in zip(every, told, strict=True):
+        if kind not in (None, "none"):
+            columns.setdefault(_column(place, typed), set()).add(str(kind))
+    for place, kind in zip(every, told, strict=True):
+        alike = columns.get(_column(place, typed), set())
+        if kind is None and len(alike) == 1:
+            (kind,) = alike  # a column of a table is of one kind
         if kind is None:
             return None
         if kind != "none":
             put.append((place, float(place.value) * _BY[kind]))
     return together(put)
+
+
+def _column(place: NumberPlace, typed: Mapping[int, Any]) -> Any:
+    """What tells the column of a table in which a number is; itself of any other."""
+    if place.part != DATA:
+        return typed.get(id(place.node), id(place.node))
+    return (place.node, place.place[-1]) if len(place.place) > 1 else id(place)
+
+
+def _typed_columns(trial: Trial) -> dict[int, Any]:
+    """The columns of numbers in tables whose rows are typed: ``[Row(0.1, 0.3), Row(0.2, 0.4)]``."""
+    found: dict[int, Any] = {}
+    for line in (node for tree in trial.trees for node in nodes(tree)):
+        rows = getattr(line, "value", None) if isinstance(line, ast.Assign) else None
+        for row in rows.elts if isinstance(rows, ast.List | ast.Tuple) else ():
+            given = row.args if isinstance(row, ast.Call) else getattr(row, "elts", ())
+            for k, one in enumerate(given):
+                found |= {id(x): (id(line), k) for x in _alone(one)}
+    return found
 
 
 def _unused(trial: Trial) -> Iterator[NumberPlace]:
@@ -314,7 +340,8 @@ def _named(trial: Trial) -> dict[int, str]:
             if isinstance(node, ast.Assign):
                 for target, value in paired(node.targets[0], node.value):
                     name = getattr(target, "id", getattr(target, "attr", None))
-                    found |= {id(one): name for one in _alone(value) if name is not None}
+                    over = value.generators[0].iter if isinstance(value, ast.ListComp) else value
+                    found |= {id(one): name for one in _alone(over) if name is not None}
     return found
 
 

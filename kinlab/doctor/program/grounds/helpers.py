@@ -55,8 +55,8 @@ def _is_one_of(first: Sequence[Array], calls: Sequence[Call], known: Known) -> b
 
 
 def _tells(given: Sequence[Array]) -> bool:
-    """Whether anything but zeros and units is given, of which much would be one thing."""
-    return all(bool(np.any((x != 0) & (np.abs(x) != 1))) for x in given)
+    """Whether anything but zeros and units is given: of these much would be one thing."""
+    return any(bool(np.any((x != 0) & (np.abs(x) != 1))) for x in given)
 
 
 def _calls(trial: Trial, observed: Observed, name: str) -> Iterator[Call]:
@@ -151,6 +151,13 @@ def _exponential(call: Call) -> Iterator[Array]:
         yield from (expm(float(angle) * one) for one in _twists(axis))
 
 
+def _about_a_line(call: Call) -> Iterator[Array]:
+    """A turn about an axis through a point (Lynch & Park, section 3.3.2.2)."""
+    axis, point, angle = call[0]
+    turn = expm(float(angle) * _cross(axis))
+    yield _pose(turn, point - turn @ point)
+
+
 def _inverse(call: Call) -> Iterator[Array]:
     if abs(np.linalg.det(call[0][0])) > TOLERANCES.same_relation:
         yield np.asarray(np.linalg.inv(call[0][0]), dtype=float)
@@ -169,6 +176,7 @@ _KNOWN: dict[tuple[tuple[Shape, ...], Shape], Known] = {
     (((6,),), (4, 4)): lambda call: _twists(call[0][0]),
     (((6,), ()), (4, 4)): _exponential,
     (((3,), ()), (3, 3)): _exponential,
+    (((3,), (3,), ()), (4, 4)): _about_a_line,
     (((3, 3), (3,)), (4, 4)): _of_turn_and_place,
     (((3, 3), (3,)), (6, 6)): _of_turn_and_place,
     (((3,), (3,)), (3,)): lambda call: iter([_cross(call[0][0]) @ call[0][1]]),

@@ -84,8 +84,10 @@ class Woven:
         if edit.part == DATA:
             self.data += [(number, change) for change in edit.changes]
             return True
-        if len(edit.changes) == 1 and self._put_line(number, edit.changes[0]):
-            return True
+        if len(edit.changes) == 1:
+            put = self._put_either if isinstance(edit.changes[0].new, ast.If) else self._put_line
+            if put(number, edit.changes[0]):
+                return True
         spots = [self._spot(change) for change in edit.changes]
         sound = [spot for spot in spots if spot is not None]
         if len(sound) < len(spots):
@@ -131,6 +133,27 @@ class Woven:
         self._lines[id(block), at].append((number, target, value))
         self._mark(node)
         self._at.append((number, [(id(block), "line", at)]))
+        return True
+
+    def _put_either(self, number: int, change: FieldChange) -> bool:
+        """Puts a condition around a statement and another: each sets what it did, or is lost."""
+        spot, new = self._place(change), change.new
+        if spot is None or spot[2] is None or [len(new.body), len(new.orelse)] != [1, 1]:
+            return False
+        own, block = _at(spot), getattr(spot[0], spot[1])
+        first = new.body[0] is own
+        other = new.orelse[0] if first else new.body[0]
+        if not isinstance(own, ast.Assign) or not isinstance(other, ast.Assign):
+            return False
+        for line, holds in ((own, first), (other, not first)):
+            both = [line.value, loaded(line.targets[0])]
+            value = ast.IfExp(new.test, *(both if holds else both[::-1]))
+            if line is own:
+                self._sites[(id(own), "value", None)].append((number, value))
+            else:
+                self._lines[id(block), spot[2] + 1].append((number, line.targets[0], value))
+        self._mark(own)
+        self._at.append((number, [(id(own), "value", None)]))
         return True
 
     def _mark(self, node: ast.AST) -> None:

@@ -67,7 +67,22 @@ def several(search: LineSearch) -> list[ProgramRepair]:
         search: whose single edits were tried already.
     """
     with quietly():
-        return _Several(_SHARE * search.most // 10).found(search)
+        found = _Several(_SHARE * search.most // 10).found(search)
+        return [_reduced(repair, search) for repair in found]
+
+
+def _reduced(repair: ProgramRepair, search: LineSearch) -> ProgramRepair:
+    """A repair without edits that are not needed beside the others."""
+    for edit in repair.edits if len(repair.edits) > _DEEPEST else ():
+        rest = tuple(one for one in repair.edits if one is not edit)
+        try:
+            with changed(search.trial, rest):
+                smaller = search.verdict(rest)
+        except NoProgramError:
+            continue
+        if smaller is not None:
+            return _reduced(smaller, search)
+    return repair
 
 
 class _Several:
