@@ -129,10 +129,11 @@ def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, W
         right |= verdicts.unnamed(written.get(entry.label), derived, poly)
     own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
     only = [one for one in own if not any(one in remark for remark in found.remarks)]
-    return replace(found, remarks=(*found.remarks, *_only_for(only)))
+    return replace(found, remarks=(*found.remarks, *only_for(only)))
 
 
-def _only_for(numbers: Sequence[str]) -> list[str]:
+def only_for(numbers: Sequence[str]) -> list[str]:
+    """What is told of a formula that has numbers of the robot for their names."""
     said = together(numbers)
     return [_("but it holds only for {numbers}").format(numbers=said)] if numbers else []
 
@@ -166,7 +167,7 @@ def covered_up(
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    remarks = _only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
+    remarks = only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
     if nothing:
         zeros = together(f"{name} = 0" for name in nothing)
         remarks.append(

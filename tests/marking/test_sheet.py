@@ -53,6 +53,9 @@ def test_errors_at_the_door(changes, message):
     [
         ("l1*", "s.toml: q1: answer"), ("m1*g + m7*l1", "answer: planar2r has no 'm7'; did you mean 'm"),
         ("l1*cos(q3)", "has no 'q3'"), ("l1*c23", "has no 'q3'"),
+        ("m1*gg*l1", r"q1: answer: planar2r has no 'gg'; did you mean 'g'\? \(a name of the question's own"),
+        ("l1 + zz", "has no 'zz'; choose one of 'g', 'l1'"), ("l1*L", "has no 'L'"),
+        ("sqrt(-1)", "is no number at any state"), ("l1*log(q1 - q1)", "is no number at any state"),
     ],
 )  # fmt: skip
 def test_a_bad_model_answer_is_found_before_anything_is_marked(answer, message):
@@ -64,8 +67,25 @@ def test_a_bad_model_answer_is_found_before_anything_is_marked(answer, message):
 
 
 def test_a_model_answer_may_have_names_of_its_own():
-    asked = {"id": "q1", "answer": "k*x1 + l1*cos(q1)"}
+    text = "A spring of stiffness $k$ is longer by $x_1$."
+    asked = {"id": "q1", "text": text, "answer": "k*x1 + l1*cos(q1)"}
     marks = kl.mark({"robot": "planar2r", "questions": [asked]}, {"ada": {"q1": "l1*c1 + x1*k"}})
+    assert marks["ada"]["q1"].right
+
+
+def test_a_sheet_whose_answer_is_refused_is_not_handed_out(tmp_path):
+    asked = {"id": "q1", "answer": "m1*gg*l1"}
+    with pytest.raises(SheetError, match="no 'gg'"):
+        write_handouts(sheet(questions=[asked]), ["ada"], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_entry_beside_an_answer_is_a_name_of_its_own():
+    """With x for its name the answer would not be compared with the engine's x."""
+    both = {"id": "q1", "entry": "x", "answer": "l1"}
+    with pytest.raises(SheetError, match=r"\(q1\): entry 'x' is fk\[0,3\].*keep one"):
+        sheet(questions=[both])
+    marks = kl.mark(sheet(questions=[{**both, "entry": "F"}]), {"ada": {"q1": "F = l1"}})
     assert marks["ada"]["q1"].right
 
 
