@@ -19,7 +19,7 @@ from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
 from kinlab.doctor.text.line import words_in
-from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
+from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
@@ -105,8 +105,10 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     """Which rounded numbers make a text right, in words; None where it is not, so."""
     if text is None:
         return None
-    at = verdicts.numbers_at(case)
-    found = stand_ins(text, at, entry.engine, entry.scale, alone=case.hand.ndim == 1)
+    at, alone = verdicts.numbers_at(case), case.hand.ndim == 1
+    if alone and bare_number(text, at, entry.engine) is False:
+        return None
+    found = stand_ins(text, at, entry.engine, entry.scale, alone=alone)
     if found is not None:
         return [*text.rounded, *rounding_remarks(found.changed, at)]
     derived = derivation_of(case)

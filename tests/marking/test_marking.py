@@ -499,6 +499,14 @@ def test_a_model_answer_may_be_a_constant(model, answer, verdict, kinds):
     assert (found.verdict, found.kinds) == (verdict, kinds)
 
 
+@pytest.mark.parametrize("asked", [{"entry": "M33"}, {"answer": "1/48"}])
+def test_a_bare_number_is_judged_by_one_rule_beside_the_engine_too(asked):
+    """1/48 = 0.0208333: three digits are right, two are 0.8 % off."""
+    for answer, right in (("0.02083", True), ("0.0208", True), ("0.021", False), ("0.0209", False)):
+        found = marked({"q1": answer}, questions=[{"id": "q1", **asked}], robot="planar3r")["q1"]
+        assert found.right is right, answer
+
+
 @pytest.mark.parametrize(
     ("model", "answer", "verdict", "remark"),
     [

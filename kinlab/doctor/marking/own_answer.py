@@ -17,8 +17,8 @@ from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wro
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.terms import rods_following
-from kinlab.doctor.text.stand_ins import stand_ins
-from kinlab.doctor.text.written import Literal, Written
+from kinlab.doctor.text.stand_ins import bare_number, stand_ins
+from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import holds_with_other_numbers
 from kinlab.errors import ExpressionError, KinlabError, near
 from kinlab.formulas import tree
@@ -158,16 +158,15 @@ class _Beside:
             return _multiple(self.mine, self.theirs, at, self.words), set()
 
     def _to_digits(self, hand: Array, truth: Array, at: Mapping[str, Array]) -> bool:
-        """Whether it is right with rounded numbers; a bare number as :func:`_number_met` has it."""
+        """Whether it is right with rounded numbers, its own or those of the model."""
         text = _written(self.file, self.name, self.mine)
-        if not np.ptp(truth) and not np.ptp(hand):
-            of_model = _bare_number(_written(self.model, self.name, self.theirs), truth)
-            number = _bare_number(text, hand)
-            if of_model is not None and not of_model.whole and _number_met(of_model, truth, hand):
-                return True
-            if number is not None:
-                return _number_met(number, hand, truth)
-        return stand_ins(text, at, truth, error_sizes(truth)) is not None
+        model = _written(self.model, self.name, self.theirs)
+        if not any(one.whole for one in model.literals) and bare_number(model, at, hand):
+            return True
+        met = bare_number(text, at, truth)
+        return (
+            met if met is not None else stand_ins(text, at, truth, error_sizes(truth)) is not None
+        )
 
     def _elsewhere(self, at: Mapping[str, Array]) -> tuple[tuple[str, ...], set[str]]:
         """The same of a formula that is met, once the robot has other numbers.
@@ -237,22 +236,6 @@ def _states(names: Iterable[str], words: Mapping[str, float]) -> dict[str, Array
 
 def _written(file: FormulaFile, name: str, node: Node) -> Written:
     return Written(name, file.texts[name], node, file.symbol_texts)
-
-
-def _bare_number(text: Written, values: Array) -> Literal | None:
-    """The number that a formula is, with or without a sign; None where it is more than that."""
-    only = text.literals[0] if len(text.literals) == 1 else None
-    return only if only is not None and abs(values[0]) == only.value else None
-
-
-def _number_met(one: Literal, value: Array, meant: Array) -> bool:
-    """Whether a bare number is what is meant, to the digits written and to half a percent.
-
-    Three digits are as near as that by themselves: of pi/2 1.57 is right and 1.6 is not.
-    """
-    digits = (one.half or 0.5) * (1 + TOLERANCES.same_relation)
-    reach = min(digits, TOLERANCES.bare_number * abs(float(meant[0])))
-    return bool(np.max(np.abs(value - meant)) <= reach)
 
 
 def _multiple(
