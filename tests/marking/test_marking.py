@@ -370,6 +370,10 @@ def test_a_program_is_judged():
     outcomes, enforced = judge_program(sheet, Submission("a.py", "ada", program=PROGRAM), "cause")
     assert [one.verdict for one in outcomes] == ["right", "wrong", "no answer", "no answer"]
     assert "sign" in outcomes[1].cause
+    assert [one.remark for one in outcomes[2:]] == [
+        "",
+        "a program is not asked for this; hand in the formula in a text file",
+    ]
     assert "memory" in enforced and "processor time" in enforced
 
 
@@ -537,6 +541,16 @@ def test_an_answer_without_a_value_is_wrong_and_warns_of_nothing(asked, recwarn)
     assert {one.verdict for one in found} == {"wrong"}
     assert {one.kinds for one in found[:4]} == {("no value",)}
     assert [str(one.message) for one in recwarn] == []
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict"),
+    [("m1 + 0*qd1", "right"), ("2.01 - 0*qd1*l2", "wrong"), ("2.0*m2/1.5 + 0*qdd2", "right"), ("m1 + 0*zz", "could not be read")],
+)  # fmt: skip
+def test_what_is_multiplied_by_zero_stops_no_class(answer, verdict):
+    found = beside("m1", answer)
+    assert found.verdict == verdict
+    assert ("'zz' is unknown" in found.remark) is ("zz" in answer)
 
 
 def test_nothing_but_zero_is_no_known_confusion():

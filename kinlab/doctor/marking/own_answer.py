@@ -128,9 +128,20 @@ class _Beside:
         return _opened(self.model.formulas[self.name], self.model, self.name)
 
     @cached_property
+    def text(self) -> Written:
+        """The student's, as it is written."""
+        return _written(self.file, self.name, self.mine)
+
+    @cached_property
+    def model_text(self) -> Written:
+        """The model's."""
+        return _written(self.model, self.name, self.theirs)
+
+    @cached_property
     def names(self) -> set[str]:
-        """All names of both."""
-        return tree.names(self.mine) | tree.names(self.theirs)
+        """All names that have values: of the student's formula, and in the model's text."""
+        inside = [canonical(name) for name in self.model_text.foreign(set())]
+        return set().union(*(tree.names(x) for x in (self.mine, self.theirs, *inside)))
 
     def judged(self) -> tuple[tuple[str, ...], set[str]]:
         """What is off, ``("rounded",)`` or nothing; and the robot's names that it has numbers for.
@@ -138,11 +149,13 @@ class _Beside:
         Joints stand on both sides of zero: |q1| is not q1. States at which the model itself has no
         value (a root of a negative number) say nothing.
         """
-        strange = tree.names(self.mine) - tree.names(self.theirs) - {*self.words} - _joints()
+        at = _states(self.names, self.words)
+        known = tree.names(self.theirs) | {*self.words} | _joints()
+        # what is multiplied by zero is in the text alone
+        strange = sorted(tree.names(self.mine) - known) or self.text.foreign(known)
         if strange:
             said = _("{entry}: {name!r} is unknown; give it a meaning in [symbols]")
-            raise ExpressionError(said.format(entry=self.name, name=sorted(strange)[0][:40]))
-        at = _states(self.names, self.words)
+            raise ExpressionError(said.format(entry=self.name, name=strange[0][:40]))
         with np.errstate(all="ignore"):
             there = np.isfinite(_values(self.theirs, at))
             if not there.any():
@@ -159,8 +172,7 @@ class _Beside:
 
     def _to_digits(self, hand: Array, truth: Array, at: Mapping[str, Array]) -> bool:
         """Whether it is right with rounded numbers, its own or those of the model."""
-        text = _written(self.file, self.name, self.mine)
-        model = _written(self.model, self.name, self.theirs)
+        text, model = self.text, self.model_text
         if not any(one.whole for one in model.literals) and bare_number(model, at, hand):
             return True
         met = bare_number(text, at, truth)
@@ -177,32 +189,28 @@ class _Beside:
         mine, theirs = (tree.names(node) & {*self.words} for node in (self.mine, self.theirs))
         if not mine and tree.names(self.mine) <= {*self.words}:
             return (), set()  # a bare number is none for any other arm
-        size = np.shape(next(iter(at.values())))
-        every = {name: np.full(size, float(x)) for name, x in self.words.items()}
-        both, here = mine & theirs, {**every, **at}
+        both = mine & theirs
 
         def moved(names: Iterable[str], by: Callable[[Array], Array]) -> dict[str, Array]:
-            other = {**here, **{name: by(here[name]) for name in sorted(names)}}
+            other = {**at, **{name: by(at[name]) for name in sorted(names)}}
             return rods_following(other, self.words, both)
 
         def others() -> Iterator[dict[str, Array]]:
             rng = np.random.default_rng(11)
             while True:
-                yield moved(every, lambda x: x * rng.uniform(0.8, 1.25))
+                yield moved(self.words, lambda x: x * rng.uniform(0.8, 1.25))
 
         if not self._differs(next(others())):
             return (), set()
         own = {name: float(self.words[name]) for name in mine | theirs}
-        text, model = (
-            _written(file, self.name, node)
-            for file, node in ((self.file, self.mine), (self.model, self.theirs))
-        )
         if mine - theirs and holds_with_other_numbers(
-            model, partial(_values, self.mine), others(), own
+            self.model_text, partial(_values, self.mine), others(), own
         ):
             return (), set()
-        apart = {x for x in mine ^ theirs if moved([x], _another)[x][0] == _another(here[x][0])}
-        if apart or holds_with_other_numbers(text, partial(_values, self.theirs), others(), own):
+        apart = {x for x in mine ^ theirs if moved([x], _another)[x][0] == _another(at[x][0])}
+        if apart or holds_with_other_numbers(
+            self.text, partial(_values, self.theirs), others(), own
+        ):
             kept = {x for x in own if self._differs(moved([x], _another))}
             return (), kept
         return _multiple(self.mine, self.theirs, at, self.words), set()
@@ -221,13 +229,10 @@ def _another(value: Any) -> Any:
 
 
 def _states(names: Iterable[str], words: Mapping[str, float]) -> dict[str, Array]:
-    """Values of names, (N,) each: the robot's own, and random ones for all others.
-
-    A joint is always among them, so that there are states where a formula has no name.
-    """
+    """Values of the robot's names, the joints' and others, (N,) each: random but for the first."""
     rng = np.random.default_rng(7)
     at: dict[str, Array] = {}
-    for one in sorted({*names, "q1"}):
+    for one in sorted({*names, *words, *_joints()}):
         at[one] = np.full(_STATES, words[one]) if one in words else rng.uniform(0.3, 1.7, _STATES)
         if one in _joints():
             at[one] = at[one] * rng.choice([-1.0, 1.0], _STATES)
