@@ -162,6 +162,10 @@ class Tolerances:
     """Relative error up to which a function may be right with rounded constants inside; nobody
     can tell."""
 
+    bare_number: float = 5e-3
+    """Relative error up to which an answer that is one bare number may be rounded. Any number of
+    three digits is as near as that; with two, 9.8 is 9.81 and 23 is 23.05, but 1.6 is not pi/2."""
+
     nearly_throughout: float = 0.02
     """The same of every entry by its own largest value, at every state: no slip but an exact one is
     looked for in what is nearer than rounded numbers, coarse steps and tables may be."""

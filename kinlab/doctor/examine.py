@@ -73,7 +73,7 @@ def examine(
     Raises:
         OptionError: the answers are not real numbers.
     """
-    with _uncollected():
+    with _uncollected(), np.errstate(all="ignore"):  # what has no value is looked for, not told
         return _examined(case, hand, engine, quantity, name, written)
 
 

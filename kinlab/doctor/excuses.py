@@ -19,7 +19,7 @@ from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
 from kinlab.doctor.text.line import words_in
-from kinlab.doctor.text.stand_ins import rounding_remarks, stand_ins
+from kinlab.doctor.text.stand_ins import bare_number, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Together, Written
 from kinlab.doctor.verdicts import Excuse
 from kinlab.errors import KinlabError, already_said
@@ -105,8 +105,10 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
     """Which rounded numbers make a text right, in words; None where it is not, so."""
     if text is None:
         return None
-    at = verdicts.numbers_at(case)
-    found = stand_ins(text, at, entry.engine, entry.scale, alone=case.hand.ndim == 1)
+    at, alone = verdicts.numbers_at(case), case.hand.ndim == 1
+    if alone and bare_number(text, at, entry.engine) is False:
+        return None
+    found = stand_ins(text, at, entry.engine, entry.scale, alone=alone)
     if found is not None:
         return [*text.rounded, *rounding_remarks(found.changed, at)]
     derived = derivation_of(case)
@@ -129,10 +131,11 @@ def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, W
         right |= verdicts.unnamed(written.get(entry.label), derived, poly)
     own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
     only = [one for one in own if not any(one in remark for remark in found.remarks)]
-    return replace(found, remarks=(*found.remarks, *_only_for(only)))
+    return replace(found, remarks=(*found.remarks, *only_for(only)))
 
 
-def _only_for(numbers: Sequence[str]) -> list[str]:
+def only_for(numbers: Sequence[str]) -> list[str]:
+    """What is told of a formula that has numbers of the robot for their names."""
     said = together(numbers)
     return [_("but it holds only for {numbers}").format(numbers=said)] if numbers else []
 
@@ -166,7 +169,7 @@ def covered_up(
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    remarks = _only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
+    remarks = only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
     if nothing:
         zeros = together(f"{name} = 0" for name in nothing)
         remarks.append(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import chain, product
+from typing import Any
 
 import numpy as np
 
@@ -285,10 +286,20 @@ def _part_by_part(line: Line, right: Node) -> list[Mended]:
 
 def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:
     """The numbers with I = m l²/12 where the robot's links are rods and the text has no I."""
-    values, out = derived.arm.values, dict(at)
+    return rods_following(at, derived.arm.values, tree.names(written.node))
+
+
+def rods_following(
+    at: Mapping[str, Array], values: Mapping[str, Any], named: Collection[str]
+) -> dict[str, Array]:
+    """Numbers of a robot with I = m l²/12 where its links are rods by its own ``values``.
+
+    Moments in ``named`` stay what they are.
+    """
+    out = dict(at)
     for name in values:
         found = re.fullmatch(r"I(?:xx|yy|zz)?(\d+)", name)
-        if found is None or name in tree.names(written.node):
+        if found is None or name in named:
             continue
         m, k = f"m{found[1]}", found[1]
         length = next((one for one in (f"l{k}", f"a{k}") if one in values), "")

@@ -370,6 +370,10 @@ def test_a_program_is_judged():
     outcomes, enforced = judge_program(sheet, Submission("a.py", "ada", program=PROGRAM), "cause")
     assert [one.verdict for one in outcomes] == ["right", "wrong", "no answer", "no answer"]
     assert "sign" in outcomes[1].cause
+    assert [one.remark for one in outcomes[2:]] == [
+        "",
+        "a program is not asked for this; hand in the formula in a text file",
+    ]
     assert "memory" in enforced and "processor time" in enforced
 
 
@@ -424,7 +428,8 @@ def test_what_a_program_reads_is_bounded_by_the_system(tmp_path):
     ("answer", "verdict"),
     [
         ("g*((m1 + m2)*l1 + m2*l2)", "right"), ("23.0535", "right"), ("23.05", "right with rounded numbers"),
-        ("9.8*((m1 + m2)*l1 + m2*l2)", "right with rounded numbers"), ("23.06", "wrong"), ("23", "wrong"),
+        ("9.8*((m1 + m2)*l1 + m2*l2)", "right with rounded numbers"), ("23.06", "wrong"), ("24", "wrong"),
+        ("23.1", "right with rounded numbers"), ("23", "right with rounded numbers"), ("23.0", "wrong"),
         ("9.7*((m1 + m2)*l1 + m2*l2)", "wrong"), ("(2.1 + m2)*g*l1 + m2*g*l2", "wrong"),
     ],
 )  # fmt: skip
@@ -471,6 +476,81 @@ def test_a_number_is_not_called_a_multiple_of_the_right_one(answer, kind):
     question = {"id": "q1", "answer": "(m1 + m2)*g*l1 + m2*g*l2", "points": 4}
     found = marked({"q1": answer}, questions=[question], slips={"factor": 0.25, "sign": 0.5})["q1"]
     assert (found.kinds, found.points) == ((kind,), {"factor": 3.0, "sign": 2.0}.get(kind, 0.0))
+
+
+def beside(model, answer, robot="planar2r"):
+    asked = [{"id": "q1", "answer": model}]
+    return marked({"q1": answer}, questions=asked, robot=robot, slips={})["q1"]
+
+
+@pytest.mark.parametrize(
+    ("model", "answer", "verdict", "kinds"),
+    [
+        ("pi/2", "pi/2", "right", ()), ("pi/2", "asin(1)", "right", ()),
+        ("pi/2", "1.5708", "right with rounded numbers", ("rounded",)),
+        ("pi/2", "1.57", "right with rounded numbers", ("rounded",)),
+        ("pi/2", "3.14/2", "right with rounded numbers", ("rounded",)),
+        ("pi/2", "1.6", "wrong", ("unknown",)), ("pi/2", "90", "wrong", ("degrees",)),
+        ("2*pi/3", "120", "wrong", ("degrees",)), ("-pi/4", "-0.785", "right with rounded numbers", ("rounded",)),
+        ("sqrt(2)", "1.41", "right with rounded numbers", ("rounded",)), ("sqrt(2)", "1.42", "wrong", ("unknown",)),
+        ("q1", "180*q1/pi", "wrong", ("degrees",)),
+        (2, "2.001", "wrong", ("unknown",)), (0, "0.001", "wrong", ("unknown",)), (0, "q1 - q1", "right", ()),
+        (23.05, "(m1 + m2)*g*l1 + m2*g*l2", "right with rounded numbers", ("rounded",)), (23.05, "23.06", "wrong", ("unknown",)),
+    ],
+)  # fmt: skip
+def test_a_model_answer_may_be_a_constant(model, answer, verdict, kinds):
+    found = beside(model, answer)
+    assert (found.verdict, found.kinds) == (verdict, kinds)
+
+
+@pytest.mark.parametrize("asked", [{"entry": "M33"}, {"answer": "1/48"}])
+def test_a_bare_number_is_judged_by_one_rule_beside_the_engine_too(asked):
+    """1/48 = 0.0208333: three digits are right, two are 0.8 % off."""
+    for answer, right in (("0.02083", True), ("0.0208", True), ("0.021", False), ("0.0209", False)):
+        found = marked({"q1": answer}, questions=[{"id": "q1", **asked}], robot="planar3r")["q1"]
+        assert found.right is right, answer
+
+
+@pytest.mark.parametrize(
+    ("model", "answer", "verdict", "remark"),
+    [
+        ("pi/2", "l1*pi", "right", "but it holds only for l1 = 0.5"),
+        ("m1*g*l1", "m1*g*0.5", "right", "but it holds only for l1 = 0.5"),
+        ("m1*g*l1", "g", "right", "but it holds only for l1 = 0.5 and m1 = 2"),
+        ("m1*g*l1", "2*m1*g*l1^2", "wrong", ""), ("m1*g*l1", "9.81", "right", ""),
+        ("m1*9.81*l1", "m1*g*l1", "right", ""), ("23.0535", "(m1 + m2)*g*l1 + m2*g*l2", "right", ""),
+        ("l1*cos(q1)", "0.5*cos(q1)", "right", "but it holds only for l1 = 0.5"),
+    ],
+)  # fmt: skip
+def test_what_holds_at_this_robots_numbers_only_says_so(model, answer, verdict, remark):
+    found = beside(model, answer)
+    assert (found.verdict, found.remark) == (verdict, remark)
+
+
+def test_the_moment_of_a_rod_is_that_of_its_mass_and_length():
+    """No number of the robot stands for another here: I1 is m1*l1**2/12 of every rod."""
+    found = beside("m1*l1^2/3", "I1 + m1*l1^2/4", "planar2r_rods")
+    assert (found.verdict, found.remark) == ("right", "")
+    assert beside("m1*l1^2/3", "I1 + m1*l1^3/2", "planar2r_rods").verdict == "wrong"
+
+
+@pytest.mark.parametrize("asked", [{"answer": "l1*sin(q1)"}, {"entry": "x"}, {"entry": "g2"}])
+def test_an_answer_without_a_value_is_wrong_and_warns_of_nothing(asked, recwarn):
+    odd = ["log(0)", "sqrt(-1)", "l1/(q1-q1)", "exp(9e9) - exp(9e9)", "q1^0.5", "tan(pi/2)"]
+    found = [marked({"q1": answer}, questions=[{"id": "q1", **asked}])["q1"] for answer in odd]
+    assert {one.verdict for one in found} == {"wrong"}
+    assert {one.kinds for one in found[:4]} == {("no value",)}
+    assert [str(one.message) for one in recwarn] == []
+
+
+@pytest.mark.parametrize(
+    ("answer", "verdict"),
+    [("m1 + 0*qd1", "right"), ("2.01 - 0*qd1*l2", "wrong"), ("2.0*m2/1.5 + 0*qdd2", "right"), ("m1 + 0*zz", "could not be read")],
+)  # fmt: skip
+def test_what_is_multiplied_by_zero_stops_no_class(answer, verdict):
+    found = beside("m1", answer)
+    assert found.verdict == verdict
+    assert ("'zz' is unknown" in found.remark) is ("zz" in answer)
 
 
 def test_nothing_but_zero_is_no_known_confusion():

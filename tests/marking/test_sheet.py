@@ -53,6 +53,9 @@ def test_errors_at_the_door(changes, message):
     [
         ("l1*", "s.toml: q1: answer"), ("m1*g + m7*l1", "answer: planar2r has no 'm7'; did you mean 'm"),
         ("l1*cos(q3)", "has no 'q3'"), ("l1*c23", "has no 'q3'"),
+        ("m1*gg*l1", r"q1: answer: planar2r has no 'gg'; did you mean 'g'\? \(a name of the question's own"),
+        ("l1 + zz", "has no 'zz'; choose one of 'g', 'l1'"), ("l1*L", "has no 'L'"),
+        ("sqrt(-1)", "is no number at any state"), ("l1*log(q1 - q1)", "is no number at any state"),
     ],
 )  # fmt: skip
 def test_a_bad_model_answer_is_found_before_anything_is_marked(answer, message):
@@ -63,9 +66,27 @@ def test_a_bad_model_answer_is_found_before_anything_is_marked(answer, message):
         )
 
 
-def test_a_model_answer_may_have_names_of_its_own():
-    asked = {"id": "q1", "answer": "k*x1 + l1*cos(q1)"}
+@pytest.mark.parametrize("answer", ["k*x1 + l1*cos(q1)", "k*x_1 + l1*c1 + 0*k*qd2"])
+def test_a_model_answer_may_have_names_of_its_own(answer):
+    text = "A spring of stiffness $k$ is longer by $x_1$."
+    asked = {"id": "q1", "text": text, "answer": answer}
     marks = kl.mark({"robot": "planar2r", "questions": [asked]}, {"ada": {"q1": "l1*c1 + x1*k"}})
+    assert marks["ada"]["q1"].right
+
+
+def test_a_sheet_whose_answer_is_refused_is_not_handed_out(tmp_path):
+    asked = {"id": "q1", "answer": "m1*gg*l1"}
+    with pytest.raises(SheetError, match="no 'gg'"):
+        write_handouts(sheet(questions=[asked]), ["ada"], tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_entry_beside_an_answer_is_a_name_of_its_own():
+    """With x for its name the answer would not be compared with the engine's x."""
+    both = {"id": "q1", "entry": "x", "answer": "l1"}
+    with pytest.raises(SheetError, match=r"\(q1\): entry 'x' is fk\[0,3\].*keep one"):
+        sheet(questions=[both])
+    marks = kl.mark(sheet(questions=[{**both, "entry": "F"}]), {"ada": {"q1": "F = l1"}})
     assert marks["ada"]["q1"].right
 
 
@@ -99,6 +120,17 @@ def test_the_varied_robot_is_the_one_with_these_numbers():
     by_hand = (n["m1"] + n["m2"]) * n["l1"] ** 2 + n["m2"] * n["l2"] ** 2
     by_hand += 2 * n["m2"] * n["l1"] * n["l2"] * np.cos(q[1])
     assert kl.mass_matrix(robot, q)[0, 0] == pytest.approx(by_hand, rel=1e-12)
+
+
+def test_a_students_numbers_warn_of_nothing(recwarn):
+    """A rod's moment across its plane has no name and goes with the one that has."""
+    varied = sheet(robot="planar2r_rods", variation={"seed": 3})
+    assert len({numbers_for(varied, f"s{k}")["I1"] for k in range(20)}) > 10
+    right = {f"s{k}": {"q1": "m1*l1**2/3 + I1 - m1*l1**2/12"} for k in range(20)}
+    asked = {"id": "q1", "answer": "I1 + m1*l1**2/4"}
+    marks = kl.mark(sheet(robot="planar2r_rods", variation={"seed": 3}, questions=[asked]), right)
+    assert {mark["q1"].verdict for mark in marks.marks} == {"right"}
+    assert [str(one.message) for one in recwarn] == []
 
 
 def test_handouts(tmp_path):

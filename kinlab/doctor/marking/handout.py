@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from kinlab.doctor.marking.marks import slug_of
+from kinlab.doctor.marking.own_answer import check_answers
 from kinlab.doctor.marking.sheet import Sheet
 from kinlab.doctor.marking.variation import numbers_for
 from kinlab.errors import FileError
@@ -74,8 +75,10 @@ def write_handouts(sheet: Sheet, students: Iterable[str], folder: str | Path) ->
     """Writes every student's sheet; how many.
 
     Raises:
+        SheetError: one of the sheet's own answers cannot be used.
         FileError: the folder cannot be written.
     """
+    check_answers(sheet)
     root = Path(folder)
     try:
         root.mkdir(parents=True, exist_ok=True)

@@ -19,6 +19,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import IO, Any
@@ -48,7 +49,7 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
     """The outcomes of a Python file, and what the system enforced while it ran.
 
     A question is answered by the function called as its id or its entry, which takes one state:
-    the quantity's arguments in order.
+    the quantity's arguments in order. One with an answer of the sheet's own has none.
     """
     asked = [question for question in sheet.questions if question.quantity]
     states = {q.id: states_of(sheet, q, submission.student) for q in asked}
@@ -69,6 +70,9 @@ def judge_program(sheet: Sheet, submission: Submission, level: str) -> tuple[lis
     for question in sheet.questions:
         if not isinstance(found, dict):
             outcomes.append(lost(question, str(reply.get("error", _("no answer")))[:200]))
+        elif question.answer:
+            said = _("a program is not asked for this; hand in the formula in a text file")
+            outcomes.append(replace(missing(question), remark=said))
         elif question.id not in found:
             outcomes.append(missing(question))
         else:

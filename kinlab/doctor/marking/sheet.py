@@ -19,6 +19,9 @@ A sheet is a TOML file::
     entry = "tau1"                # or quantity = "mass_matrix", or answer = "l1*c1 + l2*c12"
     points = 4
     slips = { sign = 0.5 }
+
+Beside an answer of the sheet's own an entry is only what the formula is called. Names in it that
+the robot does not have stand in the question's text, from which students know them.
 """
 
 from __future__ import annotations
@@ -206,7 +209,11 @@ def _question(
         raise SheetError(f'{place}: what is asked? write entry = "tau1", quantity or answer')
     try:
         entry = entry_name(entry, place) if entry else entry
-        quantity = "" if given == ["answer"] else _asked(row, entry, robot, place)
+        if given == ["answer"]:
+            quantity = ""
+            _require_own(entry, robot, place)
+        else:
+            quantity = _asked(row, entry, robot, place)
     except KinlabError as problem:
         raise SheetError(str(problem) if place in str(problem) else f"{place}: {problem}") from None
     points = _number(row, "points", 1.0, place)
@@ -222,6 +229,19 @@ def _question(
         {**common, **_slips(row.get("slips", {}), f"{place}: slips")},
         _number(row, "tolerance", 1e-6, place),
     )
+
+
+def _require_own(entry: str, robot: Robot, place: str) -> None:
+    """Refuses a name for an own answer that asks the engine, which would go unheard."""
+    try:
+        known = whole_of(entry, robot.table) or quantity_of(entry, robot.table) if entry else ""
+    except KinlabError:
+        return
+    if known:
+        raise SheetError(
+            f"{place}: entry {entry!r} is {known}, which is compared with the engine, and answer "
+            f"is given too; keep one (with an answer, entry is a name of its own, such as F)"
+        )
 
 
 def _asked(row: Mapping[str, Any], entry: str, robot: Robot, place: str) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.marking.sheet import Sheet, Variation
+from kinlab.errors import already_said
 from kinlab.model.dh import DHTable
 from kinlab.model.link import DHLink
 from kinlab.model.robot import Robot
@@ -52,7 +53,8 @@ def _varied(robot: Robot, variation: Variation, student: str) -> Robot:
         share = 2.0 * _fraction(variation.seed, student, shared) - 1.0
         share = 1.0 + variation.spread * share
         values[name] = float(f"{values[name] * share:.{_DIGITS}g}")
-    return Robot.from_dh(_with_numbers(robot.table, words, values))
+    with already_said():  # what these digits leave of a rod's tensor is no fault of the sheet's
+        return Robot.from_dh(_with_numbers(robot.table, words, values))
 
 
 def _fraction(seed: int, student: str, name: str) -> float:
@@ -71,10 +73,16 @@ def _with_numbers(table: DHTable, words: Vocabulary, values: dict[str, float]) -
     links: list[DHLink] = []
     for i, link in enumerate(table.links, 1):
         tensor = np.array(link.inertia, dtype=float)
-        for k, one in enumerate(_AXES):
-            for m in range(k, 3):
-                value = entry(f"inertia{i}{one}{_AXES[m]}", tensor[k, m])
-                tensor[k, m] = tensor[m, k] = value
+        places = [(k, m, f"inertia{i}{_AXES[k]}{_AXES[m]}") for k in range(3) for m in range(k, 3)]
+        named = [
+            (k, m, key) for k, m, key in places if any(n for _f, n in words.entries.get(key, ()))
+        ]
+        shares = [entry(key, 0.0) / tensor[k, m] for k, m, key in named if tensor[k, m]]
+        for k, m, key in places:
+            value = entry(key, tensor[k, m])
+            if (k, m, key) not in named:  # of a rod the moment across its plane
+                value *= shares[0] if shares else 1.0
+            tensor[k, m] = tensor[m, k] = value
         com = np.asarray(link.com, dtype=float)
         plain = ("a", "d", "mass", "armature")
         numbers: dict[str, Any] = {n: entry(f"{n}{i}", getattr(link, n)) for n in plain}

@@ -106,6 +106,22 @@ def stand_ins(
     return found
 
 
+def bare_number(text: Numbered, at: Mapping[str, Array], target: Array) -> bool | None:
+    """Whether a text that is one bare number is the number wanted, to the digits written.
+
+    These must be within half a percent, as three digits are by themselves: of pi/2 1.57 is right
+    and 1.6 is not. None where the text is more than a number, or what is wanted is no number.
+    """
+    if len(text.literals) != 1 or np.ptp(target):
+        return None
+    [one], values = text.literals, text.values(at)
+    if np.ptp(values) or abs(values[0]) != one.value:
+        return None
+    digits = (one.half or 0.5) * (1 + TOLERANCES.same_relation)
+    reach = min(digits, TOLERANCES.bare_number * abs(float(target[0])))
+    return bool(np.max(np.abs(values - target)) <= reach)
+
+
 def roughly(one: Literal) -> Literal:
     """A whole number as one of two digits: 2 as 2.0, and nothing but places behind 25 in 250."""
     if one.exponent or not one.whole or one.text in _DEGREES:
