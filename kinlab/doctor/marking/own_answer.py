@@ -12,15 +12,16 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
+from kinlab.doctor.text.named_numbers import named_numbers
 from kinlab.doctor.text.stand_ins import stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.errors import ExpressionError, KinlabError, near
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical, formula_file
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import equation
 from kinlab.host.language import _
-from kinlab.symbolic.vocabulary import vocabulary
 
 _DIGITS = "0123456789"
 _STATES = 60
@@ -29,7 +30,7 @@ _STATES = 60
 def with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFile) -> Outcome:
     model = _model(sheet, question)
     robot = robot_for(sheet, student)
-    words = vocabulary(robot.table).values if robot.table is not None else {}
+    words = named_numbers(robot)
     for name in model.formulas:
         if name not in file.formulas:
             said = _("{question}: {entry} is not given")
@@ -67,8 +68,9 @@ def check_answers(sheet: Sheet) -> None:
     Raises:
         SheetError: one cannot be read, or has the third mass of an arm with two.
     """
-    words = vocabulary(sheet.robot.table).values if sheet.robot.table is not None else {}
-    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in range(1, sheet.robot.n + 1))}
+    words = named_numbers(sheet.robot)
+    joints = range(1, 3 if isinstance(sheet.robot, FiveBar) else sheet.robot.n + 1)
+    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in joints)}
     letters = {name.rstrip(_DIGITS) for name in own if name[-1] in _DIGITS}
     for question in sheet.questions:
         if not question.answer:

@@ -338,12 +338,14 @@ class _Reader:
         return text
 
     def bare_argument(self, name: str) -> str:
+        doubtful = False
         if self.next in _FRACTIONS:
             inside = self.atom()
         else:
             number = f"{self.single()}*" if self.next[:1].isdigit() else ""
             inside = number + self.name()
-        if "**" in inside or self.next == "^":
+            doubtful = "**" in inside
+        if doubtful or self.next == "^":
             raise self.unsure(
                 _("a power behind {text}").format(text=rf"\{name} {inside.partition('*')[0]}"),
                 _(r"write \{name}^2(...), or parentheses around the angle").format(name=name),

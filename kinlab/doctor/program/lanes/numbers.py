@@ -111,7 +111,9 @@ class Lanes:
         self.lost = np.zeros(len(chosen), dtype=bool)
         self.work, self.most = 0, most
 
-    def pick(self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any] | None) -> Any:
+    def pick(
+        self, edits: Sequence[int], old: Callable[[], Any], new: Callable[[int], Any] | None
+    ) -> Any:
         """What a place of the program gives: for the lanes of its edits what these make of it.
 
         Without a function for them these lanes are lost.
