@@ -203,9 +203,7 @@ def _branch(case: Case, sign: float, turn: int) -> Case:
         angle = np.asarray(plain(fivebar, *given.values()))
         if not turn:
             return angle
-        found = quantities()["fivebar_equation"].engine(
-            fivebar, np.zeros_like(given["xy"]), given["xy"]
-        )
+        found = quantities()["fivebar_equation"].engine(fivebar, given["xy"])
         if "s" in given:
             found = found[np.arange(len(found)), leg_of(given["s"])]
         a, b, c = np.moveaxis(found, -1, 0)

@@ -30,6 +30,8 @@ _LINKAGES, _POSES = 8, 6
 """Other five-bars at which a text is looked at, and states of each."""
 _SEED = 10
 """Of the states at which a text that is right here is asked again."""
+_FEW = 12
+"""States of a single other five-bar."""
 _RIGHT = "q_engine"
 """The name whose values are the engine's; as a joint's, it is nobody's number."""
 _SPREAD = (0.8, 1.25)
@@ -125,7 +127,7 @@ class LookedUp:
         """The values at states of the five-bar with one other number."""
         del here
         other = five_bar.with_numbers(self.linkage, {name: self._pair(name) * _MOVED})
-        return _at_states(self, other, 1, _LINKAGES * _POSES)
+        return _at_states(self, other, 1, _FEW)
 
     def holds(self, text: Written) -> bool:
         """Whether a text is right of other five-bars, but for whole turns of an angle."""
@@ -201,4 +203,4 @@ def _anywhere(of: LookedUp, seed: int, held: tuple[tuple[str, float], ...]) -> d
 @lru_cache(maxsize=256)
 def _of_one(of: LookedUp, seed: int) -> dict[str, Array]:
     linkage = of.other(np.random.default_rng(seed), {})
-    return _at_states(of, linkage, seed, _LINKAGES * _POSES)
+    return _at_states(of, linkage, seed, _FEW)

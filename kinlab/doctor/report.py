@@ -60,7 +60,7 @@ def diagnose(
     """Says whether a hand-derived formula is what it claims to be, and if not, what is wrong.
 
     Args:
-        robot: a Robot, DHTable, name or path.
+        robot: a Robot, DHTable, FiveBar, name or path.
         quantity: what the formula claims to be, such as ``"inverse_dynamics"``, or a book's name of
             an entry, ``"tau2"``; an index picks entries: ``"inverse_dynamics[0]"``.
         function: a function of one state, the quantity's arguments in order: ``f(q, v, a)``; or the

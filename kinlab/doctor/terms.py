@@ -146,6 +146,8 @@ def in_text(
     if any(name[0] == "I" for name in tree.names(written.node)):  # who names one names them all
         tried += [(line, 1) for line in lines * bool(unlike)]
         tried += [(line, 2) for line in unlike]
+    if numbers and not isinstance(derived, Derivation):
+        tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),

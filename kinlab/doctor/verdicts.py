@@ -262,7 +262,7 @@ def _kept(
     rods = any(name[0] == "I" for name in missing)
     for name in sorted(missing if rods else own):
         moved = derived.but_for(name, here)
-        target = np.broadcast_to(tree.evaluate(right, moved), (count,))
+        target = np.asarray(tree.evaluate(right, moved))
         gap = np.max(np.abs(text.values(moved) - target))
         if gap > TOLERANCES.formula_agrees * (float(np.max(np.abs(target))) or 1.0):
             found.append(name)

@@ -49,6 +49,7 @@ RIGHT = [
     ("J11", J11), ("J11", IN_XY), ("J11", "w1x/(l1*uHw1)"),
     ("J_11", r"$\frac{w_{1x}}{l_1 (u_{1x} w_{1y} - u_{1y} w_{1x})}$"),
     ("J22", "w2y/(l1*(cos(theta2)*w2y - sin(theta2)*w2x))"),
+    ("theta_dot_1", r"$J_{11}\dot{x} + J_{12}\dot{y}$"), ("w1x", "(x - e - L1*cos(th1))/L2"),
     ("theta_dot_1", RATE), ("thetad1", "J11*vx + J12*vy"), ("thetad2", r"$J_{21} v_x + J_{22} v_y$"),
     ("thetadd1", TURN), ("theta_ddot_1", "J11*ax + J12*ay + f1".replace("f1", TURN.split("J12*ay + ")[1])),
     ("tau1", TORQUE), ("tau1", "G11*ax + G12*ay + I_A*f1 + tauAg1 - m*g*J21/detJ"),
@@ -87,6 +88,11 @@ def test_numbers_for_names_are_right_and_said() -> None:
     assert "0.14 stands for e = 0.1414213562" in found.sentence
     found = kl.diagnose("isotropic", "J11", IN_XY.replace("l1", "0.3"), samples=40)
     assert "holds only for l1 = 0.3" in found.sentence
+
+
+def test_a_number_of_the_other_leg_is_told() -> None:
+    found = kl.diagnose("unequal", "J21", "w2x/(0.3*uHw2)", samples=40)
+    assert "0.3 should be l1" in found.sentence
 
 
 def _same(old: str, new: str, text: str) -> str:
@@ -207,7 +213,12 @@ def test_one_formula_of_a_leg_says_the_factor_of_the_others(tmp_path) -> None:
         ("isotropic", "M11", "l1", "names no quantity of a five-bar; did you mean 'J11'"),
         ("isotropic", "j", "pi*N/30", "names no quantity of a five-bar"),
         ("isotropic", "J11", "m3*l1", "'m3' is unknown"),
-        ("isotropic", "C1", "l2**2*cos(theta1)", "q1 does not belong into fivebar_equation"),
+        (
+            "isotropic",
+            "C1",
+            "l2**2*cos(theta1)",
+            "q1 does not belong into fivebar_equation, which depends on xy",
+        ),
         ("plotclock", "tau1", "I_A*thetadd1", "plotclock has no masses"),
     ],
 )

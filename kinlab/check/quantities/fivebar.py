@@ -223,10 +223,10 @@ def _gap(chain: ClosedChain, theta: Array, xy: Array) -> Any:
     return _rod_length(chain, theta, xy) ** 2 - np.asarray(chain.linkage.l2) ** 2
 
 
-def _equation(chain: ClosedChain, theta: Array, xy: Array) -> Any:
+def _equation(chain: ClosedChain, xy: Array) -> Any:
     """A and B are the projection of a crank along x and y; C is what closes the loop."""
     across = [_projection(chain, np.full(2, angle), xy) for angle in (0.0, np.pi / 2)]
-    return np.stack([*across, _projection(chain, theta, xy) - _gap(chain, theta, xy)], axis=1)
+    return np.stack([*across, across[0] - _gap(chain, np.zeros(2), xy)], axis=1)
 
 
 def _angles(chain: ClosedChain, q: Array) -> Any:
@@ -306,9 +306,9 @@ QUANTITIES = (
         "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
     ),
     _open("fivebar_loop", "theta xy", _gap, "|elbow to tool|² - l2², m², (2,)"),
-    _open("fivebar_equation", "theta xy", _equation, "A, B, C of each leg, m², (2, 3)"),
+    _open("fivebar_equation", "xy", _equation, "A, B, C of each leg, m², (2, 3)"),
     _of_leg(_open("fivebar_loop", "theta xy", _gap, "|elbow to tool|² - l2² of a leg, m²")),
-    _of_leg(_open("fivebar_equation", "theta xy", _equation, "A, B, C of a leg, m², (3,)")),
+    _of_leg(_open("fivebar_equation", "xy", _equation, "A, B, C of a leg, m², (3,)")),
     _quantity("fivebar_angles", "xy mode", _angles, "theta_1, theta_2, rad, (2,)"),
     _of_leg(_quantity("fivebar_angles", "xy mode", _angles, "theta of a leg, rad")),
     _of_leg(_quantity("fivebar_rods", "xy mode", _rods, "w of a leg, (2,)")),

@@ -7,8 +7,8 @@ module            what it holds
                   place
 ``claims``        What the names in a file of formulas claim to be: tau1, g2, M12, C11, J11, x, T,
                   V
-``five_bar``      What the names in formulas of a five-bar claim and stand for: J11, C2, theta1, w1x,
-                  uHw1, I_A
+``five_bar``      What the names in formulas of a five-bar claim and stand for: J11, C2, theta1,
+                  w1x, uHw1, I_A
 ``habits``        Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of
                   a slide
 ``joints``        Joint positions as text: q1 = atan2(y, x) - ..., q2 = acos(...), each from the

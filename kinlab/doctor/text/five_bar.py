@@ -344,7 +344,7 @@ def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -
 
 
 def _equations(fivebar: FiveBar, xy: Array) -> dict[str, Array]:
-    found = quantities()["fivebar_equation"].engine(fivebar, np.zeros_like(xy), xy)
+    found = quantities()["fivebar_equation"].engine(fivebar, xy)
     return {f"{letter}{i + 1}": found[:, i, k] for i in range(2) for letter, k in _EQUATION.items()}
 
 
@@ -383,6 +383,7 @@ def with_habits(file: FormulaFile, fivebar: FiveBar) -> FormulaFile:
         plain = _TURNED.sub(r"\1\3\2", name.replace("_", ""))
         if tree.names(canonical(name)) <= words:
             continue
+        plain = plain.lower() if plain in ("L1", "L2") else plain
         if plain in words:
             new[name] = plain
         elif plain in none & known:

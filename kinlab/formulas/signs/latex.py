@@ -42,6 +42,8 @@ _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
+_OF_TOOL = ("x", "y")
+"""Coordinates of the tool, whose rates a five-bar's formulas have."""
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _BRACES = {r"\{": "(", r"\}": ")"}
 _WITHOUT = N_("a function without parentheses before {text}")
@@ -368,7 +370,7 @@ class _Reader:
             below = below or self.subscript()
         else:
             head, below = self.letter(), self.subscript()
-        if dots and head not in ("q", "theta", "d"):
+        if dots and head not in ("q", "theta", "d", *_OF_TOOL):
             raise refused(
                 self.place,
                 N_("LaTeX: a dot over {head}; only over q, theta and a slide's d"),
