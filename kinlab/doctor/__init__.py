@@ -3,8 +3,6 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
-``as_right``      A five-bar's answers that are as right as the engine's own: an equation times a
-                  factor, a branch
 ``changes``       A reading: one thing that people take differently, and what the engine says if
                   one does; the answer's single entries
 ``derived``       The engine's quantities as derived formulas, entry by entry, for arms with a DH
@@ -14,9 +12,6 @@ module            what it holds
 ``excuses``       Right all the same, or right here only: what a difference, or none, is before it
                   is a slip
 ``file``          A file of formulas as text, each examined entry by entry
-``looked_up``     A five-bar's quantity as the engine has it, at this and at other five-bars, as a
-                  reference
-``mechanisms``    The arm or the five-bar that formulas are of: from a name, a path, or what one has
 ``numbers``       The robot's numbers taken otherwise: one of them another, or all of a kind
                   rounded
 ``regression``    The difference of a function from the derived formula as a short sum of known
@@ -36,6 +31,8 @@ module            what it holds
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
 ``glossary/``      What a value in somebody's program is, by the arm's own quantities
+``linkages/``     Formulas of a five-bar as text: their names, what they are held against, what is
+                  right too
 ``program/``       A student's Python function, read: which edit of which line makes it right
 ``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
                   closed form is not

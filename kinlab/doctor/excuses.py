@@ -15,7 +15,7 @@ from kinlab.doctor import rounding, verdicts
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
-from kinlab.doctor.looked_up import reference_of
+from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING

@@ -13,12 +13,11 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis, shown_entry
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.registry import split_name
-from kinlab.doctor import as_right
 from kinlab.doctor.changes import Case, Mechanism, label_of
 from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.mechanisms import mechanism_beside
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import as_right, five_bar
+from kinlab.doctor.linkages.mechanisms import mechanism_beside
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values

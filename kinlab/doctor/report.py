@@ -23,7 +23,7 @@ from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import as_judged, examine_formulas, require_sound, robot_of, twice
-from kinlab.doctor.mechanisms import mechanism
+from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
 from kinlab.doctor.text.claims import claimed_of

@@ -14,7 +14,7 @@ from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
 from kinlab.doctor.derived import Derivation
-from kinlab.doctor.looked_up import reference_of
+from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at

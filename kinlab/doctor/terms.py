@@ -15,7 +15,7 @@ from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
 from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.derived import POINTS, Derivation, searchable
-from kinlab.doctor.looked_up import Reference
+from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, rewritten, together

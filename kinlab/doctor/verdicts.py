@@ -15,7 +15,8 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
-from kinlab.doctor.looked_up import Reference
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
@@ -24,7 +25,6 @@ from kinlab.doctor.rounding import (
     same_values,
 )
 from kinlab.doctor.terms import as_rods, names_for
-from kinlab.doctor.text import five_bar
 from kinlab.doctor.text.stand_ins import FITS, FREE, Numbered, fitted, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError

@@ -16,6 +16,8 @@ from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
 from kinlab.doctor.file import as_judged, examine_formulas
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
     Outcome,
     lost,
@@ -29,9 +31,7 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.program.words import WrongLines
-from kinlab.doctor.text import five_bar
 from kinlab.doctor.text.claims import claimed_of
-from kinlab.doctor.text.named_numbers import named_numbers
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
 from kinlab.fivebar import FiveBar

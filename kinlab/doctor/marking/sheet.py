@@ -34,8 +34,8 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.examine import prepare
+from kinlab.doctor.linkages.mechanisms import domain_of, mechanism_beside
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.mechanisms import domain_of, mechanism_beside
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
 from kinlab.errors import FileError, KinlabError, near
 from kinlab.fivebar import FiveBar
@@ -231,8 +231,7 @@ def _asked(row: Mapping[str, Any], entry: str, robot: Mechanism, place: str) -> 
     if any(isinstance(k, slice) for k in index):
         raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")
     if find_quantity(plain).domain is not domain_of(robot):
-        kind = "a five-bar" if isinstance(robot, FiveBar) else "a serial arm"
-        raise SheetError(f"{place}: {plain} is no quantity of {kind}; give an answer")
+        raise SheetError(f"{place}: {plain} is no quantity of {robot.name}; give an answer")
     try:
         prepare(robot, plain, index, 10, 0)
     except IndexError:

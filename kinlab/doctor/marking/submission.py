@@ -20,9 +20,9 @@ from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.check.quantities.registry import split_name
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.sheet import Question, Sheet
 from kinlab.doctor.text.claims import claimed_of, whole_claimed
-from kinlab.doctor.text.named_numbers import named_numbers
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.lines import read_lines
 from kinlab.formulas.typed import (

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.changes import Mechanism
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.sheet import Sheet, Variation
-from kinlab.doctor.text.named_numbers import named_numbers
 from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.model.link import DHLink

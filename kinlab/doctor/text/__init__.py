@@ -7,8 +7,6 @@ module            what it holds
                   place
 ``claims``        What the names in a file of formulas claim to be: tau1, g2, M12, C11, J11, x, T,
                   V
-``five_bar``      What the names in formulas of a five-bar claim and stand for: J11, C2, theta1,
-                  w1x, uHw1, I_A
 ``habits``        Names by habit: ``L1`` for l1, ``a1`` for a length, ``t1`` for an angle, ``d3`` of
                   a slide
 ``joints``        Joint positions as text: q1 = atan2(y, x) - ..., q2 = acos(...), each from the
@@ -19,8 +17,6 @@ module            what it holds
                   these, constants
 ``mend``          One slip of the pen, two or three: the changes that make a line right, and the
                   line then
-``named_numbers`` The robot's numbers by the names that they have in formulas, an arm's or a
-                  five-bar's
 ``numbers_off``   Several numbers of a text that are off, beside others that are only rounded
 ``own_names``     A file's formulas in the robot's names: the writer's own names and numbers, what
                   they mean

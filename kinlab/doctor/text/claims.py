@@ -15,7 +15,7 @@ from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case, Mechanism
 from kinlab.doctor.derived import WRENCH
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.text.joints import joint_claimed
 from kinlab.errors import ExpressionError
 from kinlab.fivebar import FiveBar

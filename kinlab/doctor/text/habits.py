@@ -10,7 +10,7 @@ import re
 from dataclasses import replace
 
 from kinlab.doctor.changes import Mechanism
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import five_bar
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical, parse

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.derived import LETTERS, WRENCH
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
-from kinlab.doctor.text.named_numbers import named_numbers
 from kinlab.doctor.text.written import Written, literal
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree, typed

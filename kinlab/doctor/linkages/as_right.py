@@ -20,8 +20,8 @@ from kinlab.check.quantities.fivebar import leg_of
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
-from kinlab.doctor.looked_up import looked_up
-from kinlab.doctor.text.five_bar import is_either
+from kinlab.doctor.linkages.five_bar import is_either
+from kinlab.doctor.linkages.looked_up import looked_up
 from kinlab.doctor.text.written import Written
 from kinlab.fivebar import FiveBar
 from kinlab.host.language import _

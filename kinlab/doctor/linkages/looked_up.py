@@ -19,7 +19,7 @@ from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.quantity import Quantity
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import Derivation, derivation_of
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.text.written import Written
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree

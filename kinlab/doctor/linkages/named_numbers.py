@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kinlab.check.quantities.registry import split_name
 from kinlab.doctor.changes import Mechanism
-from kinlab.doctor.text import five_bar
+from kinlab.doctor.linkages import five_bar
 from kinlab.fivebar import FiveBar
 from kinlab.symbolic.vocabulary import vocabulary
 
