@@ -31,6 +31,8 @@ module            what it holds
                   one does
 ``derivations/``  The textbooks' derivations, walked with any of their steps taken otherwise
 ``glossary/``      What a value in somebody's program is, by the arm's own quantities
+``linkages/``     Formulas of a five-bar as text: their names, what they are held against, what is
+                  right too
 ``program/``       A student's Python function, read: which edit of which line makes it right
 ``solutions/``    Inverse kinematics by hand: which branches are right, and which step of the
                   closed form is not

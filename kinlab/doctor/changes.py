@@ -16,9 +16,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.check.quantities.quantity import Quantity
+from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
+
+Mechanism = Robot | FiveBar
+"""What formulas are of."""
 
 Stage = Literal["robot", "arguments", "engine", "answer"]
 Arguments = dict[str, Array]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
@@ -91,6 +91,8 @@ SCARA they are few, of others too many to search for a slip in."""
 _KINEMATIC_JOINTS = 7
 _FACTORED = 20
 """Terms of one entry up to which its factors are looked for."""
+POINTS = 24
+"""Random points at which formulas are looked at."""
 _LONGEST = 1500
 """Terms of one entry above which it is not searched."""
 
@@ -219,6 +221,30 @@ class Derivation:
     polys: Any
 
     @property
+    def n(self) -> int:
+        """Number of joints."""
+        return self.arm.n
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """The names of the arm's numbers, and of the wrench's parts."""
+        return self.arm.trig.parameters
+
+    @property
+    def values(self) -> Mapping[str, float]:
+        """What the arm's numbers are."""
+        return self.arm.values
+
+    @property
+    def spelling(self) -> Mapping[str, str]:
+        """How joints are written where the writer has none: as they are."""
+        return {}
+
+    def letters(self, arguments: tuple[str, ...]) -> tuple[str, ...]:
+        """Which of q, qd and qdd may stand in a formula of a quantity with these arguments."""
+        return tuple(LETTERS[a] for a in arguments if a in LETTERS)
+
+    @property
     def loads(self) -> tuple[str, ...]:
         """The names of the wrench's parts, where there is one."""
         return tuple(name for name in WRENCH if name in self.arm.trig.parameters)
@@ -253,6 +279,35 @@ class Derivation:
     def grouped(self, poly: Poly) -> Node:
         """One entry with equal joint functions collected: (m1 + m2)*l1**2*qdd1 + ..."""
         return grouped(self.arm, poly)
+
+    def forms(self, poly: Poly) -> list[Node]:
+        """The ways in which people write the same entry."""
+        made = [self.tree(poly), self.grouped(poly), self.collected(poly)]
+        return list(dict.fromkeys([*made, *self.factored(poly)]))
+
+    def environment(self, states: Mapping[str, Array]) -> dict[str, Array]:
+        """Values of every name: the joints' from the states, the parameters' from the table."""
+        return environment(self, dict(states))
+
+    def anywhere(self, seed: int, held: Mapping[str, float] | None = None) -> dict[str, Array]:
+        """Random values for every name: positive parameters but those ``held``, any states."""
+        rng = np.random.default_rng(seed)
+        own = [name for name in self.parameters if name not in self.loads]
+        at = {name: rng.uniform(0.4, 2.0, POINTS) for name in own}
+        for letter in LETTERS.values():
+            for i in range(self.n):
+                at[f"{letter}{i + 1}"] = rng.uniform(-2.5, 2.5, POINTS)
+        at |= {name: rng.uniform(-2.0, 2.0, POINTS) for name in self.loads}
+        return at | {name: np.full(POINTS, value) for name, value in (held or {}).items()}
+
+    def another(self, seed: int) -> dict[str, Array]:
+        """The same with one set of numbers at every state."""
+        at, own = self.anywhere(seed), {*self.parameters} - {*self.loads}
+        return {n: np.full_like(x, x[0]) if n in own else x for n, x in at.items()}
+
+    def but_for(self, name: str, here: Mapping[str, Array]) -> dict[str, Array]:
+        """Values with another number for one name."""
+        return {**here, name: here[name] * 1.37 + 0.1}
 
     def factored(self, poly: Poly) -> list[Node]:
         """One entry with what all terms share in front: l2*m2*(l1*cos(q2) + l2), if short."""

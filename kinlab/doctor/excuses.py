@@ -15,6 +15,7 @@ from kinlab.doctor import rounding, verdicts
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
+from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.slips import of_entry, slip_cause
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.habits import NOTHING
@@ -122,14 +123,14 @@ def _rounded(case: Case, entry: AnswerEntry, text: Written | None) -> list[str] 
 
 def _with_numbers(found: Excuse, case: Case, engine: Array, written: dict[str, Written]) -> Excuse:
     """An excuse with what the texts have numbers for and no name, but for those told: g = 9.81."""
-    derived = derivation_of(case) if written else None
+    derived = reference_of(case) if written else None
     if derived is None:
         return found
     right: set[str] = set()
     for entry in entries(replace(case, hand=engine), engine):
         poly = derived.entry(entry.index)
         right |= verdicts.unnamed(written.get(entry.label), derived, poly)
-    own = (f"{name} = {derived.arm.values[name]:.7g}" for name in sorted(right))
+    own = (f"{name} = {derived.values[name]:.7g}" for name in sorted(right))
     only = [one for one in own if not any(one in remark for remark in found.remarks)]
     return replace(found, remarks=(*found.remarks, *only_for(only)))
 
@@ -147,7 +148,7 @@ def covered_up(
 
     Numbers that stand for the robot's, as in (m1 + m2)*0.25, are none, but a remark.
     """
-    derived = derivation_of(case) if written else None
+    derived = reference_of(case) if written else None
     if derived is None:
         return [], 0.0, []
     slips: list[Slip] = []
@@ -161,7 +162,9 @@ def covered_up(
             continue
         kept, plain = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
         only += [name for name in kept if name not in only]
-        zero = (name for name in words_in(text.text) if text.symbols.get(name) == NOTHING)
+        zero = (
+            name for name in dict.fromkeys(words_in(text.text)) if text.symbols.get(name) == NOTHING
+        )
         nothing += [name for name in zero if name not in nothing]
         gap = plain if not kept else 0.0
         if gap > TOLERANCES.formula_agrees:
@@ -169,7 +172,7 @@ def covered_up(
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
-    remarks = only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
+    remarks = only_for([f"{name} = {derived.values[name]:.7g}" for name in only])
     if nothing:
         zeros = together(f"{name} = 0" for name in nothing)
         remarks.append(

@@ -5,30 +5,33 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import Diagnosis, shown_entry
+from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.check.quantities.registry import split_name
-from kinlab.doctor.changes import Case, label_of
+from kinlab.doctor.changes import Case, Mechanism, label_of
 from kinlab.doctor.derived import WRENCH
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.text.claims import alone, named_alone, quantity_of, with_forces, with_wrench
+from kinlab.doctor.linkages import as_right, five_bar
+from kinlab.doctor.linkages.mechanisms import mechanism_beside
+from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.lines import Lines, read_lines
 from kinlab.formulas.signs.refusals import refused
 from kinlab.formulas.text import FormulaFile, formula_file
 from kinlab.host.files import read_text
 from kinlab.host.language import N_, _
-from kinlab.model.library import load
-from kinlab.model.robot import Robot
 
 _FEWEST = 10
 """States that :func:`prepare` asks for at least."""
@@ -74,7 +77,7 @@ def examine_file(path: str | Path, samples: int = 200, seed: int = 0) -> list[Di
 
 
 def examine_formulas(
-    file: FormulaFile, robot: Robot, samples: int = 200, seed: int = 0
+    file: FormulaFile, robot: Mechanism, samples: int = 200, seed: int = 0
 ) -> list[Diagnosis]:
     """Judges formulas that are read already, of a robot that is loaded.
 
@@ -89,9 +92,17 @@ def examine_formulas(
     Raises:
         ExpressionError: a name that means nothing.
     """
+    file = as_judged(file, robot)
     parts = [_examined(part, robot, samples, seed) for part in (file, *file.others)]
     alike = [part for part in parts if len(part) == len(parts[0])]
     return [_of_chain(list(same)) for same in zip(*alike, strict=True)]
+
+
+def as_judged(file: FormulaFile, robot: Mechanism) -> FormulaFile:
+    """The formulas as they are judged and shown: both sides of a loop, names as they are meant."""
+    if not isinstance(robot, FiveBar):
+        return file
+    return five_bar.with_habits(five_bar.with_equations(file), robot)
 
 
 def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
@@ -106,7 +117,7 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
     return _also_said(found, (told,)) if found.causes else found
 
 
-def _examined(file: FormulaFile, robot: Robot, samples: int, seed: int) -> list[Diagnosis]:
+def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
     file = with_habits(with_forces(file, robot), robot)
     done = _by_quantity(file, robot, samples, seed)
     if all(one.agrees for found in done.values() for one in found):
@@ -123,7 +134,7 @@ def _examined(file: FormulaFile, robot: Robot, samples: int, seed: int) -> list[
 
 
 def _by_quantity(
-    file: FormulaFile, robot: Robot, samples: int, seed: int
+    file: FormulaFile, robot: Mechanism, samples: int, seed: int
 ) -> dict[str, list[Diagnosis]]:
     wanted, titles = _claims(file, robot)
     done: dict[str, list[Diagnosis]] = {}
@@ -162,7 +173,7 @@ def _kinds_of(found: Diagnosis) -> Sequence[str]:
 def _in_tool_axes(
     formulas: dict[str, Written],
     titles: dict[str, str],
-    robot: Robot,
+    robot: Mechanism,
     file: FormulaFile,
     samples: int,
     seed: int,
@@ -212,7 +223,7 @@ def twice(entry: str, other: str) -> str:
     return _("{one} is given twice, also as {two}; keep one").format(one=one, two=two)
 
 
-def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
+def require_sound(file: FormulaFile, robot: Mechanism) -> dict[str, str]:
     """Refuses what :func:`examine_formulas` would refuse, without judging anything.
 
     Returns:
@@ -221,6 +232,7 @@ def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
     Raises:
         ExpressionError: a name that means nothing, an entry that does not exist.
     """
+    file = as_judged(file, robot)
     for part in (*file.others, file):
         part = with_habits(with_forces(part, robot), robot)
         wanted, titles = _claims(part, robot)
@@ -230,15 +242,18 @@ def require_sound(file: FormulaFile, robot: Robot) -> dict[str, str]:
 
 
 def _claims(
-    file: FormulaFile, robot: Robot
+    file: FormulaFile, robot: Mechanism
 ) -> tuple[dict[str, dict[str, Written]], dict[str, str]]:
     """The formulas by quantity and by the place they claim, and the entries' names by place."""
     wanted: dict[str, dict[str, Written]] = {}
     titles: dict[str, str] = {}
     for entry, text in file.formulas.items():
         try:
-            name = quantity_of(entry, robot.table)
-            name = with_wrench(file, alone(name) if robot.n == 1 else name)
+            name = claimed_of(entry, robot)
+            if isinstance(robot, FiveBar):
+                five_bar.refuse_massless(name, robot)
+            else:
+                name = with_wrench(file, alone(name) if robot.n == 1 else name)
             plain, index = split_name(name)
         except KinlabError as problem:
             raise ExpressionError(f"{file.path}: {entry}: {problem}") from None
@@ -257,7 +272,7 @@ def _answers(
     plain: str,
     formulas: dict[str, Written],
     titles: dict[str, str],
-    robot: Robot,
+    robot: Mechanism,
     file: FormulaFile,
     samples: int,
     seed: int,
@@ -292,18 +307,29 @@ def _answers(
         if len({**mirrored, **formulas}) == len(labels):
             formulas = {**mirrored, **formulas}
     entries = {label: _entry_of(label, titles) for label in formulas}
-    values = {label: _values(x, case, file, entries[label]) for label, x in formulas.items()}
+    values = {
+        label: _values(x, _alone_in(case, label), file, entries[label])
+        for label, x in formulas.items()
+    }
     return case, engine, labels, formulas, values
+
+
+def _alone_in(case: Case, label: str) -> Case:
+    """The case of one entry of a five-bar, whose names are those of its leg."""
+    return replace(case, index=split_name(label)[1]) if case.quantity.domain is FIVEBAR else case
 
 
 def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterable[Diagnosis]:
     case, engine, labels, formulas, values = answers
-    if len(formulas) == len(labels):
+    if len(formulas) == len(labels) and case.quantity.domain is not FIVEBAR:
         hand = np.stack([values[label] for label in labels], axis=-1)
         if case.quantity.read is None:
             hand = hand.reshape(engine.shape)
         shown = ", ".join(titles[label] for label in labels if label in titles)
         yield examine(case, hand, engine, plain, shown, formulas)
+        return
+    if case.quantity.domain is FIVEBAR:
+        yield from _of_five_bar(case, formulas, values, titles)
         return
     if plain in ("coriolis_matrix", "jacobian"):
         yield from _parts_given(plain, case, engine, formulas, values, titles)
@@ -313,6 +339,31 @@ def _of_quantity(plain: str, answers: Answers, titles: dict[str, str]) -> Iterab
         one = {label: formulas[label]}
         found = examine(part, answer, engine[(slice(None), *index)], label, titles[label], one)
         yield _of_one_split(found) if plain == "coriolis_matrix" else found
+
+
+def _of_five_bar(
+    case: Case,
+    formulas: dict[str, Written],
+    values: dict[str, Array],
+    titles: dict[str, str],
+) -> Iterable[Diagnosis]:
+    """Each entry by itself; A, B and C of a leg with the factor that most of them have."""
+    cases = {label: _alone_in(case, label) for label in values}
+    legs: dict[Any, list[str]] = {}
+    for label in values if case.quantity.name.endswith("_equation") else ():
+        legs.setdefault(cases[label].index[:-1], []).append(label)
+    factors = {
+        label: as_right.common_factor((cases[one], values[one], formulas[one]) for one in leg)
+        for leg in legs.values()
+        for label in leg
+    }
+    for label, answer in values.items():
+
+        def judge(case: Case, hand: Array, right: Array, label: str = label) -> Diagnosis:
+            return examine(case, hand, right, label, titles[label], {label: formulas[label]})
+
+        factor = factors.get(label, "")
+        yield as_right.judged_kindly(cases[label], answer, formulas[label], factor, judge)
 
 
 def _of_one_split(found: Diagnosis) -> Diagnosis:
@@ -351,15 +402,14 @@ def _parts_given(
         yield examine(replace(case, index=index), hand, wanted, name, shown, texts)
 
 
-def robot_of(file: FormulaFile) -> Robot:
+def robot_of(file: FormulaFile) -> Mechanism:
     """The robot of a file, by name, or by a path that may be relative to the file.
 
     Raises:
         NameUnknownError, FileError: no such robot; the message names the file.
     """
-    beside = Path(file.path).parent / file.robot
     try:
-        return load(beside if beside.suffix and beside.is_file() else file.robot)
+        return mechanism_beside(file.robot, file.path)
     except NameUnknownError as problem:
         raise NameUnknownError(f"{file.path}: {problem}") from None
     except FileError as problem:

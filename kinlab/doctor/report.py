@@ -19,14 +19,16 @@ from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.serial import SERIAL
 from kinlab.check.targets import PlannedRow
 from kinlab.check.unread import Unread
-from kinlab.doctor.changes import label_of
+from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derived import derivation
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas, require_sound, robot_of, twice
+from kinlab.doctor.file import as_judged, examine_formulas, require_sound, robot_of, twice
+from kinlab.doctor.linkages.mechanisms import mechanism
 from kinlab.doctor.program.elsewhere import lines_elsewhere
 from kinlab.doctor.program.words import lines
-from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.claims import claimed_of
 from kinlab.errors import ExpressionError, KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
 from kinlab.formulas.record import AnswerShapeError, function_name, state_by_state
@@ -41,13 +43,13 @@ from kinlab.formulas.text import (
     respelled,
     with_entries,
 )
-from kinlab.formulas.tree import Node, Path
+from kinlab.formulas.tree import Node
+from kinlab.formulas.tree import Path as Way
 from kinlab.formulas.typeset import Marks, equation
-from kinlab.model.robot import Robot
 
 FEWEST = 10
 """States that a diagnosis needs at least."""
-_NONE: frozenset[Path] = frozenset()
+_NONE: frozenset[Way] = frozenset()
 _SHORT = 40
 """Terms up to which a derived formula is worth showing."""
 
@@ -58,7 +60,7 @@ def diagnose(
     """Says whether a hand-derived formula is what it claims to be, and if not, what is wrong.
 
     Args:
-        robot: a Robot, DHTable, name or path.
+        robot: a Robot, DHTable, FiveBar, name or path.
         quantity: what the formula claims to be, such as ``"inverse_dynamics"``, or a book's name of
             an entry, ``"tau2"``; an index picks entries: ``"inverse_dynamics[0]"``.
         function: a function of one state, the quantity's arguments in order: ``f(q, v, a)``; or the
@@ -77,7 +79,7 @@ def diagnose(
         FormulaError: the function failed.
     """
     if isinstance(function, str):
-        arm = SERIAL.load(robot)
+        arm = mechanism(robot)
         file = formula_file({"robot": arm.name, "formulas": {quantity: function}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
         return next((one for one in judged if not one.agrees), judged[0])
@@ -99,7 +101,7 @@ def _in_full(quantity: str, robot: Any) -> str:
     if quantity in quantities():
         return quantity
     try:
-        return quantity_of(quantity, SERIAL.load(robot).table)
+        return claimed_of(quantity, mechanism(robot))
     except ExpressionError:
         return quantity  # refused with the names that there are
 
@@ -115,6 +117,7 @@ def of_file(file: FormulaFile, samples: int = 200, seed: int = 0) -> list[Diagno
         FileError, ExpressionError, NameUnknownError: what cannot be used, with its place.
     """
     robot = robot_of(file)
+    file = as_judged(file, robot)
     judged = examine_formulas(file, robot, max(samples, FEWEST), seed)
     return [_of_text(diagnosis, file, robot) for diagnosis in judged]
 
@@ -222,7 +225,7 @@ def _of_function(task: PlannedRow, samples: int, seed: int) -> Diagnosis:
     return replace(found, source=task.file, corrected=corrected)
 
 
-def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Diagnosis:
+def _of_text(found: Diagnosis, file: FormulaFile, robot: Mechanism) -> Diagnosis:
     pointed = _corrected(found)
     right = pointed or _derived(found, robot)
     given: list[Typeset] = []
@@ -240,13 +243,14 @@ def _of_text(found: Diagnosis, file: FormulaFile, robot: Robot) -> Diagnosis:
     return replace(found, source=file.path, given=tuple(given), corrected=tuple(corrected))
 
 
-def _as_written(formula: Node, file: FormulaFile, robot: Robot) -> Node:
+def _as_written(formula: Node, file: FormulaFile, robot: Mechanism) -> Node:
     """A derived formula in the notation of the file: c12 where it has c12, th1 where th1."""
     nodes = [one for written in file.formulas.values() for _, one in tree.nodes(written)]
     words = [str(one.value) for one in nodes if one.op == "sym"]
     waves = any(one.op in ("sin", "cos") for one in nodes)
+    count = 2 if isinstance(robot, FiveBar) else robot.n
     short = not waves and any(SHORTHAND.fullmatch(word) for word in words)
-    return respelled(formula, joint_spelling(words, robot.n), short)
+    return respelled(formula, joint_spelling(words, count), short)
 
 
 def _corrected(found: Diagnosis) -> dict[str, str]:
@@ -254,9 +258,9 @@ def _corrected(found: Diagnosis) -> dict[str, str]:
     return next((cause.corrected for cause in found.causes if cause.corrected), {})
 
 
-def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
+def _derived(found: Diagnosis, robot: Mechanism) -> dict[str, str]:
     """The derived formulas, where no cause points at single terms."""
-    if found.agrees or robot.table is None:
+    if found.agrees or isinstance(robot, FiveBar) or robot.table is None:
         return {}
     plain, index = split_name(found.quantity)
     derived = derivation(robot.table, plain)
@@ -272,10 +276,10 @@ def _derived(found: Diagnosis, robot: Robot) -> dict[str, str]:
     return right
 
 
-def _entries(found: Diagnosis, file: FormulaFile, robot: Robot) -> Iterator[tuple[str, str]]:
+def _entries(found: Diagnosis, file: FormulaFile, robot: Mechanism) -> Iterator[tuple[str, str]]:
     """The file's entries that a diagnosis is about, with the places they claim."""
     for entry in file.formulas:
-        plain, index = split_name(quantity_of(entry, robot.table))
+        plain, index = split_name(claimed_of(entry, robot))
         label = label_of(plain, index)
         if found.quantity in (plain, label):
             yield entry, label

@@ -99,6 +99,8 @@ def exact_data(robot: Robot) -> tuple[Robot, tuple[str, ...]] | None:
 
 def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str, ...] | None:
     """Answers with another g that is the robot's rounded: 9.8, or if it may be ``whole``, 10."""
+    if case.quantity.domain is not SERIAL:
+        return None
     g = np.array(case.robot.model.gravity.linear)
     size = float(np.linalg.norm(g))
     if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():

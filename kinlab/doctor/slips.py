@@ -13,7 +13,8 @@ from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
-from kinlab.doctor.derived import derivation_of
+from kinlab.doctor.derived import Derivation
+from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
@@ -85,7 +86,7 @@ def _defined(
     None that a right formula uses, and none that makes wrong what another one has made right:
     ``every`` are the entries that were off at first.
     """
-    derived = derivation_of(case)
+    derived = reference_of(case)
     if derived is None or any(entry.label not in written for entry in off):
         return None
     wrong = {entry.label for entry in every}
@@ -150,14 +151,15 @@ def slip_cause(slips: tuple[Slip, ...]) -> Cause:
 
 
 def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]:
-    derived = derivation_of(case)
-    if derived is None:
+    derived = reference_of(case)
+    if derived is None or (text is None and not isinstance(derived, Derivation)):
         slip = terms.turned(text) if text is not None else None
         error = entry.error(-entry.hand, entry.engine)
         return [slip.with_error(error)] if slip and error <= TOLERANCES.formula_agrees else []
     poly = derived.entry(entry.index)
     arguments = case.quantity.arguments
-    if text is not None:
+    if text is not None or not isinstance(derived, Derivation):
+        assert text is not None
         found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]

@@ -14,7 +14,8 @@ from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
 from kinlab.doctor.changes import ANY_ZERO
-from kinlab.doctor.derived import LETTERS, Derivation, environment, searchable
+from kinlab.doctor.derived import POINTS, Derivation, searchable
+from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.search import Edit, Repair
 from kinlab.doctor.text.line import Line, Names, brief
 from kinlab.doctor.text.mend import Mended, mended, rewritten, together
@@ -26,7 +27,10 @@ from kinlab.host.language import N_, _
 from kinlab.symbolic.trig import Poly
 from kinlab.tolerances import TOLERANCES
 
-_POINTS = 24
+_FEWEST = 8
+"""Points at which a text must have a value."""
+_SEED = 11
+"""Of the random points at which a text is looked at."""
 _WAYS = 3
 """Repairs of one part that are tried beside those of the others."""
 _WRITTEN_OUT = 60
@@ -77,19 +81,18 @@ class Slip:
         return replace(self, error=error)
 
 
-def names_for(derived: Derivation, arguments: tuple[str, ...]) -> Names:
+def names_for(derived: Reference, arguments: tuple[str, ...]) -> Names:
     """What may stand in a formula of this quantity."""
-    arm = derived.arm
-    letters = tuple(LETTERS[a] for a in arguments if a in LETTERS)
     loads = derived.loads
-    return Names(tuple(p for p in arm.trig.parameters if p not in loads), arm.n, letters, loads)
+    own = tuple(p for p in derived.parameters if p not in loads)
+    return Names(own, derived.n, derived.letters(arguments), loads, derived.spelling)
 
 
 def in_text(
     label: str,
     written: Written,
-    derived: Derivation,
-    poly: Poly,
+    derived: Reference,
+    poly: Any,
     arguments: tuple[str, ...],
     states: dict[str, Array],
 ) -> list[Slip]:
@@ -104,17 +107,17 @@ def in_text(
     """
     if not searchable(poly):
         return []
-    here = environment(derived, states)
+    here = derived.environment(states)
     named = [name for name in derived.loads if np.any(here[name])]
     poly, names = derived.held(poly, named), names_for(derived, arguments)
     names = replace(names, loads=tuple(named))
     right = derived.tree(poly)
-    forms = [list(form.terms) for form in _forms(derived, poly)]
+    forms = [list(form.terms) for form in derived.forms(poly)]
     # other numbers first: they cannot hide a slip; then the robot's, for texts with numbers
-    own = {name: values[:_POINTS] for name, values in here.items()}
+    own = {name: values[:POINTS] for name, values in here.items()}
     # names that are not there may be there as their numbers: whole ones too
     left_out = (tree.names(right) & set(names.parameters)) - tree.names(written.node)
-    held = [float(derived.arm.values[name]) for name in left_out]
+    held = [float(derived.values[name]) for name in left_out]
     bare = tree.names(written.node).isdisjoint(names.parameters)
     numbers = any(
         not one.exponent and (bare or "." in one.text or one.value in held)
@@ -122,12 +125,13 @@ def in_text(
     )
     plain, lines = [], []
     for text in dict.fromkeys((as_meant(written, right, own) if numbers else written, written)):
-        for at in (as_rods(anywhere(names), written, derived), own)[: 1 + numbers]:
+        for of in (as_rods(derived.anywhere(_SEED), written, derived), own)[: 1 + numbers]:
+            at = _with_value(text, of)
             target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-            line = Line(text, names, at, np.array(target), forms, numeric=at is own)
+            line = Line(text, names, at, np.array(target), forms, numeric=of is own)
             lines.append(line)
             plain += [line] if text is written else []
-    free, rods = anywhere(names), as_rods(anywhere(names), written, derived)
+    free, rods = derived.anywhere(_SEED), as_rods(derived.anywhere(_SEED), written, derived)
     unlike = []
     if any(not np.array_equal(rods[name], free[name]) for name in tree.names(right) & free.keys()):
         whole = np.broadcast_to(tree.evaluate(right, free), np.shape(plain[0].target))
@@ -142,6 +146,8 @@ def in_text(
     if any(name[0] == "I" for name in tree.names(written.node)):  # who names one names them all
         tried += [(line, 1) for line in lines * bool(unlike)]
         tried += [(line, 2) for line in unlike]
+    if numbers and not isinstance(derived, Derivation):
+        tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),
@@ -161,6 +167,14 @@ def in_text(
     ]
     written, found = beside_rounded(plain[-1], apart)
     return [_mended(written, one, here) for one in found]
+
+
+def _with_value(text: Written, at: dict[str, Array]) -> dict[str, Array]:
+    """The points at which a text has a value, if they are many: a root may have none at some."""
+    known: Any = np.isfinite(text.values(at))
+    if known.all() or np.sum(known) < _FEWEST:
+        return at
+    return {name: x[known] for name, x in at.items()}
 
 
 def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], label: str) -> Slip:
@@ -184,8 +198,8 @@ def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], l
 
 def in_definitions(
     written: Written,
-    derived: Derivation,
-    poly: Poly,
+    derived: Reference,
+    poly: Any,
     arguments: tuple[str, ...],
     states: dict[str, Array],
 ) -> Iterator[Slip]:
@@ -195,10 +209,10 @@ def in_definitions(
     """
     if not written.definitions or not searchable(poly):
         return
-    here, names = environment(derived, states), names_for(derived, arguments)
+    here, names = derived.environment(states), names_for(derived, arguments)
     right = derived.tree(derived.held(poly, [name for name in derived.loads if np.any(here[name])]))
-    at = as_rods(anywhere(names), written, derived)
-    forms = [list(form.terms) for form in _forms(derived, poly)]
+    at = as_rods(derived.anywhere(_SEED), written, derived)
+    forms = [list(form.terms) for form in derived.forms(poly)]
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
     line = Line(written, names, at, np.array(target), forms)
     for name in written.definitions:
@@ -226,7 +240,7 @@ def _wanted_of(written: Written, name: str, line: Line) -> Array | None:
     return np.asarray((line.target - none) / slope)
 
 
-def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -> bool:
+def _no_coincidence(line: Line, one: Mended, right: Node, derived: Reference) -> bool:
     """Whether a repair at the robot's own numbers is one where the names in the text have others.
 
     A text with decimals may have a number in one place and its name in another.
@@ -234,12 +248,12 @@ def _no_coincidence(line: Line, one: Mended, right: Node, derived: Derivation) -
     text, own = replace(line.text, text=one.text), dict(line.at)
     if any(not n.whole and 12 * n.value % 1 and not n.exponent for n in text.literals):
         return True
-    here, other = text.values(own), anywhere(line.names)
+    here, held = text.values(own), {}
     for name in line.names.parameters:
         moved = text.values(own | {name: 1.3 * own[name]})
         if np.array_equal(moved, here):
-            other[name] = own[name]  # it stands there as a number, or not at all
-    other = as_rods(other, text, derived)
+            held[name] = float(own[name][0])  # it stands there as a number, or not at all
+    other = as_rods(derived.anywhere(_SEED, held), text, derived)
     target = tree.evaluate(right, other)
     gap = np.max(np.abs(text.values(other) - target))
     return bool(gap <= TOLERANCES.effect_matches * (np.max(np.abs(target)) or 1.0))
@@ -284,9 +298,9 @@ def _part_by_part(line: Line, right: Node) -> list[Mended]:
     return sorted(good, key=lambda m: m.cost)[:_WAYS]
 
 
-def as_rods(at: dict[str, Array], written: Written, derived: Derivation) -> dict[str, Array]:
+def as_rods(at: dict[str, Array], written: Written, derived: Reference) -> dict[str, Array]:
     """The numbers with I = m l²/12 where the robot's links are rods and the text has no I."""
-    return rods_following(at, derived.arm.values, tree.names(written.node))
+    return rods_following(at, derived.values, tree.names(written.node))
 
 
 def rods_following(
@@ -367,11 +381,11 @@ def in_function(
     if len(poly) > _WRITTEN_OUT:
         return []  # nobody has written that out term by term
     names = names_for(derived, arguments)
-    everywhere = environment(derived, states)
-    at = {name: values[:_POINTS] for name, values in everywhere.items()}
-    target = hand[:_POINTS]
+    everywhere = derived.environment(states)
+    at = {name: values[:POINTS] for name, values in everywhere.items()}
+    target = hand[:POINTS]
     right = derived.tree(poly)
-    forms = _forms(derived, poly)
+    forms = derived.forms(poly)
     cases = [search.study(form, target, at, names, []) for form in forms]
     repairs = [(c.root, r) for c in cases for r in search.single(c)]
     if repairs:
@@ -490,20 +504,3 @@ def _context(root: Node, path: tuple[int, ...], old: Node) -> str:
         return ""
     term = tree.at_path(root, path[:depth])
     return str(term) if term != old else ""
-
-
-def _forms(derived: Derivation, poly: Poly) -> list[Node]:
-    """The ways in which people write the same entry."""
-    made = [derived.tree(poly), derived.grouped(poly), derived.collected(poly)]
-    made += derived.factored(poly)
-    return list(dict.fromkeys(made))
-
-
-def anywhere(names: Names, seed: int = 11) -> dict[str, Array]:
-    """Random values for every name: positive parameters, any states."""
-    rng = np.random.default_rng(seed)
-    at = {name: rng.uniform(0.4, 2.0, _POINTS) for name in names.parameters}
-    for letter in ("q", "qd", "qdd"):
-        for i in range(names.n):
-            at[f"{letter}{i + 1}"] = rng.uniform(-2.5, 2.5, _POINTS)
-    return at | {name: rng.uniform(-2.0, 2.0, _POINTS) for name in names.loads}

@@ -12,8 +12,11 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
+from kinlab.check.quantities.fivebar import FIVEBAR
 from kinlab.doctor.changes import AnswerEntry, Case, entries, table_of
 from kinlab.doctor.derived import LETTERS, WRENCH, Derivation, derivation_of, searchable
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.regression import joint_functions
 from kinlab.doctor.rounding import (
     coefficients,
@@ -21,14 +24,13 @@ from kinlab.doctor.rounding import (
     data_rounded,
     same_values,
 )
-from kinlab.doctor.terms import anywhere, as_rods, names_for
+from kinlab.doctor.terms import as_rods, names_for
 from kinlab.doctor.text.stand_ins import FITS, FREE, Numbered, fitted, rounding_remarks, stand_ins
 from kinlab.doctor.text.written import Literal, Written
 from kinlab.errors import KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
-from kinlab.symbolic.trig import Poly
 from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
@@ -192,6 +194,8 @@ def other_form(case: Case, engine: Array, slack: float) -> str:
 
 def numbers_at(case: Case) -> dict[str, Array]:
     """Values of every name of the robot at the case's states."""
+    if case.quantity.domain is FIVEBAR:
+        return five_bar.values_at(case.robot, case.quantity, case.arguments, case.index)  # type: ignore[arg-type]
     count = len(next(iter(case.arguments.values())))
     table = table_of(case.robot)
     words = vocabulary(table).values if table is not None else {}
@@ -206,7 +210,7 @@ def numbers_at(case: Case) -> dict[str, Array]:
 
 
 def elsewhere(
-    text: Written, derived: Derivation, poly: Poly, arguments: tuple[str, ...]
+    text: Written, derived: Reference, poly: Any, arguments: tuple[str, ...]
 ) -> tuple[list[str], float]:
     """How a text that agrees at the robot's own numbers does at other ones.
 
@@ -218,37 +222,37 @@ def elsewhere(
         return [], 0.0
     names = names_for(derived, arguments)
     right = derived.tree(derived.held(poly, tree.names(text.node)))
-    states = (_one_robot(anywhere(names, seed), names.parameters) for seed in (11, 12, 13))
-    at = as_rods(anywhere(names, 10), text, derived)
+    states = (derived.another(seed) for seed in (11, 12, 13))
+    at = as_rods(derived.anywhere(10), text, derived)
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
     scale = float(np.max(np.abs(target))) or 1.0
     gap = float(np.max(np.abs(text.values(at) - target))) / scale
     if gap <= TOLERANCES.formula_agrees:
         return [], 0.0
-    own = {name: float(value) for name, value in derived.arm.values.items()}
+    own = {name: float(value) for name, value in derived.values.items()}
     whole = lambda x: tree.evaluate(right, dict(x))  # noqa: E731
     missing = tree.names(right) & set(names.parameters) - tree.names(text.node)
     if missing or holds_with_other_numbers(text, whole, states, own):
-        return _kept(text, right, own, at, missing), 0.0
+        return _kept(text, right, own, at, missing, derived), 0.0
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
     return [], gap if plain else 0.0
 
 
-def unnamed(text: Written | None, derived: Derivation, poly: Poly) -> set[str]:
+def unnamed(text: Written | None, derived: Reference, poly: Any) -> set[str]:
     """The robot's numbers in a derived entry that a text has no name for."""
     if text is None or not searchable(poly):
         return set()
     right = derived.tree(derived.held(poly, tree.names(text.node)))
-    return tree.names(right) & {*derived.arm.trig.parameters} - tree.names(text.node)
-
-
-def _one_robot(at: dict[str, Array], parameters: tuple[str, ...]) -> dict[str, Array]:
-    """The same numbers for the robot at every state."""
-    return {n: np.full_like(x, x[0]) if n in parameters else x for n, x in at.items()}
+    return tree.names(right) & {*derived.parameters} - tree.names(text.node)
 
 
 def _kept(
-    text: Written, right: Node, own: dict[str, float], at: dict[str, Array], missing: set[str]
+    text: Written,
+    right: Node,
+    own: dict[str, float],
+    at: dict[str, Array],
+    missing: set[str],
+    derived: Reference,
 ) -> list[str]:
     """The names whose change the text does not follow."""
     count = len(next(iter(at.values())))
@@ -257,8 +261,8 @@ def _kept(
     # of a rod the moment follows its mass and length, which moved alone would seem to be held
     rods = any(name[0] == "I" for name in missing)
     for name in sorted(missing if rods else own):
-        moved = {**here, name: here[name] * 1.37 + 0.1}
-        target = np.broadcast_to(tree.evaluate(right, moved), (count,))
+        moved = derived.but_for(name, here)
+        target = np.asarray(tree.evaluate(right, moved))
         gap = np.max(np.abs(text.values(moved) - target))
         if gap > TOLERANCES.formula_agrees * (float(np.max(np.abs(target))) or 1.0):
             found.append(name)
@@ -470,7 +474,7 @@ def of_bare_numbers(
     text: Written, entry: AnswerEntry, derived: Derivation, case: Case
 ) -> list[str] | None:
     """Rounded coefficients of a text without any of the robot's names, in words."""
-    if not tree.names(text.node).isdisjoint(derived.arm.trig.parameters):
+    if not tree.names(text.node).isdisjoint(derived.parameters):
         return None
     shown = [one for one in text.literals if not one.exponent]
     found = _of_function(entry, derived, case, shown)

@@ -334,9 +334,17 @@ _FUNCTIONS = set(_CALLED.split())
 """As in :mod:`kinlab.formulas.tree`, with the other names."""
 
 
+def _of_equation(found: re.Match[str], text: str) -> bool:
+    """Whether C1 stands beside A1 and B1, as in A1 cos + B1 sin = C1."""
+    return found[1] == "C" and all(
+        re.search(rf"(?<![\w.]){letter}_?{found[2]}(?!\w)", text) for letter in "AB"
+    )
+
+
 def _capitals(text: str, place: str, writing: Hand) -> str:
     """``C12`` and ``S1`` as ``c12`` and ``s1``, unless C12 may be an entry of a matrix."""
-    found = [m for m in _UPPER.finditer(text) if m[0] not in writing.known]
+    known = writing.known | {m[0] for m in _UPPER.finditer(text) if _of_equation(m, text)}
+    found = [m for m in _UPPER.finditer(text) if m[0] not in known]
     if not found:
         return text
     if not writing.capitals and not any(m[1] == "S" for m in found) and _RATES.search(text):
@@ -348,7 +356,7 @@ def _capitals(text: str, place: str, writing: Hand) -> str:
         )
 
     def small(m: re.Match[str]) -> str:
-        return m[0] if m[0] in writing.known else f"{m[1].lower()}{m[2]}"
+        return m[0] if m[0] in known else f"{m[1].lower()}{m[2]}"
 
     return _UPPER.sub(small, text)
 
@@ -495,6 +503,10 @@ _BY_DEFINITION = re.compile(
 _LONGEST_CHAIN = 8
 
 
+_EQUATION = re.compile(r"loop_?\d?")
+"""Entries that are equations: each side is one formula, a name alone too."""
+
+
 def readings(text: str, entry: str) -> list[str]:
     r"""The equations in a chain of equalities, each with one formula, the last one first.
 
@@ -502,6 +514,9 @@ def readings(text: str, entry: str) -> list[str]:
     \frac{\partial x}{\partial\theta_1} = ...`` the derivative is left out.
     """
     parts = [part.strip() for part in bare(text).split("=")]
+    dollars = "$" if is_latex(text) else ""
+    if _EQUATION.fullmatch(entry) and len(parts) == 2 and all(parts) and parts[0] != entry:
+        return [f"{dollars}{part}{dollars}" for part in reversed(parts)]
     if not 2 <= len(parts) <= _LONGEST_CHAIN or any(part[-1:] in ("", *"<>!") for part in parts):
         return [text]
     names = [part for part in parts if _is_name(part)]
@@ -514,7 +529,6 @@ def readings(text: str, entry: str) -> list[str]:
         return [text]
     formulas = [one for one in formulas if not _BY_DEFINITION.search(one)] or formulas[-1:]
     left = f"{left or names[0]} = " if names else ""
-    dollars = "$" if is_latex(text) else ""
     return [f"{dollars}{left}{formula}{dollars}" for formula in reversed(formulas)]
 
 

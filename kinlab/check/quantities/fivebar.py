@@ -103,6 +103,39 @@ def sample(
 FIVEBAR = Domain("fivebar", as_five_bar, attrgetter("name"), numbers, members, sample, DRAWS)
 
 
+def sample_open(
+    fivebar: FiveBar, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+) -> tuple[Array, ...]:
+    """Random crank angles and tool places that do not belong together, and legs (s = 1 or -1).
+
+    What a loop's equation says is seen only where the loop is open.
+    """
+    size = float(np.max(fivebar.l1 + fivebar.l2))
+    drawn = {
+        "theta": rng.uniform(-np.pi, np.pi, (count, 2)),
+        "xy": size * rng.uniform(-1.0, 1.0, (count, 2)),
+        "s": _either_leg(count),
+    }
+    return tuple(drawn[name] for name in arguments)
+
+
+def sample_legs(
+    fivebar: FiveBar, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+) -> tuple[Array, ...]:
+    """As :func:`sample`, with a leg for each state: 1 and -1 in turn."""
+    stacks = dict(zip(DRAWS, sample(fivebar, DRAWS, count, rng), strict=True))
+    return tuple({**stacks, "s": _either_leg(count)}[name] for name in arguments)
+
+
+def _either_leg(count: int) -> Array:
+    return np.where(np.arange(count) % 2, -1.0, 1.0)
+
+
+def leg_of(s: Array) -> Any:
+    """The place of each state's leg in a pair: 0 where s is 1, 1 where it is -1."""
+    return (np.asarray(s) < 0).astype(int)
+
+
 # -------- Engine quantities of a five-bar: Pinocchio's closed chain, state by state
 
 EngineCall = Callable[..., Any]
@@ -186,6 +219,21 @@ def _projection(chain: ClosedChain, theta: Array, xy: Array) -> Any:
     return 2.0 * np.sum((base - xy) * (elbow - base), axis=1)
 
 
+def _gap(chain: ClosedChain, theta: Array, xy: Array) -> Any:
+    return _rod_length(chain, theta, xy) ** 2 - np.asarray(chain.linkage.l2) ** 2
+
+
+def _equation(chain: ClosedChain, xy: Array) -> Any:
+    """A and B are the projection of a crank along x and y; C is what closes the loop."""
+    across = [_projection(chain, np.full(2, angle), xy) for angle in (0.0, np.pi / 2)]
+    return np.stack([*across, across[0] - _gap(chain, np.zeros(2), xy)], axis=1)
+
+
+def _angles(chain: ClosedChain, q: Array) -> Any:
+    u = _bars(chain, q, CRANKS)
+    return np.arctan2(u[:, 1], u[:, 0])
+
+
 def _torque(chain: ClosedChain, q: Array, v: Array, a: Array) -> Array:
     qd = chain.joint_rates(q, v)
     return chain.inverse_dynamics(q, qd, chain.joint_accelerations(q, qd, a))
@@ -193,6 +241,14 @@ def _torque(chain: ClosedChain, q: Array, v: Array, a: Array) -> Array:
 
 def _crank_accelerations(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
     return chain.joint_accelerations(q, chain.joint_rates(q, v), a)[[*CRANKS]]
+
+
+def _rods(chain: ClosedChain, q: Array) -> Any:
+    return _bars(chain, q, PASSIVE)
+
+
+def _rates(chain: ClosedChain, q: Array, v: Array) -> Any:
+    return chain.joint_rates(q, v)[[*CRANKS]]
 
 
 def _power(chain: ClosedChain, q: Array, v: Array, a: Array) -> Any:
@@ -224,6 +280,23 @@ def _quantity(
     return FIVEBAR.quantity(name, arguments, engine, about)
 
 
+def _open(name: str, arguments: str, answer: EngineCall, about: str) -> Quantity:
+    return FIVEBAR.quantity(name, arguments, _engine(answer), about, sample=sample_open)
+
+
+def _of_leg(both: Quantity) -> Quantity:
+    """The same of one leg at each state, named by its sign s."""
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        *rest, s = stacks
+        answers = both.engine(fivebar, *rest)
+        return np.asarray(answers[np.arange(len(answers)), leg_of(s)])
+
+    name, arguments = both.name.replace("_", "_leg_", 1), (*both.arguments, "s")
+    draw = both.sample or sample_legs
+    return replace(both, name=name, arguments=arguments, engine=engine, sample=draw)
+
+
 QUANTITIES = (
     _quantity("fivebar_rod_length", "theta xy", _rod_length, "elbow to tool, m, (2,)"),
     _quantity(
@@ -232,8 +305,16 @@ QUANTITIES = (
         _projection,
         "2 (A - P)·(B - A) = A cos theta + B sin theta, m², (2,)",
     ),
+    _open("fivebar_loop", "theta xy", _gap, "|elbow to tool|² - l2², m², (2,)"),
+    _open("fivebar_equation", "xy", _equation, "A, B, C of each leg, m², (2, 3)"),
+    _of_leg(_open("fivebar_loop", "theta xy", _gap, "|elbow to tool|² - l2² of a leg, m²")),
+    _of_leg(_open("fivebar_equation", "xy", _equation, "A, B, C of a leg, m², (3,)")),
+    _quantity("fivebar_angles", "xy mode", _angles, "theta_1, theta_2, rad, (2,)"),
+    _of_leg(_quantity("fivebar_angles", "xy mode", _angles, "theta of a leg, rad")),
+    _of_leg(_quantity("fivebar_rods", "xy mode", _rods, "w of a leg, (2,)")),
+    _quantity("fivebar_rates", "xy v mode", _rates, "theta_dot, rad/s, (2,)"),
     _quantity("fivebar_cranks", "xy mode", lambda c, q: _bars(c, q, CRANKS), "u_1, u_2, (2, 2)"),
-    _quantity("fivebar_rods", "xy mode", lambda c, q: _bars(c, q, PASSIVE), "w_1, w_2, (2, 2)"),
+    _quantity("fivebar_rods", "xy mode", _rods, "w_1, w_2, (2, 2)"),
     _quantity(
         "fivebar_jacobian",
         "xy mode",

@@ -12,10 +12,12 @@ from typing import Any
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, shown_entry
 from kinlab.check.quantities.registry import split_name
-from kinlab.doctor.changes import label_of
+from kinlab.doctor.changes import Mechanism, label_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.examine import examine, prepare
-from kinlab.doctor.file import examine_formulas
+from kinlab.doctor.file import as_judged, examine_formulas
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import (
     Outcome,
     lost,
@@ -29,17 +31,16 @@ from kinlab.doctor.marking.sheet import FEEDBACK, Question, Sheet
 from kinlab.doctor.marking.submission import Submission, as_entries
 from kinlab.doctor.marking.variation import robot_for
 from kinlab.doctor.program.words import WrongLines
-from kinlab.doctor.text.claims import quantity_of
+from kinlab.doctor.text.claims import claimed_of
 from kinlab.doctor.text.own_names import in_robot_names
 from kinlab.errors import ExpressionError, KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.marks import differences
 from kinlab.formulas.text import FormulaFile, formula_file, parse
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import Marks, equation
 from kinlab.host.language import N_, _
-from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
 
 _WRITTEN = 400
 
@@ -125,7 +126,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
 
 
 def _with_engine(sheet: Sheet, question: Question, student: str, file: FormulaFile) -> Outcome:
-    own = robot_for(sheet, student)
+    file, own = as_judged(file, sheet.robot), robot_for(sheet, student)
     robot = sheet.robot if own is not sheet.robot and _free_of_numbers(file, sheet, own) else own
     found = _diagnosed(_Key(robot, file), sheet.samples, sheet.seed)
     if robot is not own and all(one.agrees for one in found):
@@ -134,12 +135,11 @@ def _with_engine(sheet: Sheet, question: Question, student: str, file: FormulaFi
     return _of_diagnoses(question, found, file, robot)
 
 
-def _free_of_numbers(file: FormulaFile, sheet: Sheet, own: Robot) -> bool:
+def _free_of_numbers(file: FormulaFile, sheet: Sheet, own: Mechanism) -> bool:
     """Whether no number in the formulas could be one of the robot's."""
     values: set[float] = set()
     for robot in (sheet.robot, own):
-        if robot.table is not None:
-            values |= {abs(float(value)) for value in vocabulary(robot.table).values.values()}
+        values |= {abs(float(value)) for value in named_numbers(robot).values()}
     for node in [*file.formulas.values(), *file.symbols.values()]:
         for _path, part in tree.nodes(node):
             if part.op == "num" and (
@@ -152,7 +152,7 @@ def _free_of_numbers(file: FormulaFile, sheet: Sheet, own: Robot) -> bool:
 class _Key:
     """A robot and formulas; equal where the texts are, so that a class's same answers are one."""
 
-    def __init__(self, robot: Robot, file: FormulaFile) -> None:
+    def __init__(self, robot: Mechanism, file: FormulaFile) -> None:
         self.robot, self.file = robot, file
         typed = (item for part in (file, *file.others) for item in part.as_typed.items())
         self.texts = (id(robot), *typed, *file.symbol_texts.items())
@@ -170,13 +170,14 @@ def _diagnosed(key: _Key, samples: int, seed: int) -> tuple[Diagnosis, ...]:
 
 
 def _of_diagnoses(
-    question: Question, found: Any, file: FormulaFile | None, robot: Robot
+    question: Question, found: Any, file: FormulaFile | None, robot: Mechanism
 ) -> Outcome:
     asked = [one for one in found if split_name(one.quantity)[0] == question.plain]
     if not asked:
         said = _("{question}: none of the formulas is {entry}")
         raise ExpressionError(said.format(question=question.id, entry=question.entry))
-    if "[" not in question.quantity and any("[" in one.quantity for one in asked):
+    whole = "[" not in question.quantity
+    if whole and any("[" in one.quantity for one in asked) and not _all_given(asked, robot):
         return _in_part(question, asked, file, robot)
     if all(one.agrees for one in asked):
         return _right(question, asked, file)
@@ -194,8 +195,14 @@ def _as_read(file: FormulaFile) -> tuple[tuple[str, str], ...]:
     return tuple(equation(_named(name), formula) for name, formula in file.formulas.items())
 
 
+def _all_given(asked: list[Diagnosis], robot: Mechanism) -> bool:
+    """Whether each entry of a five-bar's whole is there, which are judged one by one."""
+    plain = split_name(asked[0].quantity)[0]
+    return isinstance(robot, FiveBar) and len(asked) == five_bar.entry_count(plain)
+
+
 def _in_part(
-    question: Question, asked: list[Diagnosis], file: FormulaFile | None, robot: Robot
+    question: Question, asked: list[Diagnosis], file: FormulaFile | None, robot: Mechanism
 ) -> Outcome:
     """Some entries of a whole: the rest is no answer."""
     wrong = [one for one in asked if not one.agrees]
@@ -206,7 +213,9 @@ def _in_part(
     return wrong_outcome(question, 0.0, ("missing entries",), place)
 
 
-def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot: Robot) -> Outcome:
+def _wrong(
+    question: Question, found: Diagnosis, file: FormulaFile | None, robot: Mechanism
+) -> Outcome:
     best = found.causes[0] if found.causes else None
     kinds = tuple(best.kinds) if best is not None else ("unknown",)
     places, formulas = _places(found, best, file, robot)
@@ -221,7 +230,7 @@ def _wrong(question: Question, found: Diagnosis, file: FormulaFile | None, robot
 
 
 def _places(
-    found: Diagnosis, best: Cause | None, file: FormulaFile | None, robot: Robot
+    found: Diagnosis, best: Cause | None, file: FormulaFile | None, robot: Mechanism
 ) -> tuple[list[str], tuple[tuple[str, str], ...]]:
     """Where to look, in the student's own words, and the formulas with those pieces marked."""
     places: list[str] = []
@@ -230,7 +239,7 @@ def _places(
         labels = [_named(place) for place in dict.fromkeys(best.places if best else ()) if place]
         return [label for label in labels if _is_place(label)], ()
     for entry, written in file.formulas.items():
-        plain, index = split_name(quantity_of(entry, robot.table))
+        plain, index = split_name(claimed_of(entry, robot))
         label = label_of(plain, index)
         right = best.corrected.get(entry, best.corrected.get(label)) if best else None
         paths: frozenset[Any] = frozenset()
@@ -259,7 +268,7 @@ def _is_place(text: str) -> bool:
     return 0 < len(text) <= 40 and "=" not in text
 
 
-def _meaning(name: str, file: FormulaFile, robot: Robot, entry: str) -> Node:
+def _meaning(name: str, file: FormulaFile, robot: Mechanism, entry: str) -> Node:
     return in_robot_names(tree.sym(name), file, robot, entry)
 
 

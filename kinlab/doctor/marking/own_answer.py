@@ -13,6 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.excuses import only_for
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.marks import Outcome, points_left, right_outcome, wrong_outcome
 from kinlab.doctor.marking.sheet import Question, Sheet, SheetError
 from kinlab.doctor.marking.variation import robot_for
@@ -21,12 +22,12 @@ from kinlab.doctor.text.stand_ins import bare_number, stand_ins
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import holds_with_other_numbers
 from kinlab.errors import ExpressionError, KinlabError, near
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical, formula_file
 from kinlab.formulas.tree import Node
 from kinlab.formulas.typeset import equation
 from kinlab.host.language import _
-from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _STATES = 60
@@ -37,7 +38,7 @@ _WORD = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 def with_answer(sheet: Sheet, question: Question, student: str, file: FormulaFile) -> Outcome:
     model = _model(sheet, question)
     robot = robot_for(sheet, student)
-    words = vocabulary(robot.table).values if robot.table is not None else {}
+    words = named_numbers(robot)
     for name in model.formulas:
         if name not in file.formulas:
             said = _("{question}: {entry} is not given")
@@ -77,8 +78,9 @@ def check_answers(sheet: Sheet) -> None:
         SheetError: one cannot be read, has no value, or has a name that is neither the robot's nor
             in the question's text: no student could know it.
     """
-    words = vocabulary(sheet.robot.table).values if sheet.robot.table is not None else {}
-    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in range(1, sheet.robot.n + 1))}
+    words = named_numbers(sheet.robot)
+    joints = range(1, 3 if isinstance(sheet.robot, FiveBar) else sheet.robot.n + 1)
+    own = {*words, *(f"{q}{k}" for q in ("q", "qd", "qdd") for k in joints)}
     for question in sheet.questions:
         if not question.answer:
             continue

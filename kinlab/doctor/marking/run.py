@@ -26,6 +26,7 @@ from kinlab.doctor.marking.results import write_marks
 from kinlab.doctor.marking.sheet import FEEDBACK, Sheet, SheetError, read_sheet, sheet_of
 from kinlab.doctor.marking.submission import Submission, found_in, of_document, read_submission
 from kinlab.errors import FileError, KinlabError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas.typeset import mathml
 from kinlab.host.files import write_text
 from kinlab.host.language import _, language
@@ -173,7 +174,9 @@ class _Work:
     def fingerprint(self, path: Path) -> str:
         digest = hashlib.sha256()
         settings = (self.level, self.run_python, language())
-        parts = (VERSION, self.sheet.text, str(self.sheet.robot.urdf), *settings)
+        robot = self.sheet.robot
+        numbers = robot.values() if isinstance(robot, FiveBar) else robot.urdf
+        parts = (VERSION, self.sheet.text, str(numbers), *settings)
         digest.update(repr(parts).encode())
         with contextlib.suppress(OSError):
             if path.is_file() and not path.is_symlink() and path.stat().st_size < 1 << 20:

@@ -35,15 +35,15 @@ from typing import Any
 
 from kinlab.check.quantities.registry import quantity as find_quantity
 from kinlab.check.quantities.registry import split_name
-from kinlab.check.quantities.serial import SERIAL
+from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.examine import prepare
+from kinlab.doctor.linkages.mechanisms import domain_of, mechanism_beside
 from kinlab.doctor.marking.words import KINDS
-from kinlab.doctor.text.claims import quantity_of, whole_of
+from kinlab.doctor.text.claims import claimed_of, whole_claimed
 from kinlab.errors import FileError, KinlabError, near
+from kinlab.fivebar import FiveBar
 from kinlab.formulas.typed import entry_name
 from kinlab.host.files import read_text, read_toml
-from kinlab.model.library import load
-from kinlab.model.robot import Robot
 
 FEEDBACK = ("verdict", "place", "cause", "answer")
 """How much a student is told, from little to all."""
@@ -119,7 +119,7 @@ class Sheet:
 
     place: str
     title: str
-    robot: Robot
+    robot: Mechanism
     feedback: str
     questions: tuple[Question, ...]
     variation: Variation | None = None
@@ -182,19 +182,18 @@ def sheet_of(document: Mapping[str, Any], place: str, text: str = "") -> Sheet:
     )
 
 
-def _robot(document: Mapping[str, Any], place: str) -> Robot:
+def _robot(document: Mapping[str, Any], place: str) -> Mechanism:
     name = document.get("robot")
     if not isinstance(name, str) or not name:
         raise SheetError(f'{place}: robot is missing; write robot = "planar2r" or a path')
-    beside = Path(place).parent / name
     try:
-        return load(beside if beside.suffix and beside.is_file() else name)
+        return mechanism_beside(name, place)
     except KinlabError as problem:
         raise SheetError(f"{place}: robot: {problem}") from None
 
 
 def _question(
-    row: Mapping[str, Any], robot: Robot, common: Mapping[str, float], place: str
+    row: Mapping[str, Any], robot: Mechanism, common: Mapping[str, float], place: str
 ) -> Question:
     _refuse_unknown(row, _QUESTION, place)
     name = row.get("id")
@@ -231,10 +230,10 @@ def _question(
     )
 
 
-def _require_own(entry: str, robot: Robot, place: str) -> None:
+def _require_own(entry: str, robot: Mechanism, place: str) -> None:
     """Refuses a name for an own answer that asks the engine, which would go unheard."""
     try:
-        known = whole_of(entry, robot.table) or quantity_of(entry, robot.table) if entry else ""
+        known = whole_claimed(entry, robot) or claimed_of(entry, robot) if entry else ""
     except KinlabError:
         return
     if known:
@@ -244,20 +243,20 @@ def _require_own(entry: str, robot: Robot, place: str) -> None:
         )
 
 
-def _asked(row: Mapping[str, Any], entry: str, robot: Robot, place: str) -> str:
+def _asked(row: Mapping[str, Any], entry: str, robot: Mechanism, place: str) -> str:
     quantity = _text(row, "quantity", place)
     if not quantity:
-        quantity = whole_of(entry, robot.table) or quantity_of(entry, robot.table)
+        quantity = whole_claimed(entry, robot) or claimed_of(entry, robot)
     plain, index = split_name(quantity)
     if any(isinstance(k, slice) for k in index):
         raise SheetError(f"{place}: {quantity} is a range; ask for one entry, or for all")
-    if find_quantity(plain).domain is not SERIAL:
-        raise SheetError(f"{place}: {plain} is no quantity of a serial arm; give an answer")
+    if find_quantity(plain).domain is not domain_of(robot):
+        raise SheetError(f"{place}: {plain} is no quantity of {robot.name}; give an answer")
     try:
         prepare(robot, plain, index, 10, 0)
     except IndexError:
-        asked = entry or quantity
-        raise SheetError(f"{place}: {robot.name} of {robot.n} joints has no {asked}") from None
+        kind = "" if isinstance(robot, FiveBar) else f" of {robot.n} joints"
+        raise SheetError(f"{place}: {robot.name}{kind} has no {entry or quantity}") from None
     return quantity
 
 
@@ -286,13 +285,13 @@ def _slips(value: Any, place: str) -> dict[str, float]:
     return costs
 
 
-def _variation(value: Any, robot: Robot, place: str) -> Variation | None:
+def _variation(value: Any, robot: Mechanism, place: str) -> Variation | None:
     if value is None:
         return None
     if not isinstance(value, dict):
         raise SheetError(f"{place}: {type(value).__name__}; write seed and spread")
     _refuse_unknown(value, ("seed", "names", "spread"), place)
-    if robot.table is None:
+    if isinstance(robot, FiveBar) or robot.table is None:
         raise SheetError(f"{place}: {robot.name} has no DH table; only such a robot can be varied")
     names = value.get("names", [])
     if not isinstance(names, list) or not all(isinstance(name, str) for name in names):

@@ -20,8 +20,9 @@ from typing import Any
 
 from kinlab.check.diagnosis import ENTRY_LETTERS, shown_entry
 from kinlab.check.quantities.registry import split_name
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.sheet import Question, Sheet
-from kinlab.doctor.text.claims import quantity_of, whole_of
+from kinlab.doctor.text.claims import claimed_of, whole_claimed
 from kinlab.errors import ExpressionError, FileError, KinlabError
 from kinlab.formulas.lines import read_lines
 from kinlab.formulas.typed import (
@@ -37,7 +38,6 @@ from kinlab.formulas.typed import (
 )
 from kinlab.host.files import read_text
 from kinlab.host.language import _
-from kinlab.symbolic.vocabulary import vocabulary
 
 LARGEST = 256 * 1024
 """Bytes of a submission above which it is not read."""
@@ -351,8 +351,7 @@ def _own_names(
 
     A line for one of the robot's numbers, or for a joint, is a remark.
     """
-    table = sheet.robot.table
-    known = {*vocabulary(table).values} if table is not None else set()
+    known = {*named_numbers(sheet.robot)}
     found: dict[str, str] = {}
     texts = [text for given in answers.values() for text in given.values()]
     while texts:
@@ -397,7 +396,7 @@ def _asked(left: str, sheet: Sheet, writing: Hand) -> tuple[Question | None, str
         if name in (question.entry, question.id, shown_entry(question.quantity), *question.answer):
             return question, name
     try:
-        plain, index = split_name(quantity_of(name, sheet.robot.table))
+        plain, index = split_name(claimed_of(name, sheet.robot))
     except KinlabError:
         return next(
             ((q, name) for q in sheet.questions if q.plain and name == _head(q)), (None, "")
@@ -445,7 +444,7 @@ def as_entries(question: Question, given: Mapping[str, str], sheet: Sheet) -> di
 
 def _names(question: Question, said: str, sheet: Sheet) -> bool:
     """Whether a name is the question's, as books have it or by its only joint: tau of tau1."""
-    table = sheet.robot.table
+    robot = sheet.robot
     with suppress(ExpressionError):
-        return question.quantity in (whole_of(said, table) or quantity_of(said, table), said)
+        return question.quantity in (whole_claimed(said, robot) or claimed_of(said, robot), said)
     return False

@@ -10,8 +10,11 @@ from typing import Any
 
 import numpy as np
 
+from kinlab.doctor.changes import Mechanism
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.marking.sheet import Sheet, Variation
 from kinlab.errors import already_said
+from kinlab.fivebar import FiveBar
 from kinlab.model.dh import DHTable
 from kinlab.model.link import DHLink
 from kinlab.model.robot import Robot
@@ -22,22 +25,21 @@ _AXES = "xyz"
 _TENSOR = re.compile(r"I[xyz]{2}(\d+)")
 
 
-def robot_for(sheet: Sheet, student: str) -> Robot:
+def robot_for(sheet: Sheet, student: str) -> Mechanism:
     """The robot with the numbers of one student; the sheet's own where nothing is varied.
 
     Args:
         sheet: the sheet.
         student: the id; upper and lower case are the same student.
     """
-    if sheet.variation is None or sheet.robot.table is None:
+    if sheet.variation is None or isinstance(sheet.robot, FiveBar):
         return sheet.robot
     return _varied(sheet.robot, sheet.variation, student.strip().lower())
 
 
 def numbers_for(sheet: Sheet, student: str) -> dict[str, float]:
     """What each name stands for, for one student; empty without a DH table."""
-    table = robot_for(sheet, student).table
-    return dict(vocabulary(table).values) if table is not None else {}
+    return named_numbers(robot_for(sheet, student))
 
 
 @lru_cache(maxsize=512)

@@ -17,7 +17,7 @@ from kinlab.arrays import Array
 from kinlab.doctor.text.line import (
     Line,
     Place,
-    inside_call,
+    inside_wave,
     is_product,
     is_sum,
     is_term,
@@ -42,7 +42,7 @@ def study(line: Line) -> None:
     if line.changes:
         return
     for place in list(line.places):
-        if inside_call(place) or _is_exponent(place):
+        if inside_wave(place) or _is_exponent(place):
             continue
         node = place.node
         if isinstance(node, ast.Name):
@@ -185,6 +185,10 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
         inside = parse(ast.unparse(node.args[0]))
         mapped = {w: _meaning(line, w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+    elif tree.SYNONYMS.get(name, name) == "atan2":
+        y, x = line.siblings[id(place)]
+        turned = f"{name}({line.segment(x)}, {line.segment(y)})"
+        line.instead(place, turned, np.arctan2(x.value, y.value), "argument", 1.2)
 
 
 def _meaning(line: Line, word: str) -> Node:
@@ -305,6 +309,13 @@ def _as_factor(line: Line, place: Place) -> None:
         behind = place.span[1] + (closed.end() if closed else 0)
         squared = (behind, behind, "**2") if outside else None
         line.instead(place, f"{wrapped}**2", place.value**2, "power", cost, squared)
+    if _is_divisor(place):
+        alone = _in_brackets(line, place)
+        for name, value in line.atoms.items():
+            for power, more in ((1, 0.0), (2, 0.4)):
+                word = name if power == 1 else f"{name}**{power}"
+                new = f"{word}*{wrapped}" if alone else f"({word}*{wrapped})"
+                line.instead(place, new, place.value * value**power, "missing factor", 1.5 + more)
     if not is_term(place):
         return
     start, end = place.span
@@ -414,7 +425,7 @@ def _as_term(line: Line, place: Place) -> None:
     """Terms that are missing in a sum between parentheses."""
     node = place.node
     chain = is_sum(node) and not (place.above is not None and is_sum(place.above.node))
-    if not chain or place.above is None:
+    if place.above is None or not (chain or (is_product(node) and _in_brackets(line, place))):
         return
     inside = line.segment(place)
     there = [_factors(line, term) for term in re.split(r"[-+]", inside)]
@@ -426,6 +437,13 @@ def _as_term(line: Line, place: Place) -> None:
             shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
             span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
             line.edit(place, place.value + added, span, "missing term", cost, told, shown)
+
+
+def _in_brackets(line: Line, place: Place) -> bool:
+    """Whether a piece stands in parentheses of its own: a sum may have stood there."""
+    start, end = place.span
+    before, behind = line.source[:start].rstrip(), line.source[end:].lstrip()
+    return bool(re.search(r"(?<!\w)\($", before)) and behind.startswith(")")
 
 
 def _factors(line: Line, term: str) -> list[str]:
@@ -453,6 +471,13 @@ def _is_exponent(place: Place) -> bool:
             return True
         place = place.above
     return False
+
+
+def _is_divisor(place: Place) -> bool:
+    """Whether a piece that is no number is what something is divided by."""
+    above = place.above.node if place.above is not None else None
+    divided = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Div)
+    return divided and place.role == 1 and not isinstance(place.node, ast.Constant)
 
 
 def _is_base(place: Place) -> bool:

@@ -13,16 +13,17 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.check.quantities.registry import quantities
-from kinlab.doctor.changes import Case
+from kinlab.doctor.changes import Case, Mechanism
 from kinlab.doctor.derived import WRENCH
+from kinlab.doctor.linkages import five_bar
 from kinlab.doctor.text.joints import joint_claimed
 from kinlab.errors import ExpressionError
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.signs.refusals import near_names
 from kinlab.formulas.text import FormulaFile, canonical
 from kinlab.host.language import _
 from kinlab.model.dh import DHTable
-from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import is_planar, vocabulary
 
 _VECTORS = {
@@ -62,6 +63,24 @@ _CUBE = re.compile(r"D_?(\d)_?(\d)_?(\d)")
 _TURNING = re.compile(r"J_?w_?(\d)_?(\d)")
 _PLACE = re.compile(r"p_([xyz])")
 _DETERMINANT = re.compile(r"\\?det ?\(?J\)?|\\?det|\|J\|")
+
+
+def claimed_of(entry: str, robot: Mechanism) -> str:
+    """The quantity that an entry's name stands for, of an arm or of a five-bar.
+
+    Raises:
+        ExpressionError: a name that says nothing.
+    """
+    if isinstance(robot, FiveBar):
+        return five_bar.claimed(entry)
+    return quantity_of(entry, robot.table)
+
+
+def whole_claimed(entry: str, robot: Mechanism) -> str:
+    """The whole vector or matrix that a letter alone is, or ``""``."""
+    if isinstance(robot, FiveBar):
+        return five_bar.whole_claimed(entry)
+    return whole_of(entry, robot.table)
 
 
 def quantity_of(entry: str, table: DHTable | None) -> str:
@@ -133,13 +152,15 @@ _SPELT = re.compile(r"([fFnNM])_?([xyz])")
 _MOVING = re.compile(r"qdd?\d+|m\d+|g")
 
 
-def with_forces(file: FormulaFile, robot: Robot) -> FormulaFile:
+def with_forces(file: FormulaFile, robot: Mechanism) -> FormulaFile:
     """The file with fx for F_x, nz for M_z, where nothing else is called so.
 
     Args:
         file: the formulas.
         robot: whose they are.
     """
+    if isinstance(robot, FiveBar):
+        return file
     taken = set(vocabulary(robot.table).values) if robot.table is not None else set()
     used = {name for node in file.formulas.values() for name in tree.names(node)}
     meant = {}

@@ -9,11 +9,13 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
+from kinlab.doctor.changes import Mechanism
+from kinlab.doctor.linkages import five_bar
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.text import FormulaFile, canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
-from kinlab.model.robot import Robot
 from kinlab.symbolic.vocabulary import Linear, vocabulary
 
 _INDEXED = re.compile(r"([A-Za-z]+)(\d*)")
@@ -27,13 +29,15 @@ NOTHING = "0"
 """What a name of a book's stands for where the robot has none of it."""
 
 
-def with_habits(file: FormulaFile, robot: Robot) -> FormulaFile:
+def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
     """The file with a meaning for each name that has one by habit.
 
     Args:
         file: the formulas.
         robot: whose they are.
     """
+    if isinstance(robot, FiveBar):
+        return five_bar.with_habits(file, robot)
     if robot.table is None:
         return file
     file = _with_entries(file)

@@ -39,12 +39,14 @@ class Names:
         n: number of joints.
         letters: which of q, qd, qdd the quantity depends on.
         loads: parts of a wrench, fx, nz, ...
+        spelling: how the joints are written where the writer has none of them: theta1 for q1.
     """
 
     parameters: tuple[str, ...]
     n: int
     letters: tuple[str, ...]
     loads: tuple[str, ...] = ()
+    spelling: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def angles(self) -> tuple[Node, ...]:
@@ -191,7 +193,7 @@ class Line:
                 found.setdefault(meaning, name)
         for meaning, word in joint_spelling(words_in(self.source), self.names.n).items():
             found.setdefault(meaning, word)
-        return found
+        return {**self.names.spelling, **found}
 
     @cached_property
     def short(self) -> bool:
@@ -273,7 +275,8 @@ class Line:
         """Notes a change by what it does to the whole."""
         if self.numeric and change.kind in _NAMED and _in_proportion(place.value, new):
             return  # at the robot's own numbers that is any other number of the place
-        effect = self.climbed(place, new) - self.root.value
+        with np.errstate(invalid="ignore"):
+            effect = self.climbed(place, new) - self.root.value
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
@@ -391,10 +394,15 @@ def is_term(place: Place) -> bool:
     return is_sum(above.node)
 
 
-def inside_call(place: Place) -> bool:
+_WAVES = ("sin", "cos", "tan")
+
+
+def inside_wave(place: Place) -> bool:
+    """Whether a place is in the angle of a sine, which is looked at as a whole."""
     while place.above is not None:
         place = place.above
-        if isinstance(place.node, ast.Call):
+        node = place.node
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") in _WAVES:
             return True
     return False
 

@@ -46,7 +46,8 @@ class Meanings:
     @classmethod
     def at(cls, values: Mapping[str, Array]) -> Meanings:
         """From the values of all names at some states."""
-        own = (name for name in values if name[0] != "q" and name not in WRENCH)
+        still = (name for name in values if name[0] != "q" and name not in WRENCH)
+        own = (name for name in still if np.all(values[name] == values[name][0]))
         return cls({name: float(values[name][0]) for name in own})
 
     @cached_property

@@ -16,7 +16,7 @@ from kinlab.doctor.text.line import (
     Change,
     Line,
     Place,
-    inside_call,
+    inside_wave,
     is_product,
     is_sum,
     is_term,
@@ -86,7 +86,7 @@ def _in_products(line: Line, effects: Array, wanted: Array) -> list[tuple[int, .
     found: list[tuple[int, ...]] = []
     for place in line.places:
         whole = place is line.root  # a factor of all of it, and a slip in it
-        if not is_term(place) or inside_call(place) or (is_sum(place.node) and not whole):
+        if not is_term(place) or inside_wave(place) or (is_sum(place.node) and not whole):
             continue
         inside = _inside(line, place)
         if len(inside) > 1:

@@ -7,18 +7,20 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
+from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.derived import LETTERS, WRENCH
+from kinlab.doctor.linkages import five_bar
+from kinlab.doctor.linkages.named_numbers import named_numbers
 from kinlab.doctor.text.joints import given_names
 from kinlab.doctor.text.meanings import Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Written, literal
+from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree, typed
 from kinlab.formulas.retyped import Typing
 from kinlab.formulas.signs.refusals import near_names, refused
 from kinlab.formulas.text import MOST_NODES, FormulaFile, canonical, parse, tidied
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_, _
-from kinlab.model.robot import Robot
-from kinlab.symbolic.vocabulary import vocabulary
 from kinlab.tolerances import TOLERANCES
 
 _OF_LINK = re.compile(r"(?:alpha|w)_?[2-9]")
@@ -27,15 +29,19 @@ DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
 _JOINT = re.compile(r"(?:theta|th|q)_?\d+")
 
 
-def in_robot_names(text: Node, file: FormulaFile, robot: Robot, entry: str) -> Node:
+def in_robot_names(text: Node, file: FormulaFile, robot: Mechanism, entry: str) -> Node:
     """A formula with the robot's own names in place of the user's.
 
     Raises:
         ExpressionError: a name without a meaning; the message names the entry.
     """
-    words = vocabulary(robot.table).values if robot.table is not None else {}
-    known = {*words, *(f"{letter}{i + 1}" for letter in LETTERS.values() for i in range(robot.n))}
-    known |= {*given_names(entry, robot.table), *WRENCH}
+    words = named_numbers(robot, entry)
+    if isinstance(robot, FiveBar):
+        known = {*words, *five_bar.known_names(entry)}
+    else:
+        joints = range(1, robot.n + 1)
+        known = {*words, *(f"{letter}{i}" for letter in LETTERS.values() for i in joints)}
+        known |= {*given_names(entry, robot.table), *WRENCH}
     place = f"{file.path}: {entry}"
     _refuse_large(text, file, place, {}, ())
     return _resolved(text, file, words, known, place)
@@ -146,9 +152,9 @@ def may_be(digits: str, value: float) -> bool:
     return gap <= max(TOLERANCES.same_number * abs(value), 1.0001 * one.reach)
 
 
-def written_as(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Written:
+def written_as(entry: str, node: Node, file: FormulaFile, robot: Mechanism) -> Written:
     """A formula with what its writer's names stand for."""
-    words = vocabulary(robot.table).values if robot.table is not None else {}
+    words = named_numbers(robot, entry)
     known: dict[str, Node] = {}
     texts: dict[str, str] = {}
     rounded: dict[str, str] = {}
@@ -165,6 +171,8 @@ def written_as(entry: str, node: Node, file: FormulaFile, robot: Robot) -> Writt
                 rounded[name] = _("{name} = {written} stands for {meant:.10g}").format(
                     name=name, written=texts[name], meant=exact
                 )
+    if isinstance(robot, FiveBar):
+        texts = five_bar.of_entry(texts, entry)
     inside = tree.names(file.formulas[entry])
     used = [note for name, note in rounded.items() if name in inside]
     written = file.texts[entry]
@@ -190,12 +198,12 @@ def typing_of(entry: str, file: FormulaFile) -> Typing | None:
 # -------- Constants that are written as rounded decimals
 
 
-def constants_named(file: FormulaFile, robot: Robot) -> tuple[FormulaFile, dict[str, str]]:
+def constants_named(file: FormulaFile, robot: Mechanism) -> tuple[FormulaFile, dict[str, str]]:
     """The file with names for decimals that are g or an angle rounded, and what is to be said.
 
     A slip is told beside a rounded number only where the number is read as what it stands for.
     """
-    words = vocabulary(robot.table).values if robot.table is not None else {}
+    words = named_numbers(robot)
     said: dict[str, str] = {}
     numbers: dict[str, str] = {}
     meant: dict[str, str] = {}

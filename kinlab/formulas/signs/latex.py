@@ -42,6 +42,8 @@ _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
 _LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
+_OF_TOOL = ("x", "y")
+"""Coordinates of the tool, whose rates a five-bar's formulas have."""
 _DOTS = {r"\dot": "d", r"\ddot": "dd"}
 _BRACES = {r"\{": "(", r"\}": ")"}
 _WITHOUT = N_("a function without parentheses before {text}")
@@ -338,12 +340,14 @@ class _Reader:
         return text
 
     def bare_argument(self, name: str) -> str:
+        doubtful = False
         if self.next in _FRACTIONS:
             inside = self.atom()
         else:
             number = f"{self.single()}*" if self.next[:1].isdigit() else ""
             inside = number + self.name()
-        if "**" in inside or self.next == "^":
+            doubtful = "**" in inside
+        if doubtful or self.next == "^":
             raise self.unsure(
                 _("a power behind {text}").format(text=rf"\{name} {inside.partition('*')[0]}"),
                 _(r"write \{name}^2(...), or parentheses around the angle").format(name=name),
@@ -366,7 +370,7 @@ class _Reader:
             below = below or self.subscript()
         else:
             head, below = self.letter(), self.subscript()
-        if dots and head not in ("q", "theta", "d"):
+        if dots and head not in ("q", "theta", "d", *_OF_TOOL):
             raise refused(
                 self.place,
                 N_("LaTeX: a dot over {head}; only over q, theta and a slide's d"),

@@ -1,0 +1,215 @@
+"""A five-bar's answers that are as right as the engine's own: an equation times a factor, a branch.
+
+A, B, C and the loop's equation are right with any common factor; a crank's angle on either branch,
+and with whole turns more or less.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from kinlab.arrays import Array
+from kinlab.check.compare import relative_errors
+from kinlab.check.diagnosis import Diagnosis
+from kinlab.check.quantities.fivebar import leg_of
+from kinlab.check.quantities.quantity import Quantity
+from kinlab.check.quantities.registry import quantities
+from kinlab.doctor.changes import Case
+from kinlab.doctor.linkages.five_bar import is_either
+from kinlab.doctor.linkages.looked_up import looked_up
+from kinlab.doctor.text.written import Written
+from kinlab.fivebar import FiveBar
+from kinlab.host.language import _
+from kinlab.tolerances import TOLERANCES
+
+Judge = Callable[[Case, Array, Array], Diagnosis]
+"""From a case, the answers and the right ones to what is said of them."""
+
+_FACTORS = {
+    "1": (1.0, 0), "-1": (-1.0, 0), "1/2": (0.5, 0), "-1/2": (-0.5, 0), "2": (2.0, 0),
+    "-2": (-2.0, 0), "1/(2*l1)": (0.5, -1), "-1/(2*l1)": (-0.5, -1), "1/l1": (1.0, -1),
+    "-1/l1": (-1.0, -1),
+}  # fmt: skip
+"""What an equation may be multiplied by, the likeliest first: a number, and a power of l1."""
+_SIDES = {"1": (1.0, 0), "-1": (-1.0, 0)}
+"""The same of the loop's equation, by the side on which it stands."""
+_HALF = 2
+"""Of an angle as twice another, whose cosine is below zero where A + C is."""
+_TRIED = 4
+"""Answers beside which slips are looked for."""
+
+
+@dataclass(frozen=True)
+class AsRight:
+    """One way of being right.
+
+    Attributes:
+        case: with the quantity that answers so.
+        factor: what an equation is multiplied by, ``"1"``.
+    """
+
+    case: Case
+    factor: str = "1"
+
+    @property
+    def answers(self) -> Array:
+        """The right answers."""
+        return np.asarray(self.case.answer(()), dtype=float)
+
+    def near(self, hand: Array) -> Array:
+        """The answers without the whole turns by which an angle is off."""
+        if not self.case.quantity.name.endswith("angles"):
+            return hand
+        with np.errstate(invalid="ignore"):
+            return np.asarray(hand - 2 * np.pi * np.round((hand - self.answers) / (2 * np.pi)))
+
+    def holds(self, hand: Array, text: Written) -> bool:
+        """Whether a text that answers so is right, and of other five-bars if it has no numbers."""
+        error = float(np.max(relative_errors(self.near(hand), self.answers)))
+        if error > TOLERANCES.formula_agrees or any(one.half for one in text.literals):
+            return error <= TOLERANCES.formula_agrees
+        other = looked_up(self.case)
+        return other is None or other.holds(text)
+
+
+def ways(case: Case) -> list[AsRight]:
+    """All the ways in which an entry of a five-bar may be right; the engine's is the first."""
+    name = case.quantity.name
+    if name.endswith("_equation"):
+        return [_times(case, factor) for factor in _FACTORS]
+    if name.endswith("_loop"):
+        return [*(_times(case, side) for side in _SIDES), AsRight(_lengths(case))]
+    if name.endswith("_angles"):
+        return [
+            AsRight(_branch(case, sign, turn)) for turn in (0, 1, -1, _HALF) for sign in (1.0, -1.0)
+        ]
+    return [AsRight(case)]
+
+
+def judged_kindly(case: Case, hand: Array, text: Written, factor: str, judge: Judge) -> Diagnosis:
+    """The diagnosis beside the way of being right that answers are nearest to.
+
+    Args:
+        case: of one entry.
+        hand: its text's answers.
+        text: the text.
+        factor: of an equation, the factor of the other formulas of its leg; ``""`` of none.
+        judge: judges the answers beside right ones.
+    """
+    every = [way for way in ways(case) if factor in ("", way.factor)]
+    if len(every) == 1:
+        return _said(every[0], judge(every[0].case, every[0].near(hand), every[0].answers))
+    right = [way for way in every if way.holds(hand, text)]
+    if not right and case.quantity.name.endswith("angles"):
+        every.sort(key=lambda way: (_typical(way, hand), _turns(way, hand)))
+    best: Diagnosis | None = None
+    for way in right or every[:_TRIED]:
+        found = _said(way, judge(way.case, way.near(hand), way.answers))
+        if found.agrees or _slips(found) == 1:
+            return found
+        if best is None or _slips(found) < _slips(best):
+            best = found
+    assert best is not None
+    return best
+
+
+def _slips(found: Diagnosis) -> float:
+    """How many slips a diagnosis names; infinite where it knows none."""
+    return len(found.causes[0].kinds) if found.causes else math.inf
+
+
+def common_factor(cases: Iterable[tuple[Case, Array, Written]]) -> str:
+    """The factor with which most formulas of a leg's equation are right; ``""`` where none is."""
+    right = dict.fromkeys(_FACTORS, 0)
+    for case, hand, text in cases:
+        for way in ways(case):
+            right[way.factor] += way.holds(hand, text)
+    best = max(right, key=lambda factor: right[factor])
+    return best if right[best] else ""
+
+
+def _typical(way: AsRight, hand: Array) -> float:
+    gap = np.abs(way.near(hand) - way.answers)
+    return float(np.median(np.where(np.isfinite(gap), gap, np.inf)))
+
+
+def _turns(way: AsRight, hand: Array) -> float:
+    return float(np.mean(np.abs(np.nan_to_num(way.near(hand) - hand))))
+
+
+def _said(way: AsRight, found: Diagnosis) -> Diagnosis:
+    if way.factor == "1":
+        return found
+    told = _("the equation is multiplied by {factor}").format(factor=way.factor)
+    if found.agrees:
+        return replace(found, form=found.form or "unusual", remarks=(*found.remarks, told))
+    return found
+
+
+def _with_engine(case: Case, answer: Callable[..., Any]) -> Case:
+    quantity: Quantity = replace(case.quantity, engine=answer)
+    return replace(case, quantity=quantity)
+
+
+def _times(case: Case, factor: str) -> AsRight:
+    number, power = {**_FACTORS, **_SIDES}[factor]
+    if factor == "1":
+        return AsRight(case)
+    plain = case.quantity.engine
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        found = np.asarray(plain(fivebar, *stacks))
+        lengths = _of_leg(case, fivebar, dict(zip(case.quantity.arguments, stacks, strict=True)))
+        sizes = number * lengths**power
+        return found * sizes.reshape(sizes.shape + (1,) * (found.ndim - sizes.ndim))
+
+    return AsRight(_with_engine(case, engine), factor)
+
+
+def _of_leg(case: Case, fivebar: FiveBar, given: Mapping[str, Any]) -> Array:
+    """l1 of each state's leg, (N,), or of both, (N, 2)."""
+    if is_either(case.quantity.name):
+        return np.asarray(fivebar.l1[leg_of(given["s"])])
+    return np.broadcast_to(fivebar.l1, (len(given["xy"]), 2))
+
+
+def _lengths(case: Case) -> Case:
+    """The loop's equation as lengths: |elbow to tool| - l2."""
+    plain = case.quantity.engine
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        given = dict(zip(case.quantity.arguments, stacks, strict=True))
+        rods = fivebar.l2[leg_of(given["s"])] if "s" in given else fivebar.l2
+        return np.sqrt(np.asarray(plain(fivebar, *stacks)) + rods**2) - rods
+
+    return _with_engine(case, engine)
+
+
+def _branch(case: Case, sign: float, turn: int) -> Case:
+    """A crank's angle where u x w has one sign, with the whole turns that a formula gives it.
+
+    In (-pi, pi] as 2 atan(...) has it, around atan2(B, A) or its back, or as 2 atan2(..., A + C).
+    """
+    plain = case.quantity.engine
+
+    def engine(fivebar: FiveBar, *stacks: Any) -> Array:
+        given = dict(zip(case.quantity.arguments, stacks, strict=True))
+        given["mode"] = np.full_like(np.asarray(given["mode"], dtype=float), sign)
+        angle = np.asarray(plain(fivebar, *given.values()))
+        if not turn:
+            return angle
+        found = quantities()["fivebar_equation"].engine(fivebar, given["xy"])
+        if "s" in given:
+            found = found[np.arange(len(found)), leg_of(given["s"])]
+        a, b, c = np.moveaxis(found, -1, 0)
+        if turn == _HALF:
+            return np.asarray(angle - 2 * np.pi * np.sign(angle) * (a + c < 0))
+        middle = np.arctan2(turn * b, turn * a)
+        return np.asarray(middle + np.arctan2(np.sin(angle - middle), np.cos(angle - middle)))
+
+    return _with_engine(case, engine)

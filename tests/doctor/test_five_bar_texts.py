@@ -1,0 +1,243 @@
+"""Formulas of the five-bar as text: note 003 and Huang et al. 2005, right, misprinted, and slips.
+
+The engine is the second road: every slip that is named is put right, and the corrected formula is
+judged again.
+"""
+
+from __future__ import annotations
+
+import pytest
+
+import kinlab as kl
+from kinlab.errors import ExpressionError
+
+LOOP = "(e + l1*cos(theta1) - x)**2 + (l1*sin(theta1) - y)**2 - l2**2"
+C1 = "l2**2 - l1**2 - e**2 - x**2 - y**2 + 2*e*x"
+TAN = "2*atan((B1 + sqrt(A1**2 + B1**2 - C1**2))/(A1 + C1))"
+ACOS = "atan2(B1, A1) + acos(C1/sqrt(A1**2 + B1**2))"
+TRIANGLE = (
+    "atan2(y, x - e) + acos((l1**2 + (x - e)**2 + y**2 - l2**2)/(2*l1*sqrt((x - e)**2 + y**2)))"
+)
+J11 = "w1x/(l1*(u1x*w1y - u1y*w1x))"
+IN_XY = "(x - e - l1*cos(theta1))/(l1*(y*cos(theta1) - (x - e)*sin(theta1)))"
+RATE = "(w1x*vx + w1y*vy)/(l1*(u1x*w1y - u1y*w1x))"
+TURN = (
+    "J11*ax + J12*ay + ((vx*w1x + vy*w1y)**2*(u1x*w1x + u1y*w1y)/l1"
+    " + (vx*u1x + vy*u1y)**2/l2)/(l1*uHw1**3)"
+)
+TORQUE = "I_A*thetadd1 + m1*lc1*g*cos(theta1) + m*(J22*ax - J21*(ay + g))/(J11*J22 - J12*J21)"
+GAIN = "I_A*J12 - m*J21/(J11*J22 - J12*J21)"
+
+RIGHT = [
+    ("loop1", LOOP),
+    ("loop1", r"$(e + l_1\cos\theta_1 - x)^2 + (l_1\sin\theta_1 - y)^2 = l_2^2$"),
+    ("loop1", "sqrt((e + l1*cos(theta1) - x)^2 + (l1*sin(theta1) - y)^2) = l2"),
+    ("loop1", "2*(e - x)*l1*cos(theta1) - 2*y*l1*sin(theta1) = " + C1),
+    ("loop", "(s*e + l1*cos(theta) - x)**2 + (l1*sin(theta) - y)**2 = l2**2"),
+    ("loop2", "(-e + l1*cos(θ_2) - x)² + (l1*sin(θ_2) - y)² = l2²"),
+    ("A1", "2*(e - x)*l1"), ("A", "2*(s*e - x)*l1"), ("A_2", "-2*l_1*(x + e)"),
+    ("B1", "-2*y*l1"), ("B", "-2 y l_1"),
+    ("C1", C1), ("C1", "l2^2 - l1^2 - (x - e)^2 - y^2"),
+    ("C", r"$l_2^2 - l_1^2 - e^2 - x^2 - y^2 + 2 s e x$"), ("C2", C1.replace("+ 2", "- 2")),
+    ("theta1", TAN), ("theta1", TAN.replace("+ sqrt", "- sqrt")), ("theta_1", ACOS),
+    ("theta1", ACOS.replace("+ acos", "- acos")), ("theta1", TRIANGLE),
+    ("theta1", "2*atan2(B1 - sqrt(A1^2 + B1^2 - C1^2), A1 + C1)"),
+    ("theta1", r"$2\arctan\frac{B_1 \pm \sqrt{A_1^2 + B_1^2 - C_1^2}}{A_1 + C_1}$".replace(r"\pm", "+")),
+    ("theta", "2*atan((B + sqrt(A**2 + B**2 - C**2))/(A + C))"),
+    ("w1x", "(x - e - l1*cos(theta1))/l2"), ("w_1x", r"$\frac{x - e - l_1 u_{1x}}{l_2}$"),
+    ("w2y", "(y - l1*sin(theta2))/l2"), ("w_x", "(x - s*e - l1*cos(theta))/l2"),
+    ("J11", J11), ("J11", IN_XY), ("J11", "w1x/(l1*uHw1)"),
+    ("J_11", r"$\frac{w_{1x}}{l_1 (u_{1x} w_{1y} - u_{1y} w_{1x})}$"),
+    ("J22", "w2y/(l1*(cos(theta2)*w2y - sin(theta2)*w2x))"),
+    ("theta_dot_1", r"$J_{11}\dot{x} + J_{12}\dot{y}$"), ("w1x", "(x - e - L1*cos(th1))/L2"),
+    ("theta_dot_1", RATE), ("thetad1", "J11*vx + J12*vy"), ("thetad2", r"$J_{21} v_x + J_{22} v_y$"),
+    ("thetadd1", TURN), ("theta_ddot_1", "J11*ax + J12*ay + f1".replace("f1", TURN.split("J12*ay + ")[1])),
+    ("tau1", TORQUE), ("tau1", "G11*ax + G12*ay + I_A*f1 + tauAg1 - m*g*J21/detJ"),
+    ("tau2", "I_A*thetadd2 + tauAg2 + m*(J11*(ay + g) - J12*ax)/(J11*J22 - J12*J21)"),
+    ("G12", GAIN), ("G12", "I_A*(J12 - eta*J21/detJ)"), ("P1", "tau1*thetad1"),
+    ("I_L1", "I_A + m*(J21**2 + J22**2)/(J11*J22 - J12*J21)**2"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("robot", ["isotropic", "unequal"])
+@pytest.mark.parametrize(("entry", "text"), RIGHT)
+def test_what_is_right_is_right_as_it_is_typed(robot: str, entry: str, text: str) -> None:
+    found = kl.diagnose(robot, entry, text, samples=40)
+    assert found.grade == "right", str(found)
+    assert not found.remarks
+
+
+@pytest.mark.parametrize(
+    ("entry", "text", "said"),
+    [
+        ("C", "(l2**2 - l1**2 - e**2 - x**2 - y**2)/2 + s*e*x", "multiplied by 1/2"),
+        ("A1", "(x - e)*l1", "multiplied by -1/2"),
+        ("B1", "-y", "multiplied by 1/(2*l1)"),
+    ],
+)
+def test_an_equation_is_right_with_any_factor(entry: str, text: str, said: str) -> None:
+    found = kl.diagnose("isotropic", entry, text, samples=40)
+    assert found.grade == "right but written unusually"
+    assert said in found.sentence
+
+
+def test_numbers_for_names_are_right_and_said() -> None:
+    typed = IN_XY.replace("l1", "0.3").replace("x - e", "x - 0.14")
+    found = kl.diagnose("isotropic", "J11", typed, samples=40)
+    assert found.grade == "right with rounded numbers"
+    assert "0.14 stands for e = 0.1414213562" in found.sentence
+    found = kl.diagnose("isotropic", "J11", IN_XY.replace("l1", "0.3"), samples=40)
+    assert "holds only for l1 = 0.3" in found.sentence
+
+
+def test_a_number_of_the_other_leg_is_told() -> None:
+    found = kl.diagnose("unequal", "J21", "w2x/(0.3*uHw2)", samples=40)
+    assert "0.3 should be l1" in found.sentence
+
+
+def _same(old: str, new: str, text: str) -> str:
+    assert old in text
+    return text.replace(old, new, 1)
+
+
+SLIPS = [
+    # note 003 as it is printed
+    ("C", "l2^2 - l1^2 - e^2 - x^2 - y^2", "the term 2*s*e*x is missing"),
+    ("C1", "l2**2 - l1**2 - e**2 - x**2 - y**2", "the term 2*e*x is missing"),
+    ("loop1", "2*(e - x)*l1*cos(theta1) - 2*y*l1*sin(theta1) = l2**2 - l1**2 - e**2 - x**2 - y**2",
+     "term"),
+    ("loop1", _same("- x", "+ x", LOOP), "+ x should be - x"),
+    ("loop1", _same("sin", "cos", LOOP), "cos(theta1) should be sin(theta1)"),
+    ("loop1", _same("- l2**2", "- l1**2", LOOP), "l1 should be l2"),
+    ("loop", "(s*e + l1*cos(theta) - y)**2 + (l1*sin(theta) - y)**2 = l2**2", "y should be x"),
+    ("loop2", r"$(e + l_1\cos\theta_2 - x)^2 + (l_1\sin\theta_2 - y)^2 = l_2^2$", "should be -e"),
+    ("A1", "2*(e + x)*l1", "+ x should be - x"),
+    ("A1", "2*(e - x)*l2", "l2 should be l1"),
+    ("A1", "2*(e - y)*l1", "y should be x"),
+    ("A", "2*(e - x)*l1", "factor s is missing"),
+    ("B1", "-2*x*l1", "x should be y"),
+    ("C1", _same("- y**2", "+ y**2", C1), "+ y**2 should be - y**2"),
+    ("C1", _same("- e**2", "- e", C1), "e should be e**2"),
+    ("C1", _same("+ 2*e*x", "+ e*x", C1), "2*e*x"),
+    ("C1", _same("+ 2*e*x", "- 2*e*x", C1), "- 2*e*x should be + 2*e*x"),
+    ("theta1", _same("- C1**2", "+ C1**2", TAN), "+ C1**2 should be - C1**2"),
+    ("theta1", _same("(A1 + C1)", "(A1 - C1)", TAN), "- C1 should be + C1"),
+    ("theta1", _same("2*atan", "atan", TAN), "2*atan"),
+    ("theta1", _same("atan2(B1, A1)", "atan2(A1, B1)", ACOS), "atan2(B1, A1)"),
+    ("theta1", _same("x - e", "x + e", TRIANGLE), "+ e should be - e"),
+    ("theta1", _same("+ y**2 -", "+ y -", TRIANGLE), "y should be y**2"),
+    ("w1x", "(x + e - l1*cos(theta1))/l2", "+ e should be - e"),
+    ("w1x", "(x - e - l1*sin(theta1))/l2", "sin(theta1) should be cos(theta1)"),
+    ("w1x", "(x - e - l1*cos(theta1))/l1", "l1 should be l2"),
+    ("w1x", "(x - e - cos(theta1))/l2", "factor l1 is missing"),
+    ("w_x", "(x - s*e - l2*cos(theta))/l2", "l2 should be l1"),
+    ("J11", _same("- u1y", "+ u1y", J11), "+ u1y*w1x should be - u1y*w1x"),
+    ("J11", _same("w1x/", "w1y/", J11), "w1y should be w1x"),
+    ("J11", _same("l1*", "l2*", J11), "l2 should be l1"),
+    ("J11", "w1x/(l1*(u1x*w1y))", "the term -u1y*w1x is missing"),
+    ("J11", _same("y*cos", "y*sin", IN_XY), "sin(theta1) should be cos(theta1)"),
+    ("J21", "w2x/(l1*(u1x*w2y - u2y*w2x))", "u1x should be u2x"),
+    ("thetad1", _same("+ w1y*vy", "- w1y*vy", RATE), "- w1y*vy should be + w1y*vy"),
+    ("thetad1", "(w1x*vx + w1y*vy)/(u1x*w1y - u1y*w1x)", "l1*(u1x*w1y - u1y*w1x)"),
+    ("thetad1", "J11*vx + J21*vy", "J21 should be J12"),
+    ("thetadd1", _same("uHw1**3", "uHw1**2", TURN), "uHw1**2 should be uHw1**3"),
+    ("thetadd1", _same("u1y)**2/l2", "u1y)/l2", TURN), "(vx*u1x + vy*u1y)**2"),
+    ("thetadd1", _same("/l1 +", "/l2 +", TURN), "l2 should be l1"),
+    ("thetadd1", _same("u1x*w1x + u1y", "u1x*w1x - u1y", TURN), "- u1y*w1y should be + u1y*w1y"),
+    ("tau1", _same("- J21", "+ J21", TORQUE), "+ J21*(ay + g) should be - J21*(ay + g)"),
+    ("tau1", _same("(ay + g)", "ay", TORQUE), "ay should be (ay + g)"),
+    ("tau1", _same("m1*lc1*g*cos", "m1*lc1*g*sin", TORQUE), "should be cos(theta1)"),
+    ("tau1", _same(" + m1*lc1*g*cos(theta1)", "", TORQUE), "the term tauAg1 is missing"),
+    ("tau1", _same("thetadd1", "thetad1", TORQUE), "thetad1 should be thetadd1"),
+    ("tau1", _same("J22*ax", "J11*ax", TORQUE), "J11 should be J22"),
+    ("G12", _same("- m*J21", "+ m*J21", GAIN), "should be - m*J21"),
+    ("G12", _same("- m*J21", "- m*J12", GAIN), "J12 should be J21"),
+    ("P1", "tau1*thetad2", "thetad2 should be thetad1"),
+    ("I_L1", "I_A + m*(J12**2 + J22**2)/(J11*J22 - J12*J21)**2", "J12 should be J21"),
+    ("I_L1", "I_A + m*(J21**2 + J22**2)/(J11*J22 - J12*J21)", "(J11*J22 - J12*J21)**2"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("entry", "text", "told"), SLIPS)
+def test_one_slip_is_named_and_put_right(entry: str, text: str, told: str) -> None:
+    found = kl.diagnose("isotropic", entry, text, samples=40)
+    assert found.verdict == "differs", str(found)
+    cause = found.causes[0]
+    assert len(cause.kinds) == 1
+    assert told in cause.sentence
+    (right,) = cause.shown.values()
+    assert kl.diagnose("unequal", entry, right, samples=40).agrees
+
+
+PAIRS = [
+    ("C1", "l2**2 + l1**2 - e**2 - x**2 - y**2 - 2*e*x"),
+    ("C1", "l2**2 - l1**2 - e**2 - x**2 + y**2 + e*x"),
+    ("C", "l2**2 - l1**2 - e - x**2 - y**2"),
+    ("w1x", "(x + e - l1*sin(theta1))/l2"),
+    ("J11", "w1y/(l2*(u1x*w1y - u1y*w1x))"),
+    ("thetad1", "J11*vy + J21*vy"),
+    ("thetad1", "(w1x*vx - w1y*vy)/(l2*(u1x*w1y - u1y*w1x))"),
+    ("thetadd1", _same("/l2)", "/l1)", _same("/l1 +", "/l2 +", TURN))),
+    ("tau1", _same("- J21", "+ J21", _same("cos", "sin", TORQUE))),
+    ("tau1", _same("(ay + g)", "ay", _same("m1*lc1*g*cos", "m1*g*cos", TORQUE))),
+    ("tau1", _same("J22*ax", "J11*ax", _same("I_A*", "", TORQUE))),
+    ("G12", "I_A*J11 + m*J21/(J11*J22 - J12*J21)"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("entry", "text"), PAIRS)
+def test_two_slips_are_named_and_put_right(entry: str, text: str) -> None:
+    found = kl.diagnose("isotropic", entry, text, samples=40)
+    assert found.causes, str(found)
+    assert len(found.causes[0].kinds) == 2
+    (right,) = found.causes[0].shown.values()
+    assert kl.diagnose("unequal", entry, right, samples=40).agrees
+
+
+def test_one_formula_of_a_leg_says_the_factor_of_the_others(tmp_path) -> None:
+    file = tmp_path / "half.toml"
+    file.write_text(
+        'robot = "isotropic"\n[formulas]\nA1 = "(e - x)*l1"\nB1 = "-y*l1"\n'
+        'C1 = "l2**2 - l1**2 - e**2 - x**2 - y**2 + 2*e*x"\n'
+    )
+    from kinlab.doctor.file import examine_file
+
+    found = {one.function: one for one in examine_file(file, 40)}
+    assert found["A1"].agrees and found["B1"].agrees
+    assert found["C1"].causes[0].kinds == ("factor",)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "text", "told"),
+    [
+        ("isotropic", "M11", "l1", "names no quantity of a five-bar; did you mean 'J11'"),
+        ("isotropic", "j", "pi*N/30", "names no quantity of a five-bar"),
+        ("isotropic", "J11", "m3*l1", "'m3' is unknown"),
+        (
+            "isotropic",
+            "C1",
+            "l2**2*cos(theta1)",
+            "q1 does not belong into fivebar_equation, which depends on xy",
+        ),
+        ("plotclock", "tau1", "I_A*thetadd1", "plotclock has no masses"),
+    ],
+)
+def test_what_cannot_be_judged_is_refused_at_the_door(robot, entry, text, told) -> None:
+    with pytest.raises(ExpressionError, match=told.replace("(", r"\(")):
+        kl.diagnose(robot, entry, text)
+
+
+def test_a_five_bar_without_e_says_what_is_not_judged() -> None:
+    found = kl.diagnose("minitaur_leg", "C1", C1, samples=40)
+    assert found.agrees
+    assert "of this robot e = 0" in found.sentence
+
+
+def test_a_five_bar_of_ones_own_is_known_by_its_file(tmp_path) -> None:
+    (tmp_path / "mine.toml").write_text('name = "mine"\nl1 = 0.2\nl2 = 0.4\ne = 0.1\n')
+    file = tmp_path / "formulas.toml"
+    file.write_text('robot = "mine.toml"\n[formulas]\nC1 = "l2**2 - l1**2 - e**2 - x**2 - y**2"\n')
+    from kinlab.doctor.file import examine_file
+
+    (found,) = examine_file(file, 40)
+    assert found.sentence == "C1: the term 2*e*x is missing (missing term)"
