@@ -36,7 +36,7 @@ def sheet(**changes):
         ({"questions": [{"id": "q1", "quantity": "fk", "answer": "1"}]}, "quantity and answer are both given"),
         ({"questions": [{"id": "q1", "entry": "tau1", "points": -1}]}, "points is -1"),
         ({"questions": [{"id": "q1", "entry": "tau1", "points": "4"}]}, "points is str; write a number"),
-        ({"questions": [{"id": "q1", "quantity": "fivebar_rods"}]}, "no quantity of a serial arm"),
+        ({"questions": [{"id": "q1", "quantity": "fivebar_rods"}]}, "fivebar_rods is no quantity of planar2r"),
         ({"variation": {"names": ["l9"]}}, r"\[variation\]: names: planar2r has no 'l9'"), ({"variation": {"spread": 2}}, "spread is 2"),
         ({"title": 3}, "title is int; write text"),
         ({"questions": [{"id": "q1", "entry": "tau9"}]}, r"\(q1\): planar2r of 2 joints has no tau9"),
