@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
+from kinlab.doctor.centres import as_there, centres_elsewhere
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
@@ -202,14 +203,19 @@ _LONGER, _HEAVIER = (1.19, 1.37, 1.29, 1.13), (1.29, 0.77, 1.13, 0.91)
 
 def for_another_arm(
     case: Case, engine: Array, written: dict[str, Written]
-) -> tuple[Case, Array] | None:
+) -> tuple[Case, Array, dict[str, Written]] | None:
     """The texts for an arm that has other numbers for their names, and what the engine says there.
 
-    None where the texts have numbers of this arm in them, or names of none.
+    The centres that the texts name are no simple parts of its lengths. None where the texts have
+    numbers of this arm in them, or names of none.
     """
     if case.again is None or any(map(_has_numbers, written.values())):
         return None
     table = table_of(case.robot)
+    moved = None if table is None else centres_elsewhere(table, written.values(), False)
+    if table is not None and moved is not None:
+        written = {label: as_there(text, table, moved) for label, text in written.items()}
+        table = moved
     other = None if table is None else _with_other_numbers(table, written)
     if other is None:
         return None
@@ -223,7 +229,7 @@ def for_another_arm(
         return None
     if hand is None or not (np.isfinite(hand).all() and np.isfinite(right).all()):
         return None
-    return replace(there, hand=hand, again=again), right
+    return replace(there, hand=hand, again=again), right, written
 
 
 def _has_numbers(text: Written) -> bool:

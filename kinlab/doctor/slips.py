@@ -12,8 +12,9 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
+from kinlab.doctor.centres import apart
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
-from kinlab.doctor.derived import derivation_of
+from kinlab.doctor.derived import derivation_of, searchable
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
@@ -158,7 +159,9 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     poly = derived.entry(entry.index)
     arguments = case.quantity.arguments
     if text is not None:
-        found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
+        elsewhere = apart(case, entry, text, poly) if searchable(poly) else None
+        of = (derived, poly, arguments, case.arguments)
+        found = terms.in_text(entry.label, text, *of, elsewhere)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
         of = (derived, poly, arguments, case.arguments)

@@ -35,6 +35,8 @@ _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
 _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
+_FACTOR_MORE = 0.035
+"""What each factor of a missing term costs: of five it is no likelier than qd2 for qd1 + qd2."""
 
 
 def study(line: Line) -> None:
@@ -422,7 +424,7 @@ def _as_term(line: Line, place: Place) -> None:
     for piece, value in line.pieces.items():
         twice = 0.4 * (_factors(line, piece) in there)
         for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
-            cost = near + 0.03 * piece.count("*") + twice
+            cost = near + _FACTOR_MORE * piece.count("*") + twice
             shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
             span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
             line.edit(place, place.value + added, span, "missing term", cost, told, shown)

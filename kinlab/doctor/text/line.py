@@ -150,9 +150,14 @@ class Line:
         return float(np.max(np.abs(self.target - self.root.value)))
 
     @cached_property
+    def right(self) -> Node:
+        """The derived formula."""
+        return tree.add(*self.forms[0])
+
+    @cached_property
     def fronts(self) -> list[float]:
         """The derived formula's coefficients, at the robot's own numbers."""
-        whole, *_parts = coefficients(tree.add(*self.forms[0]))
+        whole, *_parts = coefficients(self.right)
         sizes = [abs(float(np.ravel(tree.evaluate(one, dict(self.at)))[0])) for one in whole]
         return list(dict.fromkeys(sizes))
 
