@@ -157,16 +157,16 @@ def covered_up(
         text = written.get(entry.label)
         if text is None:
             continue
-        kept, plain = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
-        only += [name for name in kept if name not in only]
+        kept, gap = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
         zero = (name for name in words_in(text.text) if text.symbols.get(name) == NOTHING)
         nothing += [name for name in zero if name not in nothing]
-        gap = plain if not kept else 0.0
         if gap > TOLERANCES.formula_agrees:
             # a term put in for another of the same value is no slip, but another form
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
+            kept = [] if told else kept
+        only += [name for name in kept if name not in only]
     remarks = _only_for([f"{name} = {derived.arm.values[name]:.7g}" for name in only])
     if nothing:
         zeros = together(f"{name} = 0" for name in nothing)

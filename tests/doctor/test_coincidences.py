@@ -77,3 +77,36 @@ def test_a_name_that_books_have_is_no_definition_of_the_writers() -> None:
     assert "lc3 should be lc3**2" in found.sentence
     own = "h = m2*l1*l2*c2\ntau2 = m2*l2^2*(qdd1+qdd2) + h*qdd1 + h*qd1^2*s2 + m2*g*l2*c12"
     assert not kl.diagnose("planar2r", "tau2", own).agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "said"),
+    [
+        ("planar2r_rods", "M12", "m2*l2^2/3 + l1^2*m2*l2*c2", "l1^2 should be l1"),
+        ("planar2r_rods", "M22", "m2*l2^2*l1*2/3", "the factor l1 does not belong"),
+        ("planar2r_rods", "M11", "m1*l1^3*2/3 + m2*(l1^2+l2^2/3+l1*l2*c2)", "l1^3 should be l1^2"),
+        ("planar3r", "M33", "m3*l3^2*l1*2/3", "the factor l1 does not belong"),
+        ("single_link", "tau", "m*l^2*qdd/3 + m*m*g*l*cos(q)/4", "the factor m does not"),
+        ("planar2r", "M12", "m2*l2^2 + 2*l1^2*m2*l2*c2", "l1^2 should be l1"),
+    ],
+)
+def test_a_length_of_one_half_is_none_beside_a_moment(robot, entry, typed, said) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert not found.agrees
+    assert said in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "typed", "only"),
+    [
+        ("M22", "m2*l2^2/3", ""),
+        ("M22", "0.02 + m2*l2^2/4", "I2 = 0.02"),
+        ("M22", "0.5*l2^2", "m2 = 1.5"),
+        ("M12", "0.08 + m2*l2*l1*c2/2", "I2 = 0.02"),
+        ("M11", "0.1666666666666666666*1 + 0.375 + m2*l2^2/3 + m2*l1*l2*c2", "m1 = 2"),
+    ],
+)
+def test_numbers_may_stand_for_what_has_no_name(entry, typed, only) -> None:
+    found = kl.diagnose("planar2r_rods", entry, typed)
+    assert found.agrees
+    assert only in " ".join(found.remarks)
