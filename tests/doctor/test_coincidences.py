@@ -110,3 +110,53 @@ def test_numbers_may_stand_for_what_has_no_name(entry, typed, only) -> None:
     found = kl.diagnose("planar2r_rods", entry, typed)
     assert found.agrees
     assert only in " ".join(found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "said"),
+    [
+        ("planar2r", "statics[0]", "-(l1*s1 + l2*s12)*fx + (l2*c12)*fx",
+         ["fx should be fy in (l2*c12)*fx", "the term l1*fy*c1 is missing"]),
+        ("planar2r", "statics[1]", "-l2*s12*fx + l2*c2*fx", ["c2 should be c12", "fx should be fy"]),
+        ("planar2r", "statics[1]", "-l2*s12*fy + l1*c12*fy", ["fy should be fx", "l1 should be l2"]),
+        ("planar3r", "statics[1]", "-(l2*s12 + l3*s123)*fx + (l2*c12 - l3*c123)*fx + nz",
+         ["- l3*c123 should be + l3*c123", "fx should be fy"]),
+        ("planar3r", "statics[2]", "-l3*s123*fx + l3*c12*fx", ["c12 should be c123", "be fy"]),
+        # a force of one component alone
+        ("planar2r", "statics[0]", "-l1*s1*fx", ["the term -l2*fx*s12 is missing"]),
+        ("planar2r", "statics[0]", "-(l1*s1 + l2*s12 + l2*s2)*fx", ["l2*s2 does not belong"]),
+    ],
+)  # fmt: skip
+def test_a_force_that_is_not_named_may_stand_there_by_another_name(
+    robot, entry, typed, said
+) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert not found.agrees
+    for piece in said:
+        assert piece in found.sentence
+
+
+@pytest.mark.parametrize(
+    ("entry", "typed"),
+    [("statics[0]", "-(l1*s1 + l2*s12)*fx + m1*fx"), ("statics[1]", "-l2*s12*fx + l1*l2*fx")],
+)
+def test_no_force_is_taken_out_for_sure_where_another_is_taken_as_zero(entry, typed) -> None:
+    found = kl.diagnose("planar2r", entry, typed)
+    assert not found.agrees
+    assert not any("does not belong" in cause.sentence for cause in found.causes)
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "said"),
+    [
+        ("planar2r", "M11", "(m1+m2)*(l1^2+l2^2+2*l1*l2*c2)", "the term m1 does not belong"),
+        ("planar2r", "g1", "(m1+m2)*g*(l1*c1 + l2*c12)", "the term l2*c12 does not belong"),
+        ("planar2r_rods", "g1", "(m1+m2)*g*(l1*c1 + lc2*c12)", "the term m1 does not belong"),
+        ("planar3r", "g2", "(m1*l2+m2*lc2+m3*l2)*g*c12 + m3*g*lc3*c123", "m1*l2 does not belong"),
+    ],
+)
+def test_nothing_is_told_by_adding_and_taking_away_the_same(robot, entry, typed, said) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert said in found.sentence
+    for name in ("m1", "m2", "l2*c12"):
+        assert f"-{name})" not in found.sentence.replace(" ", "")

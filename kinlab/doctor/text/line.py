@@ -279,9 +279,23 @@ class Line:
         if self.numeric and change.kind in _NAMED and _in_proportion(place.value, new):
             return  # at the robot's own numbers that is any other number of the place
         effect = self.climbed(place, new) - self.root.value
+        if change.kind == "missing term" and self._takes_out(effect):
+            return  # m1 + (m2 - m1): a term is taken out, and that is told so
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
+
+    def _takes_out(self, effect: Array) -> bool:
+        """Whether what is added only takes away a term that is there."""
+        allowed = TOLERANCES.effect_matches * self.scale
+        return bool(np.any(np.max(np.abs(self.shares + effect), axis=1) <= allowed))
+
+    @cached_property
+    def shares(self) -> Array:
+        """What each term of a sum adds to the whole."""
+        inside = (one for one in self.places if one.above is not None and is_sum(one.above.node))
+        shares = [self.root.value - self.climbed(one, np.zeros(self.count)) for one in inside]
+        return np.array(shares).reshape(-1, self.count)
 
     def edit(
         self,
