@@ -216,9 +216,7 @@ def elsewhere(
         return [], 0.0
     names = names_for(derived, arguments)
     right = derived.tree(derived.held(poly, tree.names(text.node)))
-    states = lambda: (  # noqa: E731
-        _one_robot(anywhere(names, seed), names.parameters) for seed in (11, 12, 13)
-    )
+    states = [_one_robot(anywhere(names, seed), names.parameters) for seed in (11, 12, 13)]
     at = as_rods(anywhere(names, 10), text, derived)
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
     scale = float(np.max(np.abs(target))) or 1.0
@@ -237,7 +235,7 @@ def elsewhere(
 
     # what has no name in the text may be there as a number of its own or in a product, or be a rod's
     for there in (dict, held, rods) if missing else (dict,):
-        if holds_with_other_numbers(text, whole, map(there, states()), own):
+        if holds_with_other_numbers(text, whole, map(there, states), own):
             return _kept(text, right, own, at, missing), 0.0
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
     return _kept(text, right, own, at, missing) if missing else [], gap if plain else 0.0

@@ -160,3 +160,21 @@ def test_nothing_is_told_by_adding_and_taking_away_the_same(robot, entry, typed,
     assert said in found.sentence
     for name in ("m1", "m2", "l2*c12"):
         assert f"-{name})" not in found.sentence.replace(" ", "")
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "said"),
+    [
+        ("planar2r", "x", "l1*sin(q1+1.6)+l2*c12", "1.6 should be pi/2"),
+        ("planar3r", "y", "l1*cos(q1-1.6)+l2*s12+l3*s123", "1.6 should be pi/2"),
+        ("planar2r", "x", "l1*sin(q1+1.57)+l2*c12", ""),
+        ("planar2r_rods", "M22", "0.33*m2*l2^2", ""),
+        ("planar2r", "g2", "m2*9.8*l2*c12", ""),
+        ("planar2r", "g2", "m2*10*l2*c12", ""),
+    ],
+)
+def test_a_constant_is_rounded_by_one_percent_at_most(robot, entry, typed, said) -> None:
+    found = kl.diagnose(robot, entry, typed)
+    assert found.agrees == (not said)
+    assert said in found.sentence
+    assert said or "stands for" in found.remarks[0]
