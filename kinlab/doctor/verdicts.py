@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import islice, product
 from typing import Any, Protocol
 
 import numpy as np
@@ -34,6 +34,8 @@ from kinlab.tolerances import TOLERANCES
 
 _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
+_CHOICES = 32
+"""Ways in which whole numbers may be parameters that are tried."""
 _FEW = 8
 """States at which the noise of a function is measured."""
 _COORDINATES = 6
@@ -88,8 +90,7 @@ def holds_with_other_numbers(
     rounds = [next(states) for _ in range(_ROUNDS)]
     if len(literals) > FREE:
         return False
-    choices = list(product(*([None, *names] for names in whole.values())))[:32]
-    for choice in choices:
+    for choice in islice(product(*([None, *names] for names in whole.values())), _CHOICES):
         put = {k: name for k, name in zip(whole, choice, strict=True) if name is not None}
         if all(_fits(text, at, right(at), decimal, put) for at in rounds):
             return True
@@ -233,7 +234,7 @@ def elsewhere(
     def rods(at: dict[str, Array]) -> dict[str, Array]:
         return as_rods(held(at), text, derived)
 
-    # what has no name in the text may be there as a number of its own or in a product, or be a rod's
+    # what has no name in the text may be there as a number, or be a rod's
     for there in (dict, held, rods) if missing else (dict,):
         if holds_with_other_numbers(text, whole, map(there, states), own):
             return _kept(text, right, own, at, missing), 0.0
