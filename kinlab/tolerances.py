@@ -115,6 +115,10 @@ class Tolerances:
     double-precision routes through a seven-joint arm differ by up to 1e-12; a wrong term by
     1e-3 or more."""
 
+    typed_rounding: float = 0.0102
+    """Relative difference up to which a typed number may be a constant, rounded to its digits: 0.33
+    for 1/3 is 1 % off, 0.7 for sqrt(2)/2 1.005 %; 1.6 for pi/2 is 1.9 % off, and is wrong."""
+
     may_be_step: float = 1e-2
     """The largest number of a program that may be the step of a difference."""
 

@@ -169,9 +169,9 @@ def _explained(case: Case, engine: Array, written: dict[str, Written], worst: fl
     other = for_another_arm(case, engine, written) if doubtful else None
     if other is None:
         return found
-    there, right = other
+    there, right, texts = other
     gap = float(np.max(relative_errors(there.hand, right)))
-    again = _possible(there, right, written, gap, _told(there, right, written))[0]
+    again = _possible(there, right, texts, gap, _told(there, right, texts))[0]
     said = {one.sentence for one in again}
     kept = [x for x in found[0] if x.sentence in said or not any(x is one for one in doubtful)]
     return kept or told[0], *found[1:]

@@ -12,6 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
+from kinlab.doctor.centres import as_there, centres_elsewhere
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
@@ -160,18 +161,18 @@ def covered_up(
         text = written.get(entry.label)
         if text is None:
             continue
-        kept, plain = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
-        only += [name for name in kept if name not in only]
+        kept, gap = verdicts.elsewhere(text, derived, poly, case.quantity.arguments)
         zero = (
             name for name in dict.fromkeys(words_in(text.text)) if text.symbols.get(name) == NOTHING
         )
         nothing += [name for name in zero if name not in nothing]
-        gap = plain if not kept else 0.0
         if gap > TOLERANCES.formula_agrees:
             # a term put in for another of the same value is no slip, but another form
             told = [s for s in of_entry(case, entry, text) if not {*s.kinds} & _WHOLE_TERMS]
             slips += told[:1]
             largest = max(largest, gap) if told else largest
+            kept = [] if told else kept
+        only += [name for name in kept if name not in only]
     remarks = only_for([f"{name} = {derived.values[name]:.7g}" for name in only])
     if nothing:
         zeros = together(f"{name} = 0" for name in nothing)
@@ -208,14 +209,19 @@ _LONGER, _HEAVIER = (1.19, 1.37, 1.29, 1.13), (1.29, 0.77, 1.13, 0.91)
 
 def for_another_arm(
     case: Case, engine: Array, written: dict[str, Written]
-) -> tuple[Case, Array] | None:
+) -> tuple[Case, Array, dict[str, Written]] | None:
     """The texts for an arm that has other numbers for their names, and what the engine says there.
 
-    None where the texts have numbers of this arm in them, or names of none.
+    The centres that the texts name are no simple parts of its lengths. None where the texts have
+    numbers of this arm in them, or names of none.
     """
     if case.again is None or any(map(_has_numbers, written.values())):
         return None
     table = table_of(case.robot)
+    moved = None if table is None else centres_elsewhere(table, written.values(), False)
+    if table is not None and moved is not None:
+        written = {label: as_there(text, table, moved) for label, text in written.items()}
+        table = moved
     other = None if table is None else _with_other_numbers(table, written)
     if other is None:
         return None
@@ -229,7 +235,7 @@ def for_another_arm(
         return None
     if hand is None or not (np.isfinite(hand).all() and np.isfinite(right).all()):
         return None
-    return replace(there, hand=hand, again=again), right
+    return replace(there, hand=hand, again=again), right, written
 
 
 def _has_numbers(text: Written) -> bool:

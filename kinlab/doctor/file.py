@@ -21,6 +21,7 @@ from kinlab.doctor.linkages.mechanisms import mechanism_beside
 from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_forces, with_wrench
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
+from kinlab.doctor.text.line import words_in
 from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
@@ -146,24 +147,54 @@ def _by_quantity(
             settled = [all(x.agrees or x.known for x in found) for found in (done[plain], turned)]
             if all(one.agrees for one in turned) or settled == [False, True]:
                 done[plain] = turned
+            felt = False
             for force in WRENCH:
                 there = _answers(plain, formulas, titles, robot, file, samples, seed, (force,))
-                done[plain] = _simpler(done[plain], [*_of_quantity(plain, there, titles)])
+                if not np.array_equal(there[1], answers[1]):
+                    felt = True
+                    found = [*_of_quantity(plain, there, titles)]
+                    done[plain] = _simpler(done[plain], found, force, formulas)
+            if felt:  # what is taken out may be of a force that is taken as zero
+                done[plain] = [
+                    replace(one, causes=()) if _lost([one], formulas) else one
+                    for one in done[plain]
+                ]
     return done
 
 
-def _simpler(named: list[Diagnosis], with_one: list[Diagnosis]) -> list[Diagnosis]:
+def _simpler(
+    named: list[Diagnosis], with_one: list[Diagnosis], force: str, formulas: dict[str, Written]
+) -> list[Diagnosis]:
     """The diagnoses with one force more that is not zero, where these are simpler.
 
-    A force that no line names may be one that stands there by another's name.
+    A force that no line names may be one that stands there by another's name. A repair that takes
+    a force out holds only where this one is zero: one that puts it in its place comes first.
     """
     kinds = [[kind for one in found for kind in _kinds_of(one)] for found in (named, with_one)]
-    if not all(one.agrees or one.causes for one in with_one) or "missing term" in kinds[1]:
+    if not all(one.agrees or one.causes for one in with_one):
+        return named
+    if any(lost[0] == force[0] for lost in _lost(named, formulas)):
+        instead = "parameter" in kinds[1] and not _lost(with_one, formulas)
+        return with_one if instead else named
+    if "missing term" in kinds[1]:
         return named
     fewer = len(kinds[1]) < len(kinds[0])
     instead = "extra term" in kinds[0] and len(kinds[1]) <= len(kinds[0])
     unknown = any(not one.agrees and not one.causes for one in named)
     return with_one if fewer or instead or unknown else named
+
+
+def _lost(found: list[Diagnosis], formulas: dict[str, Written]) -> set[str]:
+    """The parts of the wrench that a repair takes out of a formula."""
+    right = {k: text for one in found for c in one.causes[:1] for k, text in c.corrected.items()}
+    lost: set[str] = set()
+    for text in formulas.values():
+        if text.entry in right:
+            typed, now = words_in(text.restored(text.text)), words_in(right[text.entry])
+            old, new = ([word for word in words if word in WRENCH] for words in (typed, now))
+            gone = {name for name in old if new.count(name) < old.count(name)}
+            lost |= gone if len(new) < len(old) else set()
+    return lost
 
 
 def _kinds_of(found: Diagnosis) -> Sequence[str]:

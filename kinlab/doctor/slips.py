@@ -12,8 +12,9 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
+from kinlab.doctor.centres import apart
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
-from kinlab.doctor.derived import Derivation
+from kinlab.doctor.derived import Derivation, searchable
 from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.terms import Slip
 from kinlab.doctor.text.written import Written
@@ -160,7 +161,10 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     arguments = case.quantity.arguments
     if text is not None or not isinstance(derived, Derivation):
         assert text is not None
-        found = terms.in_text(entry.label, text, derived, poly, arguments, case.arguments)
+        arm = isinstance(derived, Derivation) and searchable(poly)
+        elsewhere = apart(case, entry, text, poly) if arm else None
+        of = (derived, poly, arguments, case.arguments)
+        found = terms.in_text(entry.label, text, *of, elsewhere)
     else:
         others = [derived.tree(p) for p in derived.polys.flat if len(p) < 200]
         of = (derived, poly, arguments, case.arguments)

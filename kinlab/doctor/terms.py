@@ -13,6 +13,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
+from kinlab.doctor.centres import Apart, stands_so
 from kinlab.doctor.changes import ANY_ZERO
 from kinlab.doctor.derived import POINTS, Derivation, searchable
 from kinlab.doctor.linkages.looked_up import Reference
@@ -95,8 +96,12 @@ def in_text(
     poly: Any,
     arguments: tuple[str, ...],
     states: dict[str, Array],
+    elsewhere: Apart | None = None,
 ) -> list[Slip]:
     """Slips that turn the user's text into the derived formula, at random parameters.
+
+    Of as many slips those come first that are slips wherever the centres are; of a text that names
+    centres one or two more of these come before what is right only for this arm.
 
     Args:
         label: the entry's name.
@@ -104,6 +109,7 @@ def in_text(
         derived, poly: the derivation and the entry's polynomial.
         arguments: the quantity's arguments.
         states: the comparison's states.
+        elsewhere: the same of an arm with its centres elsewhere, where that is asked.
     """
     if not searchable(poly):
         return []
@@ -126,39 +132,42 @@ def in_text(
     plain, lines = [], []
     for text in dict.fromkeys((as_meant(written, right, own) if numbers else written, written)):
         for of in (as_rods(derived.anywhere(_SEED), written, derived), own)[: 1 + numbers]:
-            at = _with_value(text, of)
-            target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
-            line = Line(text, names, at, np.array(target), forms, numeric=of is own)
+            line = _line_at(text, names, _with_value(text, of), right, forms, of is own)
             lines.append(line)
             plain += [line] if text is written else []
     free, rods = derived.anywhere(_SEED), as_rods(derived.anywhere(_SEED), written, derived)
     unlike = []
     if any(not np.array_equal(rods[name], free[name]) for name in tree.names(right) & free.keys()):
-        whole = np.broadcast_to(tree.evaluate(right, free), np.shape(plain[0].target))
-        unlike.append(Line(written, names, free, np.array(whole), forms))
+        unlike.append(_line_at(written, names, free, right, forms))
     if any(line.wrong_by <= TOLERANCES.effect_matches * line.scale for line in lines):
         lines = plain  # nothing else is wrong: the digits are too few
+    moved = [] if elsewhere is None else _elsewhere(elsewhere, named, arguments)
+    sure = elsewhere is not None and elsewhere.named
     # a moment that is left out comes before one that would be a rod's
-    tried = [(line, 1) for line in unlike]
+    tried = [(line, 2 if sure else 1) for line in moved]
+    tried += [(line, 1) for line in unlike]
     tried += [(line, 1) for line in dict.fromkeys((*plain, *lines)) if numbers and left_out]
     if bare:  # without a name the other numbers are the robot's own
         lines.sort(key=lambda line: not line.numeric)
     if any(name[0] == "I" for name in tree.names(written.node)):  # who names one names them all
         tried += [(line, 1) for line in lines * bool(unlike)]
         tried += [(line, 2) for line in unlike]
+    tried += [(line, 1) for line in lines * bool(moved)]
+    tried += [(line, 3 if sure else 2) for line in moved]
     if numbers and not isinstance(derived, Derivation):
         tried += [(line, 1) for line in lines]
     tried += [(line, 2) for line in lines]
     ways: Iterator[tuple[Line, list[Mended]]] = chain(
         ((line, mended(line, most)) for line, most in tried),
-        ((line, _part_by_part(line, right)) for line in lines if not line.numeric),
-        ((line, mended(line)) for line in lines),
+        ((line, _part_by_part(line)) for line in (*moved, *lines) if not line.numeric),
+        ((line, mended(line)) for line in (*moved, *lines)),
     )
     for line, found in ways:
         if line.numeric:
             found = [one for one in found if _no_coincidence(line, one, right, derived)]
+        text = elsewhere.here if elsewhere is not None and line in moved else line.text
         if found:
-            return [_of_any_zero(line, one, right, here, label) for one in found]
+            return [_of_any_zero(line, one, text, here, label) for one in found]
     if not numbers:
         return []
     apart = [
@@ -177,9 +186,39 @@ def _with_value(text: Written, at: dict[str, Array]) -> dict[str, Array]:
     return {name: x[known] for name, x in at.items()}
 
 
-def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], label: str) -> Slip:
+def _elsewhere(of: Apart, named: list[str], arguments: tuple[str, ...]) -> list[Line]:
+    """The text of an arm with its centres elsewhere.
+
+    Its moments are free; who names centres may also have them as those of rods.
+    """
+    poly, names = of.derived.held(of.poly, named), names_for(of.derived, arguments)
+    names, right = replace(names, loads=tuple(named)), of.derived.tree(poly)
+    forms = [list(form.terms) for form in of.derived.forms(poly)]
+    free = of.derived.anywhere(_SEED)
+    rods = as_rods(free, of.text, of.derived)
+    tied = any(not np.array_equal(rods[name], free[name]) for name in tree.names(right) & {*free})
+    every = (free, rods) if tied and of.named else (free,)
+    return [_line_at(of.text, names, at, right, forms) for at in every]
+
+
+def _line_at(
+    text: Written,
+    names: Names,
+    at: dict[str, Array],
+    right: Node,
+    forms: list[list[Node]],
+    numeric: bool = False,
+) -> Line:
+    """A text beside the values that it should have."""
+    target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
+    return Line(text, names, at, np.array(target), forms, numeric)
+
+
+def _of_any_zero(
+    line: Line, one: Mended, written: Written, here: dict[str, Array], label: str
+) -> Slip:
     """The slip that a repair is; of a potential without what moves nothing but its zero."""
-    whole, kept = _mended(line.text, one, here), one
+    whole, kept = _mended(written, one, here), one
     if label.split("[")[0] not in ANY_ZERO or len(one.changes) == 1:
         return whole
     at = dict(line.at)
@@ -190,10 +229,10 @@ def _of_any_zero(line: Line, one: Mended, right: Node, here: dict[str, Array], l
         if text is None:
             continue
         moved = replace(line.text, text=text)
-        gap, there = (moved.values(x) - tree.evaluate(right, x) for x in (at, elsewhere))
+        gap, there = (moved.values(x) - tree.evaluate(line.right, x) for x in (at, elsewhere))
         if np.max(np.abs(gap - there)) <= TOLERANCES.effect_matches * line.scale:
             kept = Mended(rest, text, kept.cost - change.cost)
-    return whole if kept is one else replace(_mended(line.text, kept, here), values=whole.values)
+    return whole if kept is one else replace(_mended(written, kept, here), values=whole.values)
 
 
 def in_definitions(
@@ -217,9 +256,10 @@ def in_definitions(
     line = Line(written, names, at, np.array(target), forms)
     for name in written.definitions:
         wanted = _wanted_of(written, name, line)
-        if wanted is None:
+        meant = isinstance(derived, Derivation) and stands_so(written, name, derived.arm.words)
+        if wanted is None or meant:
             continue
-        own = replace(written, entry=name, text=written.symbols[name], typing=None)
+        own = written.definition(name)
         part = Line(own, names, at, wanted, forms)
         for one in mended(part, 1):
             whole = replace(written, symbols={**written.symbols, name: one.text})
@@ -281,11 +321,11 @@ def parts(right: Node, at: dict[str, Array]) -> list[dict[str, Array]]:
     return alone if len(alone) > 1 else []
 
 
-def _part_by_part(line: Line, right: Node) -> list[Mended]:
+def _part_by_part(line: Line) -> list[Mended]:
     """One or two slips in each of several parts, each found where the other parts are zero."""
     ways: list[list[Mended]] = []
-    for at in parts(right, dict(line.at)):
-        target = np.array(np.broadcast_to(tree.evaluate(right, at), line.target.shape))
+    for at in parts(line.right, dict(line.at)):
+        target = np.array(np.broadcast_to(tree.evaluate(line.right, at), line.target.shape))
         part = Line(line.text, line.names, at, target, line.forms)
         if np.max(np.abs(part.root.value - target)) <= TOLERANCES.effect_matches * line.scale:
             continue

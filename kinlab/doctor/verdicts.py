@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import islice, product
 from typing import Any, Protocol
 
 import numpy as np
@@ -36,6 +36,8 @@ from kinlab.tolerances import TOLERANCES
 
 _ROUNDS = 3
 """Sets of other numbers for the robot's parameters at which numbers for names must fit."""
+_CHOICES = 32
+"""Ways in which whole numbers may be parameters that are tried."""
 _FEW = 8
 """States at which the noise of a function is measured."""
 _COORDINATES = 6
@@ -87,14 +89,11 @@ def holds_with_other_numbers(
         if one.whole and one.value != 1 and not one.exponent
     }
     whole = {k: names for k, names in whole.items() if names}
-    if (not decimal and not whole) or len(literals) > FREE:
-        return False
-    choices = list(product(*([None, *names] for names in whole.values())))[:32]
     rounds = [next(states) for _ in range(_ROUNDS)]
-    for choice in choices:
+    if len(literals) > FREE:
+        return False
+    for choice in islice(product(*([None, *names] for names in whole.values())), _CHOICES):
         put = {k: name for k, name in zip(whole, choice, strict=True) if name is not None}
-        if not decimal and not put:
-            continue
         if all(_fits(text, at, right(at), decimal, put) for at in rounds):
             return True
     return False
@@ -216,13 +215,13 @@ def elsewhere(
 
     Returns:
         The names whose numbers it has in place of them, or that it must have with others; and
-        the relative gap at other numbers, where nothing but a slip can be behind it.
+        the relative gap at other numbers, where a slip is behind it, if one can be told.
     """
     if not searchable(poly):
         return [], 0.0
     names = names_for(derived, arguments)
     right = derived.tree(derived.held(poly, tree.names(text.node)))
-    states = (derived.another(seed) for seed in (11, 12, 13))
+    states = [derived.another(seed) for seed in (11, 12, 13)]
     at = as_rods(derived.anywhere(10), text, derived)
     target = np.broadcast_to(tree.evaluate(right, at), np.shape(next(iter(at.values()))))
     scale = float(np.max(np.abs(target))) or 1.0
@@ -232,10 +231,19 @@ def elsewhere(
     own = {name: float(value) for name, value in derived.values.items()}
     whole = lambda x: tree.evaluate(right, dict(x))  # noqa: E731
     missing = tree.names(right) & set(names.parameters) - tree.names(text.node)
-    if missing or holds_with_other_numbers(text, whole, states, own):
-        return _kept(text, right, own, at, missing, derived), 0.0
+
+    def held(at: dict[str, Array]) -> dict[str, Array]:
+        return {n: np.full_like(x, own[n]) if n in missing else x for n, x in at.items()}
+
+    def rods(at: dict[str, Array]) -> dict[str, Array]:
+        return as_rods(held(at), text, derived)
+
+    # what has no name in the text may be there as a number, or be a rod's
+    for there in (dict, held, rods) if missing else (dict,):
+        if holds_with_other_numbers(text, whole, map(there, states), own):
+            return _kept(text, right, own, at, missing, derived), 0.0
     plain = all(n.value.denominator <= 12 for _, n in tree.nodes(text.node) if n.op == "num")
-    return [], gap if plain else 0.0
+    return _kept(text, right, own, at, missing, derived) if missing else [], gap if plain else 0.0
 
 
 def unnamed(text: Written | None, derived: Reference, poly: Any) -> set[str]:

@@ -7,6 +7,7 @@ and his order.
 from __future__ import annotations
 
 import ast
+import math
 import re
 from collections.abc import Iterator
 from fractions import Fraction
@@ -35,6 +36,10 @@ _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
 _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
+_ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
+"""Angles that a decimal in a sine may be meant for, and how near, relative."""
+_FACTOR_MORE = 0.035
+"""What each factor of a missing term costs: of five it is no likelier than qd2 for qd1 + qd2."""
 
 
 def study(line: Line) -> None:
@@ -43,6 +48,7 @@ def study(line: Line) -> None:
         return
     for place in list(line.places):
         if inside_wave(place) or _is_exponent(place):
+            _angle(line, place)
             continue
         node = place.node
         if isinstance(node, ast.Name):
@@ -156,6 +162,17 @@ def _number(line: Line, place: Place) -> None:
                 cost = 1.2 if gap <= CLOSE * size else 1.5
                 shown = np.format_float_positional(size, 12, fractional=False, trim="-")
                 line.instead(place, shown, np.full(line.count, size), "coefficient", cost)
+
+
+def _angle(line: Line, place: Place) -> None:
+    """A decimal in a sine that is near an angle of 15, 30, 45, ... degrees: 1.6 for pi/2."""
+    digits = line.segment(place)
+    if not isinstance(place.node, ast.Constant) or "." not in digits:
+        return
+    exact = round(float(digits) / _ANGLE) * _ANGLE
+    if 0 < abs(exact - float(digits)) <= _NEAR_ANGLE * exact:
+        shown = line.meanings.named(exact)
+        line.instead(place, shown, np.full(line.count, exact), "coefficient", 1.15)
 
 
 def _beside_names(line: Line, place: Place) -> bool:
@@ -433,7 +450,7 @@ def _as_term(line: Line, place: Place) -> None:
     for piece, value in line.pieces.items():
         twice = 0.4 * (_factors(line, piece) in there)
         for sign, near, added in (("+", 1.12, value), ("-", 1.6, -value)):
-            cost = near + 0.03 * piece.count("*") + twice
+            cost = near + _FACTOR_MORE * piece.count("*") + twice
             shown = {"term": piece if sign == "+" else f"-{piece}", "sum": f"({inside})"}
             span = (end, end, f"{line.gap}{sign}{line.gap}{piece}")
             line.edit(place, place.value + added, span, "missing term", cost, told, shown)

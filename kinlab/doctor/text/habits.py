@@ -65,25 +65,28 @@ def with_habits(file: FormulaFile, robot: Mechanism) -> FormulaFile:
             if tree.names(canonical(alone)) <= motion | words:
                 found = alone
             elif alone in named.others:
-                found = _as_text(named.others[alone])
+                found = as_text(named.others[alone])
         if found:
             new[name] = found
             continue
-        for k in range(robot.n) if _in_books(name) in named.others else ():
+        for k in range(robot.n) if in_books(name) in named.others else ():
             alike = f"{name[:-1]}{k + 1}"  # lc2 may be meant where lc1 stands
-            meant = named.others.get(_in_books(alike))
+            meant = named.others.get(in_books(alike))
             if meant is not None and alike not in words and alike not in file.symbols:
-                new[alike] = _as_text(meant)
+                new[alike] = as_text(meant)
     symbols = file.symbols | {name: parse(value) for name, value in new.items()}
     return replace(file, symbols=symbols, symbol_texts=file.symbol_texts | new)
 
 
-def _in_books(name: str) -> str:
+def in_books(name: str) -> str:
+    """A name as :attr:`Vocabulary.others` has it: lc1 for Lc_1."""
     return name.replace("_", "").replace("Lc", "lc")
 
 
-def _as_text(total: Linear) -> str:
-    return " + ".join(f"{factor}*{word}" for factor, word in total) or NOTHING
+def as_text(total: Linear) -> str:
+    """A sum of multiples of names as one types it."""
+    parts = (word if factor == 1 else f"{factor}*{word}" for factor, word in total)
+    return " + ".join(parts) or NOTHING
 
 
 def _of_several(plain: str, joints: int) -> str:

@@ -152,9 +152,14 @@ class Line:
         return float(np.max(np.abs(self.target - self.root.value)))
 
     @cached_property
+    def right(self) -> Node:
+        """The derived formula."""
+        return tree.add(*self.forms[0])
+
+    @cached_property
     def fronts(self) -> list[float]:
         """The derived formula's coefficients, at the robot's own numbers."""
-        whole, *_parts = coefficients(tree.add(*self.forms[0]))
+        whole, *_parts = coefficients(self.right)
         sizes = [abs(float(np.ravel(tree.evaluate(one, dict(self.at)))[0])) for one in whole]
         return list(dict.fromkeys(sizes))
 
@@ -277,9 +282,23 @@ class Line:
             return  # at the robot's own numbers that is any other number of the place
         with np.errstate(invalid="ignore"):
             effect = self.climbed(place, new) - self.root.value
+        if change.kind == "missing term" and self._takes_out(effect):
+            return  # m1 + (m2 - m1): a term is taken out, and that is told so
         if np.isfinite(effect).all() and np.max(np.abs(effect)) > 1e-12 * self.scale:
             self.changes.append(change)
             self.rows.append(effect)
+
+    def _takes_out(self, effect: Array) -> bool:
+        """Whether what is added only takes away a term that is there."""
+        allowed = TOLERANCES.effect_matches * self.scale
+        return bool(np.any(np.max(np.abs(self.shares + effect), axis=1) <= allowed))
+
+    @cached_property
+    def shares(self) -> Array:
+        """What each term of a sum adds to the whole."""
+        inside = (one for one in self.places if one.above is not None and is_sum(one.above.node))
+        shares = [self.root.value - self.climbed(one, np.zeros(self.count)) for one in inside]
+        return np.array(shares).reshape(-1, self.count)
 
     def edit(
         self,

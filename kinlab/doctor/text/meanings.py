@@ -133,9 +133,12 @@ class Meanings:
         if one.whole and not (one.half and one.digits >= digits):
             return name is not None
         gap = abs(value - one.value)
+        weight = name is not None and name[0] == "g"  # the textbooks' 10, and 9.80665
         if gap > one.half * (1 + TOLERANCES.same_relation):
-            return name is not None and name[0] == "g"
-        return gap <= CLOSE * abs(value) or one.digits > 1
+            return weight
+        constant = self.holds(value) and not self.product(value)
+        near = TOLERANCES.typed_rounding if constant else CLOSE
+        return weight or gap <= near * abs(value) or (one.digits > 1 and not constant)
 
 
 def coefficients(right: Node) -> tuple[list[Node], ...]:

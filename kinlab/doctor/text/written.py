@@ -162,6 +162,12 @@ class Written:
                     waiting.append(name)
         return found
 
+    def definition(self, name: str) -> Written:
+        """What one of these names stands for, in which no name may stand that is made of it."""
+        own = replace(self, entry=name, text=self.symbols[name], typing=None)
+        made = {x for x in self.symbols if name in replace(self, text=x)._used}
+        return replace(own, symbols={x: y for x, y in self.symbols.items() if x not in made})
+
     def opened(self) -> Written:
         """The same with what the writer's own names stand for, where each stands but once.
 
