@@ -719,8 +719,11 @@ def _tests(tree: ast.AST, trial: Trial, counters: Sequence[str]) -> dict[str, as
     found = [one for one in found if here.union(trial.space) >= {*names(one)}]
     used = {name for one in trial.trees for name in names(one)}
     for name, value in trial.space.items():
-        kinds = {*value} if isinstance(value, str | list | tuple) and name not in used else set()
-        if len(kinds) != 2 or not all(isinstance(one, str | bool) for one in kinds):
+        listed = isinstance(value, str | list | tuple) and name not in used
+        if not listed or not all(isinstance(one, str | bool) for one in value):
+            continue
+        kinds = {*value}
+        if len(kinds) != 2:
             continue
         for counter in counters:
             entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Name(counter, ast.Load()))
