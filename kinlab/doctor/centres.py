@@ -25,7 +25,7 @@ from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.trig import Poly
-from kinlab.symbolic.vocabulary import Vocabulary, is_planar, vocabulary
+from kinlab.symbolic.vocabulary import Vocabulary, vocabulary
 
 _CENTRE = re.compile(r"(?:lc|r)(\d*)")
 _ELSEWHERE = 0.93
@@ -74,9 +74,9 @@ def _letters(poly: Poly) -> set[str]:
 def centres_elsewhere(
     table: DHTable, texts: Iterable[Written], rods: bool = True
 ) -> DHTable | None:
-    """The arm with other centres: those that texts name, and if asked, of planar ``rods`` all."""
+    """The arm with other centres: those that texts name, and if asked, of ``rods`` all."""
     links = {k for text in texts for k in _named(text, table).values()}
-    if rods and is_planar(table):
+    if rods:
         links |= {k for k in range(1, table.n + 1) if _share(table, k) == Fraction(1, 2)}
     return _moved(table, tuple(sorted(k for k in links if _share(table, k))))
 
@@ -103,6 +103,20 @@ def _in_names(text: Written, node: Node) -> Node:
         else:
             meant[name] = canonical(name)
     return tree.renamed(node, meant)
+
+
+def by_equal_numbers(text: Written, derived: Derivation, poly: Poly) -> Written:
+    """A text that has an equal number of the arm's by its name: of a pole's tool for its centre."""
+    own, right = tree.names(text.node), _letters(poly)
+    values, symbols = derived.values, dict(text.symbols)
+    for name in sorted(own - right):
+        alike = [other for other in sorted(right - own) if values.get(other) == values.get(name)]
+        if name in values and len(alike) == 1 and name not in symbols:
+            symbols[name] = alike[0]
+    if symbols == text.symbols:
+        return text
+    there = replace(text, symbols=symbols)
+    return replace(there, node=_in_names(there, parse(there.text)))
 
 
 def stands_so(text: Written, name: str, words: Vocabulary) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import seed_of, whole
 from kinlab.check.catalogue import Row
 from kinlab.check.compare import need_function
-from kinlab.check.diagnosis import ENTRY_LETTERS, Diagnosis, Typeset, shown_entry
+from kinlab.check.diagnosis import ENTRY_LETTERS, Cause, Diagnosis, Typeset, shown_entry
 from kinlab.check.guest import GuestFunction
 from kinlab.check.quantities.registry import quantities, split_name
 from kinlab.check.quantities.registry import quantity as find_quantity
@@ -46,6 +46,7 @@ from kinlab.formulas.text import (
 from kinlab.formulas.tree import Node
 from kinlab.formulas.tree import Path as Way
 from kinlab.formulas.typeset import Marks, equation
+from kinlab.host.language import _
 
 FEWEST = 10
 """States that a diagnosis needs at least."""
@@ -82,7 +83,8 @@ def diagnose(
         arm = mechanism(robot)
         file = formula_file({"robot": arm.name, "formulas": {quantity: function}}, "formula")
         judged = examine_formulas(file, arm, whole(samples, "samples", FEWEST), seed_of(seed))
-        return next((one for one in judged if not one.agrees), judged[0])
+        wrong = [one for one in judged if not one.agrees]
+        return _of_all(wrong) if wrong else judged[0]
     need_function(function)
     plain, index = split_name(quantity if "[" in quantity else _in_full(quantity, robot))
     case, engine = prepare(robot, plain, index, samples, seed)
@@ -94,6 +96,34 @@ def diagnose(
     )
     hand = np.asarray(stacked(None, *case.arguments.values()))
     return examine(case, hand, engine, quantity, function_name(function), {})
+
+
+def _of_all(wrong: list[Diagnosis]) -> Diagnosis:
+    """What is wrong in entries that are judged each for itself, told together."""
+    unknown = [one for one in wrong if not one.causes]
+    first = (unknown or wrong)[0]
+    if len(wrong) == 1:
+        return first
+    told = [one.causes[0] for one in wrong if one.causes]
+    sentence = _("; ").join(dict.fromkeys(cause.sentence for cause in told))
+    both = replace(
+        first,
+        function=", ".join(one.function for one in wrong),
+        quantity=split_name(first.quantity)[0],
+        error_before=max(one.error_before for one in wrong),
+    )
+    if unknown:
+        return replace(both, partial=(*first.partial, *([sentence] if told else [])))
+    cause = Cause(
+        sentence,
+        tuple(kind for one in told for kind in one.kinds),
+        tuple(place for one in told for place in one.places),
+        max(one.error_after for one in told),
+        sum(one.cost for one in told),
+        {name: text for one in told for name, text in one.corrected.items()},
+        {name: text for one in told for name, text in one.typed.items()},
+    )
+    return replace(both, causes=(cause,))
 
 
 def _in_full(quantity: str, robot: Any) -> str:

@@ -12,7 +12,7 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
-from kinlab.doctor.centres import apart
+from kinlab.doctor.centres import apart, by_equal_numbers
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
 from kinlab.doctor.derived import Derivation, searchable
 from kinlab.doctor.linkages.looked_up import reference_of
@@ -161,8 +161,10 @@ def of_entry(case: Case, entry: AnswerEntry, text: Written | None) -> list[Slip]
     arguments = case.quantity.arguments
     if text is not None or not isinstance(derived, Derivation):
         assert text is not None
-        arm = isinstance(derived, Derivation) and searchable(poly)
-        elsewhere = apart(case, entry, text, poly) if arm else None
+        elsewhere = None
+        if isinstance(derived, Derivation) and searchable(poly):
+            text = by_equal_numbers(text, derived, poly)
+            elsewhere = apart(case, entry, text, poly)
         of = (derived, poly, arguments, case.arguments)
         found = terms.in_text(entry.label, text, *of, elsewhere)
     else:
