@@ -315,6 +315,8 @@ def _target(here: Here, target: ast.Subscript, observed: Observed) -> Iterator[P
                 if other != value_of(key):
                     cost = 1.15 if abs(other - value_of(key)) == 1 else 1.17
                     yield here.within(holder, field, number(other), "index", cost)
+            if len(sizes) > 1 and isinstance(getattr(here.node, "value", None), ast.Constant):
+                yield here.within(holder, field, ast.Slice(), "index", 1.1)  # a whole row of ones
         elif not isinstance(key, ast.Slice):
             for step in (1, -1):
                 yield here.within(holder, field, plus(key, step), "index", 1.15)

@@ -323,6 +323,8 @@ def _calls(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if isinstance(here.parent, ast.Subscript | ast.Attribute):
         return
     for size, call in scope.idle:
+        if len(shape) == 1 and size == shape * 2:
+            yield here.instead(ast.BinOp(call, ast.MatMult(), node), "missing matrix", 1.06)
         if size != shape:
             continue
         if len(shape) == 2:

@@ -6,10 +6,12 @@ import ast
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from itertools import combinations
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.edits.scope import ANGLES
@@ -51,11 +53,28 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
     left_out = [x for x in lengths if not among(x, given)]
+    if weight and not any(map(may_be_gravity, given)):
+        yield from _without_gravity(trial, observed, np.asarray(table.gravity, dtype=float))
     if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
                 yield from _instead_of_zero(here, trial, left_out)
+
+
+def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[ProgramEdit]:
+    """Gravity for nothing, where the program has none: the base's acceleration is -g."""
+    if not isinstance(trial.space.get("np"), ModuleType):
+        return
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            zeros = isinstance(here.node, ast.Call) and called(here.node) == "zeros"
+            if zeros and observed.shape(here.node) == down.shape:
+                for vector in (-down, down):
+                    row = ast.List([number(float(x)) for x in vector + 0.0], ast.Load())
+                    array = ast.Attribute(ast.Name("np", ast.Load()), "array", ast.Load())
+                    new = ast.Call(array, [row], [])
+                    yield replace(here.instead(new, "number", 1.05), of_the_arm=True)
 
 
 def sizes_of(table: DHTable) -> dict[str, list[float]]:

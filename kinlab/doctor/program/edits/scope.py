@@ -25,7 +25,7 @@ ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan"
 PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
 _SQUARES = {(2, 2), (3, 3), (4, 4)}
 """Shapes of matrices to which the unit matrix may be added."""
-_VECTOR, _MATRIX = (3,), (3, 3)
+_VECTOR, _MATRIX, _TWISTS = (3,), (3, 3), (6, 6)
 _JOINTS = 7
 """Entries of a row that nothing uses up to which each is tried."""
 _LONG = 60
@@ -283,7 +283,7 @@ class Scope:
         """Calls of the program's own functions that nothing calls, with what is at hand."""
         every = [x for one in trial.trees for x in nodes(one) if isinstance(x, ast.Call)]
         known = {self.observed.shape(x) for x in every if called(x) in self.functions}
-        shapes = {_VECTOR, _MATRIX, *(one for one in known if one)}
+        shapes = {_VECTOR, _MATRIX, _TWISTS, *(one for one in known if one)}
         here = [*self.unused, *self.counters, *(n for n, shape in self.shapes.items() if shape)]
         for name in _not_called(trial, {called(x) for x in every}):
             for given in here:
