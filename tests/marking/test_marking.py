@@ -695,3 +695,19 @@ def test_names_of_a_students_own_stand_on_lines_of_their_own(tmp_path):
     sheet = {"robot": "planar2r", "questions": [{"id": "a", "entry": "C12"}]}
     (found,) = kl.mark(sheet, tmp_path)["ada"].outcomes
     assert found.verdict == "right", found.remark
+
+
+def test_a_fault_of_our_own_costs_one_answer_and_no_class(monkeypatch) -> None:
+    """Whatever judging one answer raises, the others have their marks."""
+    from kinlab.doctor.marking import judge
+
+    def breaks(sheet, question, student, file):
+        if student == "eve":
+            raise KeyError("a fault")
+        return with_answer(sheet, question, student, file)
+
+    with_answer = judge.with_answer
+    monkeypatch.setattr(judge, "with_answer", breaks)
+    marks = kl.mark(SHEET, {"ada": RIGHT, "eve": RIGHT}, workers=1)
+    assert marks["ada"].total == 10.0
+    assert [one.verdict for one in marks["eve"].outcomes] == ["right"] * 3 + ["could not be read"]

@@ -117,7 +117,7 @@ def _one(sheet: Sheet, question: Question, submission: Submission) -> Outcome:
             outcome = with_answer(sheet, question, submission.student, file)
     except KinlabError as problem:
         return lost(question, str(problem), written)
-    except (RecursionError, MemoryError, OverflowError, ArithmeticError, ValueError) as problem:
+    except Exception as problem:  # noqa: BLE001  whatever happens costs one answer, not a class
         return lost(question, f"{question.id}: {type(problem).__name__}", written)
     return replace(outcome, written=written)
 

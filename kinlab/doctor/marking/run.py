@@ -200,7 +200,7 @@ class _Work:
             return _finished(shown, submission, tuple(outcomes), note, slug)
         except KinlabError as problem:
             return _unread(self.sheet, shown, path.stem, str(problem), slug)
-        except (OSError, MemoryError, RecursionError) as problem:
+        except Exception as problem:  # noqa: BLE001  as in judge
             reason = f"{shown}: {type(problem).__name__}"
             return _unread(self.sheet, shown, path.stem, reason, slug)
 

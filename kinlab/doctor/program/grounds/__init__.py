@@ -7,9 +7,11 @@ module            what it holds
 ``called``        What the numbers of an arm are called
 ``dimensions``    The dimensions of a program's expressions: nobody adds a length to a moment
 ``evidence``      What speaks against an edit: that what it changes is already what a textbook has
+``helpers``       Functions of a program that are what textbooks have, of whatever they are given
 ``labels``        What the numbers of a program are called, and at which place they stand
 ``products``      Products that may be missing in a sum, as far as dimensions tell
 ``scaled``        Another arm, on which what is one by the numbers alone is two things
 ``suspects``      Statements that are wrong by what they are made of
+``terms``         Vectors and matrices that a sum may lack, of the sum's dimension
 ================  =================================================================================
 """
