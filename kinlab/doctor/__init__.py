@@ -3,8 +3,6 @@
 ================  =================================================================================
 module            what it holds
 ================  =================================================================================
-``centres``       Centres of mass apart from the lengths: an arm of which lc1 is a number of its
-                  own, not l1/2
 ``changes``       A reading: one thing that people take differently, and what the engine says if
                   one does; the answer's single entries
 ``derived``       The engine's quantities as derived formulas, entry by entry, for arms with a DH

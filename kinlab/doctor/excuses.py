@@ -12,8 +12,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import rounding, verdicts
-from kinlab.doctor.centres import as_there, centres_elsewhere
 from kinlab.doctor.changes import AnswerEntry, Arguments, Case, entries, table_of
+from kinlab.doctor.confusions.centres import as_there, centres_elsewhere
 from kinlab.doctor.derivations.words import together
 from kinlab.doctor.derived import derivation_of
 from kinlab.doctor.linkages.looked_up import reference_of

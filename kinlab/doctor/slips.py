@@ -12,8 +12,8 @@ from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
 from kinlab.doctor import terms
-from kinlab.doctor.centres import apart, by_equal_numbers
 from kinlab.doctor.changes import AnswerEntry, Case, Confusion, entries
+from kinlab.doctor.confusions.centres import apart, by_equal_numbers
 from kinlab.doctor.derived import Derivation, searchable
 from kinlab.doctor.linkages.looked_up import reference_of
 from kinlab.doctor.terms import Slip

@@ -13,8 +13,8 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.diagnosis import shown_entry
 from kinlab.doctor import regression, search
-from kinlab.doctor.centres import Apart, stands_so
 from kinlab.doctor.changes import ANY_ZERO
+from kinlab.doctor.confusions.centres import FreeCentres, stands_so
 from kinlab.doctor.derived import POINTS, Derivation, searchable
 from kinlab.doctor.linkages.looked_up import Reference
 from kinlab.doctor.search import Edit, Repair
@@ -96,7 +96,7 @@ def in_text(
     poly: Any,
     arguments: tuple[str, ...],
     states: dict[str, Array],
-    elsewhere: Apart | None = None,
+    elsewhere: FreeCentres | None = None,
 ) -> list[Slip]:
     """Slips that turn the user's text into the derived formula, at random parameters.
 
@@ -186,7 +186,7 @@ def _with_value(text: Written, at: dict[str, Array]) -> dict[str, Array]:
     return {name: x[known] for name, x in at.items()}
 
 
-def _elsewhere(of: Apart, named: list[str], arguments: tuple[str, ...]) -> list[Line]:
+def _elsewhere(of: FreeCentres, named: list[str], arguments: tuple[str, ...]) -> list[Line]:
     """The text of an arm with its centres elsewhere.
 
     Its moments are free; who names centres may also have them as those of rods.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,10 +22,12 @@ from kinlab.check.quantities.registry import quantities
 from kinlab.doctor.changes import Case
 from kinlab.doctor.linkages.five_bar import is_either
 from kinlab.doctor.linkages.looked_up import looked_up
-from kinlab.doctor.text.written import Written
 from kinlab.fivebar import FiveBar
 from kinlab.host.language import _
 from kinlab.tolerances import TOLERANCES
+
+if TYPE_CHECKING:
+    from kinlab.doctor.text.written import Written
 
 Judge = Callable[[Case, Array, Array], Diagnosis]
 """From a case, the answers and the right ones to what is said of them."""

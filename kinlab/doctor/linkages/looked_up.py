@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +20,13 @@ from kinlab.check.quantities.quantity import Quantity
 from kinlab.doctor.changes import Case
 from kinlab.doctor.derived import Derivation, derivation_of
 from kinlab.doctor.linkages import five_bar
-from kinlab.doctor.text.written import Written
 from kinlab.fivebar import FiveBar
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.tolerances import TOLERANCES
+
+if TYPE_CHECKING:
+    from kinlab.doctor.text.written import Written
 
 _LINKAGES, _POSES = 8, 6
 """Other five-bars at which a text is looked at, and states of each."""

@@ -37,6 +37,8 @@ _NAMED = 2
 _ROUNDINGS = ("round", "around", "round_")
 _STEP = 1e-2
 """Share of a number below which another one is rather the step of a difference."""
+_NO_LIKELIER = 0.06
+"""Cost beyond the likeliest meaning's of another that may be meant as well."""
 _PAIR = 2
 """Repairs of which two may leave what differences leave."""
 _WIDE = 72
@@ -185,9 +187,12 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
     line = edited[0]
     one = len(line.kinds) == 1
     known = [cause for cause in read if one and _same_slip(cause, line.kinds[0])]
-    if len({cause.sentence for cause in known}) != 1:  # of several meanings none is told
+    if not known:
         return [line]
-    cause = known[0]
+    cause = min(known, key=lambda one: one.cost)
+    near = {one.sentence for one in known if one.cost <= cause.cost + _NO_LIKELIER}
+    if len(near) > 1:  # of several meanings none is told
+        return [line]
     said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
     places = (*line.places, *cause.places)
     return [replace(line, sentence=said, kinds=cause.kinds, places=places)]

@@ -717,6 +717,7 @@ def _tests(tree: ast.AST, trial: Trial, counters: Sequence[str]) -> dict[str, as
     here = {*names(tree), *counters}
     found = [one for one in asked if not {*counters}.isdisjoint(names(one))]
     found = [one for one in found if here.union(trial.space) >= {*names(one)}]
+    found = [one for one in found if not {*names(one)} <= {*counters}]  # no first or last joint
     used = {name for one in trial.trees for name in names(one)}
     for name, value in trial.space.items():
         listed = isinstance(value, str | list | tuple) and name not in used

@@ -123,7 +123,10 @@ class Lanes:
             raise TooMuchError
         self.work += _PICK
         here = self.here
-        value = old()
+        try:
+            value = old()
+        except NameError:  # a line more sets it for the first time
+            value = None
         known = here.edits
         if known.keys().isdisjoint(edits):
             return value

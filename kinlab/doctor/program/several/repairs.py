@@ -44,7 +44,7 @@ _LOOKING = 1_500_000
 """What watching a program anew amounts to, beside running it."""
 _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
-_IN_ORDER = 15_000_000
+_IN_ORDER = 30_000_000
 """Work for one slip after another."""
 _ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 1
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""

@@ -33,7 +33,7 @@ _ELSEWHERE = 0.93
 
 
 @dataclass(frozen=True, eq=False)
-class Apart:
+class FreeCentres:
     """A text, and what it should be, of an arm with its centres elsewhere.
 
     Attributes:
@@ -50,7 +50,7 @@ class Apart:
     poly: Poly
 
 
-def apart(case: Case, entry: AnswerEntry, text: Written, poly: Poly) -> Apart | None:
+def apart(case: Case, entry: AnswerEntry, text: Written, poly: Poly) -> FreeCentres | None:
     """The text of an arm with its centres elsewhere; None where no centre comes into it."""
     table = table_of(case.robot)
     other = None if table is None else centres_elsewhere(table, [text])
@@ -63,7 +63,9 @@ def apart(case: Case, entry: AnswerEntry, text: Written, poly: Poly) -> Apart | 
     meant = {name: as_text(total) for name, total in vocabulary(table).others.items() if total}
     own = {name: written for name, written in meant.items() if written != name}
     here = replace(text, symbols={**own, **text.symbols})
-    return Apart(as_there(text, table, other), here, bool(_named(text, table)), derived, there)
+    return FreeCentres(
+        as_there(text, table, other), here, bool(_named(text, table)), derived, there
+    )
 
 
 def _letters(poly: Poly) -> set[str]:
