@@ -3,6 +3,8 @@
 =============  ====================================================================================
 module         what it holds
 =============  ====================================================================================
+``centres``    Centres of mass apart from the lengths: an arm of which lc1 is a number of its own,
+               not l1/2
 ``known``      The table of known confusions: every reading that makes sense for a quantity
 ``otherwise``  What the engine says if asked otherwise: another frame, another split of C, terms
                left out

@@ -54,7 +54,7 @@ from kinlab.tolerances import TOLERANCES
 
 _WORK = 45_000_000
 """Operations of numbers, or what amounts to them, of which all searches have their share."""
-_ALONE = 42_000_000
+_ALONE = 50_000_000
 """What may be done for single edits beside which none stands."""
 _FURTHER = 6000
 """Edits that are run all at once where there is no time to run each."""

@@ -191,7 +191,7 @@ def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
         return [line]
     cause = min(known, key=lambda one: one.cost)
     near = {one.sentence for one in known if one.cost <= cause.cost + _NO_LIKELIER}
-    if len(near) > 1:  # of several meanings none is told
+    if len(near) > 1 and "factor" in cause.kinds:  # twice of what, is not told by the whole
         return [line]
     said = _("{meaning}: {line}").format(meaning=cause.sentence, line=line.sentence)
     places = (*line.places, *cause.places)

@@ -40,6 +40,8 @@ _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
 """Things of which it has one for each joint, which a function of the joint's number returns."""
 _OWN = ("cell", "mass", "centre_distance", "Izz", "joint_Izz")
 """The arm's own numbers, which do not vary: any value may meet one."""
+_LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "index")
+"""Kinds of edit that make another of the textbooks' functions of one."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
@@ -64,6 +66,7 @@ class Grounds:
         self.values: set[float] = set()
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
+        self.helpers: set[int] = set()
         self._of_data: dict[str, float] = {}
         if not known:
             return
@@ -75,11 +78,13 @@ class Grounds:
                     own = float(seen.values[0])
                     self.values |= {own, 1 / own} if own else set()
         self._below()
-        self.sound |= true_helpers(trial, observed)
+        self.helpers = true_helpers(trial, observed)
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""
-        if edit.part in self.sound:
+        # a helper may be right for twists that are laid out in the other order
+        helps = edit.part in self.helpers and edit.kind not in _LAYOUTS
+        if edit.part in self.sound or helps:
             return _SOUND
         if edit.part == DATA:
             name = str(edit.node)

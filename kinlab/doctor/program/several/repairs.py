@@ -46,7 +46,7 @@ _WATCHING = 5
 """Of the work for single edits, the part for watching statements."""
 _IN_ORDER = 30_000_000
 """Work for one slip after another."""
-_ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 1
+_ALONE, _IN_LANES, _WAYS = 3_000_000, 12_000_000, 2
 """Work for the last one beside them, run alone, and in lanes after that; of how many ways."""
 _TURNS = 3
 """Edits of one repair that are exchanged for likelier ones."""
