@@ -1,7 +1,7 @@
 """Formulas of a five-bar as text: their names, what they are held against, what is right too.
 
 =================  ================================================================================
-module            what it holds
+module             what it holds
 =================  ================================================================================
 ``as_right``       A five-bar's answers that are as right as the engine's own: an equation times a
                    factor, a branch
@@ -9,7 +9,8 @@ module            what it holds
                    w1x, uHw1, I_A
 ``looked_up``      A five-bar's quantity as the engine has it, at this and at other five-bars, as a
                    reference
-``mechanisms``     The arm or the five-bar that formulas are of: from a name, a path, or what one has
+``mechanisms``     The arm or the five-bar that formulas are of: from a name, a path, or what
+                   one has
 ``named_numbers``  The robot's numbers by the names that they have in formulas, an arm's or a
                    five-bar's
 =================  ================================================================================
