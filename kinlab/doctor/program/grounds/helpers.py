@@ -73,7 +73,7 @@ def _calls(trial: Trial, observed: Observed, name: str) -> Iterator[Call]:
         kind = kind or shapes
         every = zip(*(one.values for one in told), strict=False)
         for (*given, value), _k in zip(every, range(_MOST), strict=False):
-            if shapes == kind:
+            if shapes == kind and all(np.isfinite(x).all() for x in (*given, value)):
                 yield given, value
 
 
