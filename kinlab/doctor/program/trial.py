@@ -18,7 +18,7 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.kept import Contents
-from kinlab.doctor.program.own.calls import CALLS, REAL_CALLS, bounded_range
+from kinlab.doctor.program.own.calls import CALLS, PRODUCTS, REAL_CALLS, bounded_range
 from kinlab.doctor.program.own.definitions import (
     DEFAULT,
     FIELDS,
@@ -28,6 +28,7 @@ from kinlab.doctor.program.own.definitions import (
     class_like,
     names_by_class,
     with_defaults,
+    with_products,
 )
 from kinlab.doctor.program.own.plain import alike, attributes, closed, functions_in, written
 from kinlab.doctor.program.read import OwnProgram, implied
@@ -127,6 +128,7 @@ class Trial:
             bounded(part.tree, None if part.sets else part.function) for part in program.parts
         ]
         self.space |= {"_turn": self._turn, "_edit": 0, "range": bounded_range, DEFAULT: DEFAULT}
+        self.space |= PRODUCTS
         self._turns = 0
         self._loads = [k for k, part in enumerate(program.parts) if part.sets]
         self._bodies = names_by_class(self.trees[k] for k in self._loads)
@@ -218,7 +220,7 @@ class Trial:
             NoProgramError: it cannot be compiled.
         """
         part, space = self.program.parts[k], self.space
-        module = ast.Module(tree.body if part.sets else [tree], [])
+        module = with_products(ast.Module(tree.body if part.sets else [tree], []))
         try:
             code = compile(module, "<formula>", "exec")
         except (SyntaxError, ValueError, TypeError) as problem:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from kinlab.doctor.program.lanes.numbers import Laned, Lanes, values_in
-from kinlab.doctor.program.own.calls import QUICK, REAL
+from kinlab.doctor.program.own.calls import QUICK, REAL, product
 
 _OF_ONE = (
     *("sin", "cos", "tan", "arcsin", "arccos", "arctan"),
@@ -220,7 +220,7 @@ def _power(matrix: Any, count: int) -> Any:
 
 
 def _dot_of_all(matrices: Any) -> Any:
-    return functools.reduce(lambda one, other: one @ other, map(np.asarray, matrices))
+    return functools.reduce(product, map(np.asarray, matrices))
 
 
 def _with_float(plain: Callable[..., Any]) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable
 from types import ModuleType
 from typing import Any
@@ -11,6 +12,8 @@ import numpy as np
 
 _LARGEST = 100_000
 """Numbers that an array, or an outer product, may have."""
+_MATRIX = 2
+"""Axes of a matrix."""
 _LONGEST = 5_000
 """Turns that a loop over numbers may have."""
 
@@ -48,8 +51,37 @@ def _array(*given: Any, **named: Any) -> Any:
     return found
 
 
+def product(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
+    """numpy's product of matrices; of objects by a function that fails without harm.
+
+    Where two of these cannot be multiplied, as a number and None, ``@`` gives one object back to
+    the memory twice, and the process may end much later.
+    """
+    kinds = getattr(one, "dtype", None), getattr(other, "dtype", None)
+    if object not in kinds or rest or options:
+        return np.matmul(one, other, *rest, **options) if rest or options else one @ other
+    if np.ndim(one) <= _MATRIX and np.ndim(other) <= _MATRIX:
+        return np.dot(one, other) if all(map(np.ndim, (one, other))) else one @ other
+    first = one if np.ndim(one) > 1 else one[None, :]
+    last = other if np.ndim(other) > 1 else other[:, None]
+    found = (first[..., :, :, None] * last[..., None, :, :]).sum(axis=-2)
+    found = found if np.ndim(one) > 1 else found[..., 0, :]
+    return found if np.ndim(other) > 1 else found[..., 0]
+
+
+def multiplied(one: Any, other: Any) -> Any:
+    """The same in place, as ``@=`` has it."""
+    if isinstance(one, np.ndarray):
+        one[...] = product(one, other)
+        return one
+    return product(one, other)
+
+
+PRODUCTS = {"_product": product, "_multiplied": multiplied}
+"""What stands for ``@`` and ``@=``, by the names under which compiled programs have it."""
+
 QUICK = ModuleType("numpy")
-QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array)
+QUICK.__dict__.update(np.__dict__, cross=_cross, outer=_outer, array=_array, matmul=product)
 
 
 def _or_none(function: Callable[..., float]) -> Callable[..., float]:
@@ -69,6 +101,7 @@ REAL = ModuleType("math")
 REAL.__dict__.update(vars(math), **_ROOTS)
 
 CALLS: dict[int, Any] = {id(np): QUICK, id(np.cross): _cross}
+CALLS |= dict.fromkeys((id(np.matmul), id(operator.matmul)), product)
 """What stands for modules and functions, by their identity."""
 REAL_CALLS: dict[int, Any] = {id(math): REAL}
 REAL_CALLS |= {id(getattr(math, name)): new for name, new in _ROOTS.items()}

@@ -130,6 +130,34 @@ def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.Functio
     return ast.fix_missing_locations(own)
 
 
+def with_products(tree: Any) -> Any:
+    """A tree with functions for ``@`` and ``@=``; what has none of these stays."""
+    pieces: dict[str, Any] = {}
+    for name in tree._fields:
+        value = getattr(tree, name, None)
+        if isinstance(value, list):
+            some = [with_products(one) if isinstance(one, ast.AST) else one for one in value]
+            if any(new is not old for new, old in zip(some, value, strict=True)):
+                pieces[name] = some
+        elif isinstance(value, ast.AST) and value._fields:
+            other = with_products(value)
+            if other is not value:
+                pieces[name] = other
+    if pieces:
+        tree = shallow(tree)
+        tree.__dict__.update(pieces)
+    if not isinstance(getattr(tree, "op", None), ast.MatMult):
+        return tree
+    at = {name: getattr(tree, name) for name in tree._attributes}
+    if isinstance(tree, ast.BinOp):
+        return ast.Call(ast.Name("_product", ast.Load(), **at), [tree.left, tree.right], [], **at)
+    if not isinstance(tree.target, ast.Name):
+        return tree
+    given = [ast.Name(tree.target.id, ast.Load(), **at), tree.value]
+    call = ast.Call(ast.Name("_multiplied", ast.Load(), **at), given, [], **at)
+    return ast.Assign([tree.target], call, **at)
+
+
 _TELLING = ("print", "display", "debug", "info", "warning", "error", "critical", "warn")
 """Functions and methods that only tell something."""
 
