@@ -307,6 +307,17 @@ class Trial:
             self._stale = stale
 
     @contextmanager
+    def as_held(self) -> Iterator[None]:
+        """Puts back afterwards what edited runs have written into the data."""
+        held = self._contents.now()
+        try:
+            yield
+        finally:
+            if self._contents.put_back(held):  # answers may rest on what was written
+                for one in self._remembering:
+                    getattr(one, "known", {}).clear()
+
+    @contextmanager
     def changed(
         self,
         parts: set[int],
@@ -323,10 +334,10 @@ class Trial:
         old = [(change, change.now) for change in changes]
         every = range(len(self.trees))
         outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
-        held, edit = self._contents.now(), self.space["_edit"]
+        edit = self.space["_edit"]
         reached = {k for part in parts for k in self.above[part]}
         self._touched = outer | reached
-        with self.as_loaded():
+        with self.as_loaded(), self.as_held():
             try:
                 again = not reached.isdisjoint(self._loads) or (-1 in parts and bool(self._fields))
                 self._stale = self._stale or again
@@ -345,16 +356,11 @@ class Trial:
             finally:
                 for change, value in reversed(old):
                     change.put(value)
-                if self._contents.put_back(held):  # answers may rest on what was written
-                    self._forget()
                 self._touched, self._made = outer, before
                 self.space["_edit"] = edit
                 for k in every:
                     self.place(k, kept[k])
 
-    def _forget(self) -> None:
-        for one in self._remembering:
-            getattr(one, "known", {}).clear()
 
     def function(self, *state: Any) -> Any:
         """The program at one state.

@@ -133,7 +133,7 @@ class InLanes:
         changes = [(change, change.now) for change in self._wide]
         changes += [(change, change.now) for _number, change in self._data]
         try:
-            with trial.as_loaded():
+            with trial.as_loaded(), trial.as_held():
                 for change in self._wide:
                     change.put(change.new)
                 trial.space.update(with_lanes(trial.space))
