@@ -220,9 +220,10 @@ class Trial:
             NoProgramError: it cannot be compiled.
         """
         part, space = self.program.parts[k], self.space
-        module = with_products(ast.Module(tree.body if part.sets else [tree], []))
+        module = ast.Module(tree.body if part.sets else [tree], [])
         try:
-            code = compile(module, "<formula>", "exec")
+            with with_products(module):
+                code = compile(module, "<formula>", "exec")
         except (SyntaxError, ValueError, TypeError) as problem:
             raise NoProgramError(str(problem)) from problem
         if part.sets:
@@ -332,6 +333,7 @@ class Trial:
             compiled: the number of the changes in a function that has them, where it is made.
         """
         old = [(change, change.now) for change in changes]
+        moved: list[tuple[FieldChange, Any]] = []
         every = range(len(self.trees))
         outer, before, kept = self._touched, [*self._made], [self.placed(k) for k in every]
         edit = self.space["_edit"]
@@ -345,6 +347,9 @@ class Trial:
                     if compiled is None:
                         _located(change.new)
                     change.put(change.new)
+                moved = [*_in_new_blocks(old)]
+                for change, _value in moved:
+                    change.put(change.new)
                 for k in every:
                     if k in parts and compiled is not None:
                         self.space["_edit"], self._made[k] = compiled
@@ -354,7 +359,7 @@ class Trial:
                     self.place(k, self._made[k] if k in self._touched else self._remembering[k])
                 yield
             finally:
-                for change, value in reversed(old):
+                for change, value in reversed([*old, *moved]):
                     change.put(value)
                 self._touched, self._made = outer, before
                 self.space["_edit"] = edit
@@ -528,6 +533,18 @@ def _key(value: Any, deep: int = 0) -> Any:
     if value is None or isinstance(value, str | int | float | complex | np.number):
         return (type(value).__name__, value)
     raise TypeError(type(value).__name__)
+
+
+def _in_new_blocks(
+    changes: Sequence[tuple[FieldChange, Any]],
+) -> Iterator[tuple[FieldChange, Any]]:
+    """Changes of single statements in blocks that others replace, there; and what stands there."""
+    blocks = {id(old): one.new for one, old in changes if isinstance(old, list)}
+    for change, old in changes:
+        block = blocks.get(id(change.holder))
+        for k, statement in enumerate(block if isinstance(block, list) else ()):
+            if statement is old and isinstance(old, ast.stmt):
+                yield FieldChange(block, k, change.new), old
 
 
 def _located(new: Any) -> None:

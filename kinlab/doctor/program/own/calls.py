@@ -12,8 +12,6 @@ import numpy as np
 
 _LARGEST = 100_000
 """Numbers that an array, or an outer product, may have."""
-_MATRIX = 2
-"""Axes of a matrix."""
 _LONGEST = 5_000
 """Turns that a loop over numbers may have."""
 
@@ -52,7 +50,7 @@ def _array(*given: Any, **named: Any) -> Any:
 
 
 def product(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
-    """numpy's product of matrices; of objects by a function that fails without harm.
+    """numpy's product of matrices; of objects by functions that fail without harm.
 
     Where two of these cannot be multiplied, as a number and None, ``@`` gives one object back to
     the memory twice, and the process may end much later.
@@ -60,13 +58,16 @@ def product(one: Any, other: Any, *rest: Any, **options: Any) -> Any:
     kinds = getattr(one, "dtype", None), getattr(other, "dtype", None)
     if object not in kinds or rest or options:
         return np.matmul(one, other, *rest, **options) if rest or options else one @ other
-    if np.ndim(one) <= _MATRIX and np.ndim(other) <= _MATRIX:
-        return np.dot(one, other) if all(map(np.ndim, (one, other))) else one @ other
-    first = one if np.ndim(one) > 1 else one[None, :]
-    last = other if np.ndim(other) > 1 else other[:, None]
+    one, other = np.asarray(one), np.asarray(other)
+    if not one.ndim or not other.ndim:
+        raise ValueError("a product of matrices with a number")
+    first = one if one.ndim > 1 else one[None, :]
+    last = other if other.ndim > 1 else other[:, None]
+    if first.shape[-1] != last.shape[-2]:
+        raise ValueError("a product of matrices of other sizes")
     found = (first[..., :, :, None] * last[..., None, :, :]).sum(axis=-2)
-    found = found if np.ndim(one) > 1 else found[..., 0, :]
-    return found if np.ndim(other) > 1 else found[..., 0]
+    found = found if one.ndim > 1 else found[..., 0, :]
+    return found if other.ndim > 1 else found[..., 0][()]
 
 
 def multiplied(one: Any, other: Any) -> Any:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import ast
 import copy
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import MISSING, Field
 from types import FunctionType, MemberDescriptorType
 from typing import Any
@@ -130,32 +131,54 @@ def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.Functio
     return ast.fix_missing_locations(own)
 
 
-def with_products(tree: Any) -> Any:
-    """A tree with functions for ``@`` and ``@=``; what has none of these stays."""
-    pieces: dict[str, Any] = {}
-    for name in tree._fields:
-        value = getattr(tree, name, None)
-        if isinstance(value, list):
-            some = [with_products(one) if isinstance(one, ast.AST) else one for one in value]
-            if any(new is not old for new, old in zip(some, value, strict=True)):
-                pieces[name] = some
-        elif isinstance(value, ast.AST) and value._fields:
-            other = with_products(value)
-            if other is not value:
-                pieces[name] = other
-    if pieces:
-        tree = shallow(tree)
-        tree.__dict__.update(pieces)
-    if not isinstance(getattr(tree, "op", None), ast.MatMult):
-        return tree
-    at = {name: getattr(tree, name) for name in tree._attributes}
-    if isinstance(tree, ast.BinOp):
-        return ast.Call(ast.Name("_product", ast.Load(), **at), [tree.left, tree.right], [], **at)
-    if not isinstance(tree.target, ast.Name):
-        return tree
-    given = [ast.Name(tree.target.id, ast.Load(), **at), tree.value]
+@contextmanager
+def with_products(tree: ast.AST) -> Iterator[None]:
+    """A tree with functions for ``@`` and ``@=``, as it is compiled."""
+    spots: list[tuple[Any, str, int | None]] = []
+    every = [tree]
+    for node in every:
+        for name in node._fields:
+            value: Any = getattr(node, name, None)
+            several = isinstance(value, list)
+            for k, one in enumerate(value if several else (value,)):
+                if isinstance(one, ast.AST):
+                    every.append(one)
+                    if isinstance(getattr(one, "op", None), ast.MatMult):
+                        spots.append((node, name, k if several else None))
+    kept = [_in(spot) for spot in spots]
+    try:
+        for spot in reversed(spots):
+            if isinstance(_in(spot), ast.BinOp | ast.AugAssign):  # what hangs twice is done once
+                _put_in(spot, _called(_in(spot)))
+        yield
+    finally:
+        for spot, one in zip(spots, kept, strict=True):
+            _put_in(spot, one)
+
+
+def _in(spot: tuple[Any, str, int | None]) -> Any:
+    holder, name, k = spot
+    return getattr(holder, name) if k is None else getattr(holder, name)[k]
+
+
+def _put_in(spot: tuple[Any, str, int | None], value: Any) -> None:
+    holder, name, k = spot
+    if k is None:
+        setattr(holder, name, value)
+    else:
+        getattr(holder, name)[k] = value
+
+
+def _called(node: Any) -> Any:
+    """A function for a product of matrices; for one in place of what has a name."""
+    at = {name: getattr(node, name) for name in node._attributes}
+    if isinstance(node, ast.BinOp):
+        return ast.Call(ast.Name("_product", ast.Load(), **at), [node.left, node.right], [], **at)
+    if not isinstance(node.target, ast.Name):
+        return node
+    given = [ast.Name(node.target.id, ast.Load(), **at), node.value]
     call = ast.Call(ast.Name("_multiplied", ast.Load(), **at), given, [], **at)
-    return ast.Assign([tree.target], call, **at)
+    return ast.Assign([node.target], call, **at)
 
 
 _TELLING = ("print", "display", "debug", "info", "warning", "error", "critical", "warn")
