@@ -29,9 +29,10 @@ _EDITS = 2400
 """Edits of which any two are run together."""
 _AT_ONCE, _FOLLOWED = 400, 5
 """Of how many it is looked at a time; of all work the part after which no more are."""
-_WIDE, _DOUBTED, _SPARED, _TURNS = 600, 10, 0.45, 2
+_WIDE, _DOUBTED, _SPARED, _LOT = 600, 10, 0.45, 150
 """Edits of which any two may be run where not all of the likeliest can; how much later those come
-that something speaks against; the share of the work for each such run, and how many these are."""
+that something speaks against; the share of the work for such a run, and pairs of the shortest: an
+edit that none of these has costs nothing."""
 _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
@@ -178,9 +179,11 @@ class TriedTogether:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
         likely, most = True, self._within(_SPARED * self.left)
         if most < min(_BLOCK, len(self.sound)) ** 2 // 2:
-            lots = np.array_split(self._few(_TURNS * most), _TURNS)
-            for turn, some in enumerate(one for one in lots if len(one)):
-                yield 1 + turn, some
+            pairs, start = self._few(), 0
+            while start < len(pairs):
+                some = pairs[start : start + max(self._within(_SPARED * self.left), _LOT)]
+                start += len(some)
+                yield start, some
             return
         for rank, one, other in self._blocks():
             if likely and rank > _FIRST:
@@ -197,12 +200,12 @@ class TriedTogether:
         """How many pairs may be run at once with so much work."""
         return lanes_within(work / self.each) if self.each else _BLOCK**2
 
-    def _few(self, most: int) -> Any:
-        """Of all pairs so many, the likeliest; those later that something speaks against."""
+    def _few(self) -> Any:
+        """Pairs of the likeliest edits, the likeliest first; those later that something is against."""
         some = self.sound[:_WIDE]
         pairs = self._apart(some, some)
         far = (pairs + 1).prod(axis=1) * np.where(self._possible_of(pairs), 1, _DOUBTED)
-        return pairs[np.argsort(far, kind="stable")[: max(most, 0)]]
+        return pairs[np.argsort(far, kind="stable")]
 
     def _possible_pairs(self) -> Iterator[tuple[int, Any]]:
         """Pairs of which nothing speaks against them, beyond the likeliest; the likeliest first.
