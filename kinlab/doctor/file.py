@@ -22,7 +22,13 @@ from kinlab.doctor.text.claims import alone, claimed_of, named_alone, with_force
 from kinlab.doctor.text.habits import with_habits
 from kinlab.doctor.text.joints import joint_values
 from kinlab.doctor.text.line import words_in
-from kinlab.doctor.text.own_names import DECIMAL, constants_named, in_robot_names, written_as
+from kinlab.doctor.text.own_names import (
+    DECIMAL,
+    as_distances,
+    constants_named,
+    in_robot_names,
+    written_as,
+)
 from kinlab.doctor.text.written import Written
 from kinlab.doctor.verdicts import numbers_at
 from kinlab.errors import ExpressionError, FileError, KinlabError, NameUnknownError
@@ -119,19 +125,31 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
 
 
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
+    given = {*file.symbols}
     file = with_habits(with_forces(file, robot), robot)
     done = _by_quantity(file, robot, samples, seed)
-    if all(one.agrees for found in done.values() for one in found):
-        return [one for found in done.values() for one in found]
+    found = [one for some in done.values() for one in some]
+    if all(one.agrees for one in found):
+        return found
     named, said = constants_named(file, robot)
-    if not said:
-        return [one for found in done.values() for one in found]
-    again = _by_quantity(named, robot, samples, seed)
-    return [
-        _read_better(first, second, file, said)
-        for plain, found in done.items()
-        for first, second in zip(found, again[plain], strict=True)
-    ]
+    if said:
+        again = _by_quantity(named, robot, samples, seed)
+        second = [one for plain in done for one in again[plain]]
+        pairs = zip(found, second, strict=True)
+        found = [_read_better(one, other, file, said) for one, other in pairs]
+    away, said = as_distances(file, robot, given)
+    if said:
+        again = _by_quantity(away, robot, samples, seed)
+        second = [one for plain in done for one in again[plain]]
+        pairs = zip(found, second, strict=True)
+        told = tuple(said.values())
+        found = [
+            replace(other, remarks=(*told, *other.remarks))
+            if other.agrees and not one.agrees
+            else one
+            for one, other in pairs
+        ]
+    return found
 
 
 def _by_quantity(

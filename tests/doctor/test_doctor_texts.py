@@ -184,3 +184,28 @@ def test_a_definition_that_another_line_needs_is_left_as_it_is() -> None:
     assert sorted(cause.kinds) == ["sign", "sin/cos"], cause.sentence
     assert cause.corrected["h"] == "m2*l1*l2*sin(q2)"
     assert cause.corrected["coriolis_matrix[0,0]"] == "-h*qd2"
+
+
+_BEHIND = """
+name = "behind"
+convention = "modified"
+gravity = [0.0, -9.81, 0.0]
+links = [
+  {joint = "revolute", a = 0.0, alpha = 0.0, d = 0.0, theta = "pi/2", mass = 3.0, com = [0, -0.1, 0]},
+  {joint = "revolute", a = 0.5, alpha = 0.0, d = 0.0, theta = 0.0, mass = 1.8, com = [-0.2, 0, 0]},
+]
+"""
+
+
+@pytest.mark.parametrize("length", ["lc2", "r2"])
+def test_a_length_may_be_a_distance_or_stand_along_its_axis(length, tmp_path) -> None:
+    arm = tmp_path / "behind.toml"
+    arm.write_text(_BEHIND)
+    along = kl.diagnose(arm, "G2", f"-m2*g*{length}*sin(q1+q2)")
+    away = kl.diagnose(arm, "G2", f"m2*g*{length}*sin(q1+q2)")
+    assert along.agrees and not along.remarks
+    assert away.agrees and away.remarks[0].startswith(f"{length} is a distance, 0.2 m")
+    # neither of both
+    assert not kl.diagnose(arm, "G2", f"m2*g*{length}*cos(q1+q2)").agrees
+    # what the table itself calls so is with its sign
+    assert not kl.diagnose(arm, "G2", "m2*g*cx2*sin(q1+q2)").agrees

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
+
+import numpy as np
 
 from kinlab.doctor.changes import Mechanism
 from kinlab.doctor.derived import LETTERS, WRENCH
@@ -26,6 +28,7 @@ from kinlab.tolerances import TOLERANCES
 _OF_LINK = re.compile(r"(?:alpha|w)_?[2-9]")
 """A rate or an acceleration of a joint to some, of a link to others."""
 DECIMAL = re.compile(r"(?<![\w.])\d+\.\d+(?![\w.])")
+_LENGTH = re.compile(r"(?:l|r|lc|l_c|r_c)_?\d+")
 _JOINT = re.compile(r"(?:theta|th|q)_?\d+")
 
 
@@ -45,6 +48,44 @@ def in_robot_names(text: Node, file: FormulaFile, robot: Mechanism, entry: str) 
     place = f"{file.path}: {entry}"
     _refuse_large(text, file, place, {}, ())
     return _resolved(text, file, words, known, place)
+
+
+def as_distances(
+    file: FormulaFile, robot: Mechanism, given: Collection[str]
+) -> tuple[FormulaFile, dict[str, str]]:
+    """The formulas with lengths as their writer may have them, where the table's are negative.
+
+    Args:
+        file: the formulas, with a meaning for each name that has one by habit.
+        robot: whose they are.
+        given: names that the writer explains.
+
+    Returns:
+        They, and of each such name what is said of it; nothing of a robot without a DH table.
+    """
+    words = named_numbers(robot)
+    values = {name: np.asarray(value, dtype=float) for name, value in words.items()}
+    used = {name for text in file.formulas.values() for name in tree.names(text)} - {*given}
+    symbols, texts = dict(file.symbol_texts), dict(file.texts)
+    said: dict[str, str] = {}
+    told = _("{name} is a distance, {length:g} m: in the table it is {value:g} m along the axis")
+    for name in sorted(used) if not isinstance(robot, FiveBar) else ():
+        meant = tree.sym(name) if name in words else file.symbols.get(name)
+        if meant is None or not _LENGTH.fullmatch(name) or not tree.names(meant) <= {*words}:
+            continue
+        value = float(tree.evaluate(meant, values))
+        if value < 0.0:
+            said[name] = told.format(name=name, length=-value, value=value)
+            if name in words:
+                minus = rf"(-{name})"
+                texts = {k: re.sub(rf"\b{name}\b", minus, text) for k, text in texts.items()}
+            else:
+                symbols[name] = f"-({file.symbol_texts[name]})"
+    turned = {name: tree.mul(tree.num(-1), tree.sym(name)) for name in said if name in words}
+    formulas = {entry: tree.renamed(text, turned) for entry, text in file.formulas.items()}
+    meant_ = file.symbols | {name: parse(symbols[name]) for name in said if name in symbols}
+    new = replace(file, formulas=formulas, texts=texts, symbols=meant_, symbol_texts=symbols)
+    return new, said
 
 
 def _refuse_large(

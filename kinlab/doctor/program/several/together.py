@@ -201,7 +201,7 @@ class TriedTogether:
         return lanes_within(work / self.each) if self.each else _BLOCK**2
 
     def _few(self) -> Any:
-        """Pairs of the likeliest edits, the likeliest first; those later that something is against."""
+        """Any two of the likeliest edits, the likeliest first; later what something is against."""
         some = self.sound[:_WIDE]
         pairs = self._apart(some, some)
         far = (pairs + 1).prod(axis=1) * np.where(self._possible_of(pairs), 1, _DOUBTED)
