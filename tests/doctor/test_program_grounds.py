@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib.util
+import sys
 
 import numpy as np
 import pytest
@@ -163,3 +165,47 @@ def test_no_loop_and_no_array_grows_with_an_edit(grown):
     text = f"import numpy as np\ndef f(q):\n    return {grown}"
     with pytest.raises(FailedError, match="so many"):
         Trial(read(written(text))).function(np.zeros(2))
+
+
+_OF_OBJECTS = """
+import numpy as np
+
+class Link:
+    def __init__(self, a, m, lc, I, Ia):
+        self.a, self.m, self.lc, self.I, self.Ia = a, m, lc, I, Ia
+
+LINKS = [Link(0.5, 2.0, 0.31, 0.07, 0.45), Link(0.4, 1.5, 0.27, {moment}, 0.33)]
+
+def f(q):
+    one, two = LINKS
+    c = np.cos(q[1])
+    m22 = two.I + two.m * two.lc**2
+    m12 = m22 + two.m * one.a * two.lc * {turn}
+    m11 = one.I + one.m * one.lc**2 + two.I
+    m11 += two.m * (one.a**2 + two.lc**2 + 2 * one.a * two.lc * c)
+    return np.array([[m11 + one.Ia, m12], [m12, m22 + two.Ia]])
+"""
+
+
+def _arm_of_objects() -> kl.DHTable:
+    links = [
+        kl.DHLink(a=a, mass=m, com=(lc - a, 0, 0), inertia=np.diag([0, i, i]), armature=drive)
+        for a, m, lc, i, drive in ((0.5, 2.0, 0.31, 0.07, 0.45), (0.4, 1.5, 0.27, 0.04, 0.33))
+    ]
+    return kl.DHTable("objects", "standard", links)
+
+
+@pytest.mark.parametrize("moment", ["0.04", "0.06"])
+@pytest.mark.parametrize("turn", ["c", "np.sin(q[1])"])
+def test_numbers_of_objects_are_called_as_what_makes_these_is_given(moment, turn, tmp_path) -> None:
+    """A repair in the lines that make the objects is believed; no drive's inertia is odd."""
+    path = tmp_path / "objects_of_links.py"
+    path.write_text(_OF_OBJECTS.format(moment=moment, turn=turn))
+    spec = importlib.util.spec_from_file_location("objects_of_links", path)
+    module = sys.modules["objects_of_links"] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    found = kl.diagnose(_arm_of_objects(), "mass_matrix", module.f)
+    told = found.causes[0].sentence if found.causes else ""
+    assert found.agrees == ((moment, turn) == ("0.04", "c"))
+    assert ("0.06" in told) == (moment == "0.06"), str(found)
+    assert ("np.sin(q[1])" in told) == (turn != "c"), str(found)

@@ -504,6 +504,7 @@ def _remembering(function: FunctionType) -> Any:
         return _again(known[key])
 
     remembered.known = known  # type: ignore[attr-defined]
+    remembered.__wrapped__ = function  # type: ignore[attr-defined]  # what it is asked is called so
     return remembered
 
 

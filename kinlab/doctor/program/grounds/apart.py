@@ -300,6 +300,7 @@ class _Reader:
         """Which numbers the arm has as they are called, and whether any is odd among these."""
         strange: list[Label] = []
         alike: set[str] = set()
+        kept = [cell for cell in self.cells if cell.kind == "kept"]  # of a drive, gravity
         for one, label in named:
             kinds, link = kinds_called(label[0]), self._link(label)
             some = [c for c in self.cells if c.kind in kinds and link in (None, *c.links)]
@@ -309,7 +310,7 @@ class _Reader:
                 self.fitting.add((node, one.place.place))
                 alike.add(label[0])
             elif some and link is not None and len(label[2]) < 2 and not _among(every, one.value):
-                strange.append(label)
+                strange += [] if _among(kept, one.value) else [label]
         for name, *_place in strange:
             same = alike if len(name) > 1 or name in "lmij" else alike & {name}
             self.odd = self.odd or any(not unlike(name, other) for other in same)

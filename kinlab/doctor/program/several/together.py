@@ -33,6 +33,8 @@ _WIDE, _DOUBTED, _SPARED, _LOT = 600, 10, 0.45, 150
 """Edits of which any two may be run where not all of the likeliest can; how much later those come
 that something speaks against; the share of the work for such a run, and pairs of the shortest: an
 edit that none of these has costs nothing."""
+_LITTLE = 8
+"""Of what is left the part that is little."""
 _FIRST = 2
 """Products of the ranks of two such blocks up to which any two of their edits are run first."""
 _SOUND = 0.6
@@ -61,7 +63,7 @@ _NUMBERS = 2
 """Numbers of answers that amount to one operation."""
 _TO_READ = 200
 """Work of finding where the tool is for an answer's joint positions."""
-_FOR_THREES = 4
+_FOR_THREES = 3
 """Of the work the part that pairs leave to threes."""
 _NONE = -1
 """In place of an edit's number."""
@@ -179,11 +181,7 @@ class TriedTogether:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
         likely, most = True, self._within(_SPARED * self.left)
         if most < min(_BLOCK, len(self.sound)) ** 2 // 2:
-            pairs, start = self._few(), 0
-            while start < len(pairs):
-                some = pairs[start : start + max(self._within(_SPARED * self.left), _LOT)]
-                start += len(some)
-                yield start, some
+            yield from enumerate(self._lots(self._few()), 1)
             return
         for rank, one, other in self._blocks():
             if likely and rank > _FIRST:
@@ -195,6 +193,20 @@ class TriedTogether:
                 chosen = chosen[~self._possible_of(chosen)]
             if len(chosen):
                 yield rank, chosen
+
+    def _lots(self, chosen: Any) -> Iterator[Any]:
+        """Combinations as many at a time as the work that is left allows, the likeliest first.
+
+        The likeliest have few edits, and edits that none has cost nothing: a lot is twice as long
+        as the one before that took little of it.
+        """
+        start, size = 0, min(max(self._within(_SPARED * self.left), _LOT), _BLOCK**2)
+        while start < len(chosen) and self.left > 0:
+            before = self.left
+            yield chosen[start : start + size]
+            start += size
+            little = (before - self.left) * _LITTLE <= self.left
+            size = min(2 * size if little else max(size // 2, _LOT), _BLOCK**2)
 
     def _within(self, work: float) -> int:
         """How many pairs may be run at once with so much work."""
@@ -290,18 +302,15 @@ class TriedTogether:
             ways = (self._beside_pairs(), self._of_pairs())
             found = {three for way in ways for three in islice(way, _TRIED)}
         ranked = sorted(found, key=self.known.cost)
-        rows = self._rows(np.array(ranked), None) if ranked else None
-        return [] if rows is None else [ranked[k] for k in self._fits(rows)]
+        right, _rows = self._right(np.array(ranked)) if ranked else ((), None)
+        return [tuple(map(int, one)) for one in right]
 
     def any_three(self) -> list[Chosen]:
         """Any three of the likeliest edits that nothing speaks against, tried themselves."""
         if not self.usable:
             return []
-        three = self._possible()
-        for start in range(0, len(three), _BLOCK**2):
-            if self.left <= 0:
-                break
-            right, _rows = self._right(three[start : start + _BLOCK**2])
+        for some in self._lots(self._possible()):
+            right, _rows = self._right(some)
             if len(right):
                 return sorted((tuple(map(int, one)) for one in right), key=self.known.cost)
         return []
@@ -330,8 +339,12 @@ class TriedTogether:
             at = at[~(within[first[at], k] | within[second[at], k])]
             found.append(np.stack([first[at], second[at], np.full(len(at), k)], axis=1))
         every = np.concatenate(found) if found else np.empty((0, 3), dtype=int)
-        order = np.argsort((every + 1).prod(axis=1), kind="stable")
-        return few[every[order]]
+        # three of the likeliest, and two of these with any, in turn
+        places = np.arange(len(every))
+        turns = np.empty((2, len(every)), dtype=int)
+        turns[0, np.argsort((every + 1).prod(axis=1), kind="stable")] = places
+        turns[1, np.argsort(every.max(axis=1, initial=0), kind="stable")] = places
+        return few[every[np.argsort(turns.min(axis=0), kind="stable")]]
 
     def _beside_pairs(self) -> Iterator[Chosen]:
         """A pair, and an edit whose effect adds up with the pair's."""
