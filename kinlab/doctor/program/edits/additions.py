@@ -36,6 +36,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
         yield here.instead(ast.Call(total, [node], []), "function", 1.1)
+    for term in _in_the_other_case(here) if zero else ():
+        if scope.observed.shape(term) == ():
+            yield here.instead(copied(term), "number", 1.06)
     if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
         yield from _instead_of_zero(here, scope)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
@@ -53,7 +56,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
-    if not negative and (first or not operated):
+    pose = shape == (4, 4) and scope.is_pose(node)
+    if not negative and not pose and (first or not operated):
         outer = here.above[-2] if isinstance(parent, ast.Tuple) else parent
         given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
@@ -65,7 +69,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             times = ast.BinOp(number(value), ast.Mult(), node)
-            cost = 1.15 if trig or value == _THRICE else 1.05 + _ODD * (passed or counted)
+            rare = trig or value == _THRICE or _keeps(parent, node)
+            cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             yield here.instead(times, "factor", cost)
     if trig:
         yield from _angle(here, scope)
@@ -86,6 +91,34 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             yield from _quarters(here, scope)
     if whole or summand or argument or product:
         yield from _terms(here, scope, shape, whole)
+
+
+def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
+    """The terms of what the other case has in a place: ``theta`` of ``q + theta``."""
+    node, outer, entry = here.node, here.parent, None
+    if isinstance(outer, ast.Tuple):
+        node, outer, entry = outer, here.above[-2], here.field
+    others: list[ast.expr] = []
+    if isinstance(outer, ast.IfExp):
+        others = [one for one in (outer.body, outer.orelse) if one is not node]
+    elif isinstance(outer, ast.Assign):
+        case = next((one for one in reversed(here.above) if isinstance(one, ast.If)), None)
+        lines = [] if case is None else [x for x in nodes(case) if isinstance(x, ast.Assign)]
+        own = [*map(ast.dump, outer.targets)]
+        others = [x.value for x in lines if x is not outer and [*map(ast.dump, x.targets)] == own]
+    for other in others:
+        if entry is not None:
+            entries = other.elts if isinstance(other, ast.Tuple) else []
+            other = entries[entry] if entry < len(entries) else ast.Tuple([], ast.Load())
+        for term in summands(other):
+            if isinstance(term, ENTRIES):
+                yield term
+
+
+def _keeps(parent: ast.AST, node: ast.expr) -> bool:
+    """Whether an object keeps what it is given, by the same name: ``self.m = m``."""
+    target = parent.targets[0] if isinstance(parent, ast.Assign) else None
+    return isinstance(target, ast.Attribute) and target.attr == getattr(node, "id", "")
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -14,6 +14,8 @@ from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
 """Lines over which a statement may have been moved."""
+_UPDATED = 1.06
+"""Cost of a line right before or behind the one that updates what it uses: it is one too late."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
@@ -69,11 +71,21 @@ def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Itera
                 continue
             later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
             change = FieldChange(node, name, later)
-            yield ProgramEdit(part, (change,), "order of lines", 1.15, moved)
+            updated = j == i + 1 and (
+                _updates_for(moved, block[j]) or _updates_for(block[j], moved)
+            )
+            cost = _UPDATED if updated else 1.15
+            yield ProgramEdit(part, (change,), "order of lines", cost, moved)
             if j > i + 1:
                 early = [*block[:i], block[j], *block[i:j], *block[j + 1 :]]
                 change = FieldChange(node, name, early)
                 yield ProgramEdit(part, (change,), "order of lines", 1.16, block[j])
+
+
+def _updates_for(line: ast.stmt, user: ast.stmt) -> bool:
+    """Whether a line makes of a name's value its next one, which another uses: ``w = R @ w``."""
+    plain = isinstance(line, ast.Assign) and isinstance(user, ast.Assign | ast.AugAssign)
+    return plain and bool(_sets(line) & _reads(line) & _reads(user))
 
 
 def _loops(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
