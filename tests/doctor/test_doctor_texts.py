@@ -184,3 +184,9 @@ def test_a_definition_that_another_line_needs_is_left_as_it_is() -> None:
     assert sorted(cause.kinds) == ["sign", "sin/cos"], cause.sentence
     assert cause.corrected["h"] == "m2*l1*l2*sin(q2)"
     assert cause.corrected["coriolis_matrix[0,0]"] == "-h*qd2"
+
+
+def test_a_plus_in_front_gives_way_to_the_minus() -> None:
+    (cause,) = kl.diagnose("planar2r", "J11", "+l1*s1 - l2*s12").causes[:1]
+    assert "+l1*s1 should be -l1*s1" in cause.sentence
+    assert cause.shown == {"J11": "-l1*s1 - l2*s12"}
