@@ -181,6 +181,39 @@ def f(q, v):
         K += 0.5*link.I*w**2
     return K
 """
+CHRISTOFFEL = """
+import numpy as np
+L, m = np.array([0.5, 0.4, 0.25]), np.array([3.0, 2.0, 1.0])
+
+def parts(q, k, p):
+    phi = np.cumsum(q)
+    J, D = np.zeros((2, 3)), np.zeros((2, 3))
+    for j in range(k + 1):
+        r = L[j]/2 if j == k else L[j]
+        for i in range(j + 1):
+            J[0, i] -= r*np.sin(phi[j])
+            J[1, i] += r*np.cos(phi[j])
+            if p <= j:
+                D[0, i] -= r*np.cos(phi[j])
+                D[1, i] -= r*np.sin(phi[j])
+    return J, D
+
+def dM(q, p):
+    out = np.zeros((3, 3))
+    for k in range(3):
+        J, D = parts(q, k, p)
+        out += m[k]*(D.T @ J + J.T @ D)
+    return out
+
+def f(q, v):
+    dMdq = np.array([dM(q, p) for p in range(3)])
+    C = np.zeros((3, 3))
+    for i in range(3):
+        for j in range(3):
+            for k in range(3):
+                C[i, j] += 0.5*(dMdq[k, i, j] + dMdq[j, i, k] - dMdq[i, j, k])*v[k]
+    return C
+"""
 
 
 @pytest.fixture
@@ -257,3 +290,10 @@ def test_a_number_that_a_wrong_frame_hides_is_told_beside_it(said) -> None:
     told = said(SCARA, "scara", "coriolis_matrix", *slips)
     assert "should be `z, o = (T[:4, :3, 2], T[:-1, :3, 3])`" in told
     assert "c[1][1], the sign is wrong: -0.005 should be 0.005" in told
+
+
+def test_twice_a_product_stands_for_it_and_its_transpose(said) -> None:
+    slip = ("(D.T @ J + J.T @ D)", "(2*D.T @ J)")
+    told = said(CHRISTOFFEL, "planar3r", "coriolis_matrix", slip)
+    assert "(D.T @ J + (D.T @ J).T)" in told
+    assert "C.T" not in told

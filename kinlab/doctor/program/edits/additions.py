@@ -14,8 +14,10 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
+_GIVEN = 0.06
+"""What it costs more to transpose what a line only returns."""
 _NEAR = 0.06
-"""The same of a matrix that stands in front of another vector of the line."""
+"""What a matrix costs more that stands in front of another vector of the line."""
 _TURNING = 0.1
 """The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
@@ -139,7 +141,9 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
     transposed = isinstance(node, ast.Attribute) and node.attr == "T"
     if len(shape) == 2 and not transposed and not scope.is_pose(node):
-        yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", 1.04)
+        given = isinstance(here.parent, ast.Return) and isinstance(node, ast.Name)
+        cost = 1.04 + _GIVEN * given
+        yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
     if isinstance(node, ast.Name) and len(shape) > 2:

@@ -98,6 +98,11 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            sizes = observed.shape(node) or (0,)
+            twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
+            if twice is not None:  # A + A.T for 2*A
+                both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
+                yield here.instead(both, "transposed", 1.0)
             yield from _in_turn(here)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
@@ -142,6 +147,16 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(ast.BinOp(left.left, left.op, last), "parentheses", 1.12)
     elif isinstance(op, ast.FloorDiv) and not index:
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
+
+
+def _halved(product: ast.expr) -> ast.expr | None:
+    """A product of matrices without the 2 that it begins with: ``A @ B`` of ``2*A @ B``."""
+    if not isinstance(product, ast.BinOp):
+        return None
+    if isinstance(product.op, ast.Mult):
+        return product.right if getattr(product.left, "value", 0) == 2 else None
+    rest = _halved(product.left) if isinstance(product.op, ast.MatMult) else None
+    return None if rest is None else ast.BinOp(rest, product.op, product.right)
 
 
 def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
