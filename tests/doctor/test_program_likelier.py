@@ -297,3 +297,9 @@ def test_twice_a_product_stands_for_it_and_its_transpose(said) -> None:
     told = said(CHRISTOFFEL, "planar3r", "coriolis_matrix", slip)
     assert "(D.T @ J + (D.T @ J).T)" in told
     assert "C.T" not in told
+
+
+def test_of_a_long_table_its_wrong_rows_are_shown(said) -> None:
+    told = said(BASED, "ur5", "fk", ("0.0823", "0.823"), ("0.0, 0.10915", "0.0, 0.1915"))
+    assert "`(0.0, 0.1915, np.pi/2)` should be `(0.0, 0.10915, np.pi/2)`" in told
+    assert "`(0.0, 0.823, 0.0)` should be `(0.0, 0.0823, 0.0)`" in told

@@ -42,6 +42,8 @@ _NO_LIKELIER = 0.06
 """Cost beyond the likeliest meaning's of another that may be meant as well."""
 _PAIR = 2
 """Repairs of which two may leave what differences leave."""
+_LONGEST = 120
+"""Letters of a statement up to which it is shown as a whole where several places are wrong."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -318,7 +320,7 @@ def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
     lines = _by_statement(repair, trial)
     for edit in repair.edits:
         statement, several = next(pair for pair in lines if any(one is edit for one in pair[1]))
-        if statement is not None and len(several) > 1:
+        if statement is not None and len(several) > 1 and not _is_long(statement, several):
             if edit is several[0]:
                 yield _of_statement(statement, several, trial)
             continue
@@ -365,6 +367,14 @@ def _statements(tree: ast.AST, inside: ast.stmt | None = None) -> dict[int, ast.
     for child in ast.iter_child_nodes(tree):
         out |= _statements(child, own)
     return out
+
+
+def _is_long(statement: ast.stmt, several: list[ProgramEdit]) -> bool:
+    """Whether a statement is too long to be shown whole, and its places are apart from another."""
+    if len(_text(statement)) <= _LONGEST:
+        return False
+    places = [edit.node for edit in several]
+    return not any(one is not other and _inside(one, other) for one in places for other in places)
 
 
 def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial) -> str:
