@@ -605,7 +605,9 @@ class LineSearch:
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
+        sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [*numbers(self.trial, self.observed)]
+        every = [p for p in every if p.part != DATA or not sure(p.edit(p.value))]
         if strange:
             own = len(own_numbers(self.case.robot)) > 0
             every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]
