@@ -237,11 +237,12 @@ def test_an_index_is_wrong_rather_where_a_value_is_read(said) -> None:
     assert "p[:, i] = T" not in told
 
 
-def test_a_line_that_would_write_where_it_does_nothing_is_one_too_many(said) -> None:
+@pytest.mark.parametrize("more", ["z[i]", "z[i - 1]"])
+def test_a_line_that_would_write_where_it_does_nothing_is_one_too_many(more, said) -> None:
     both = "        else:\n            J[:3, i] = z[i]\n"
-    slip = (both, both + "            J[3:, i] = z[i]\n")
+    slip = (both, f"{both}            J[3:, i] = {more}\n")
     told = said(SCARA_JACOBIAN, "scara", "jacobian", slip)
-    assert "`J[3:, i] = z[i]`: the line is one too many" in told
+    assert f"`J[3:, i] = {more}`: the line is one too many" in told
     assert "i + 1" not in told
 
 

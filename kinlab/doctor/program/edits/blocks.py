@@ -39,6 +39,7 @@ def of_blocks(
             yield from _updates(part, tree, node, scope, observed)
         if isinstance(node, ast.If) and node.orelse:
             yield from _of_the_other_case(part, node, scope)
+            yield from _in_both_cases(part, node)
 
 
 def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[ProgramEdit]:
@@ -58,6 +59,19 @@ def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[Progra
                 if other != own[0] and other not in given:
                     new = OtherName(own[0], other).visit(copied(line))
                     yield _missing(part, node, name, block, 0, new, 1.12)
+
+
+def _in_both_cases(part: int, node: ast.If) -> Iterator[ProgramEdit]:
+    """A line that the other case has, too, and that is one too many: of a hinge, for a slide."""
+    for name, block, there in (
+        ("body", node.body, node.orelse),
+        ("orelse", node.orelse, node.body),
+    ):
+        known = {ast.dump(line) for line in there}
+        for k, line in enumerate(block if len(block) > 1 else ()):
+            if isinstance(line, _PLAIN) and ast.dump(line) in known:
+                change = FieldChange(node, name, [*block[:k], *block[k + 1 :]])
+                yield ProgramEdit(part, (change,), "extra statement", 1.04, line)
 
 
 def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
