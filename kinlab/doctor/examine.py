@@ -44,7 +44,7 @@ from kinlab.doctor.excuses import (
     without_value,
 )
 from kinlab.doctor.numbers import other_numbers
-from kinlab.doctor.program.words import WrongLines, meant
+from kinlab.doctor.program.words import WrongLines, behind, meant
 from kinlab.doctor.slips import LIST, RIVALS, reading_and_slips, slips_in
 from kinlab.doctor.solutions.verdict import judged
 from kinlab.doctor.text.written import Written
@@ -251,6 +251,9 @@ def _possible(
                 if noise is not None:
                     return [], (), noise, None
                 edited = [c for more in looking for c in _exactly(more.causes, worst)]
+            elif exact and program.odd and not program.written_out:
+                # a number that is wrong, too, may do nothing as long as a frame is another
+                edited = [c for more in looking for c in _exactly(behind(more, exact), worst)]
         if program is not None and edited:
             read_so = [] if program.written_out else exact or rough
             plain = [cause for cause in read_so if cause.cost <= _FETCHED]

@@ -22,7 +22,9 @@ from kinlab.model.robot import Robot, require_inertia, scratch
 
 
 def link_poses(robot: ArmLike, q: ArrayLike) -> Array:
-    """Poses of the link frames in the base.
+    """Poses of the link frames in the base, each at its link's own joint.
+
+    These are Craig's frames: of a standard table, too, where DH frame i sits at the link's far end.
 
     Args:
         robot: the robot.
@@ -41,6 +43,8 @@ def link_poses(robot: ArmLike, q: ArrayLike) -> Array:
 def link_velocities(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
     """Velocities (v, omega) of the link frames, each in its own axes (note 000, 000.vel).
 
+    The frames are those of :func:`link_poses`, at each link's own joint.
+
     Args:
         robot: the robot.
         q, v: joint positions and velocities, (n,) or (N, n).
@@ -57,6 +61,8 @@ def link_velocities(robot: ArmLike, q: ArrayLike, v: ArrayLike) -> Array:
 
 def link_accelerations(robot: ArmLike, q: ArrayLike, v: ArrayLike, a: ArrayLike) -> Array:
     """Accelerations (v_dot, omega_dot) of the link frames in their own axes (000.ne.out).
+
+    The frames are those of :func:`link_poses`, at each link's own joint.
 
     These are the accelerations of the frame's origin as a point (not spatial ones), the base at
     rest: gravity is not in them.

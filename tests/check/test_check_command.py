@@ -141,6 +141,13 @@ def test_quantities_are_listed():
     assert "inverse_dynamics" in result.output and "q, v, a" in result.output
 
 
+def test_it_is_said_which_frames_the_links_have():
+    """Those at each link's own joint, also where a standard table has them at the far end."""
+    words = " ".join(run("--quantities").stdout.split())
+    assert "the frames at each link's own joint, as Craig's" in words
+    assert "(v, omega) of the frames of link_poses" in words
+
+
 def test_bad_options_exit_with_2():
     assert run("planar2r", "--samples", 0).exit_code == 2
     assert run("planar2r", "--seed", -1).exit_code == 2

@@ -102,3 +102,25 @@ def test_what_is_left_is_no_difference_where_nothing_is_differenced() -> None:
     assert "finite differences" not in str(found) and all(
         c.error_after < 1e-9 for c in found.causes
     )
+
+
+def test_a_number_that_the_table_has_there_is_not_solved_for() -> None:
+    """Where an offset of 0.1 is forgotten, a centre at -0.02 for -0.12 would make up for it."""
+    centres, masses = [0.03, -0.12], [2.0, 1.0]
+
+    def slide(q):
+        s, c = np.sin(q[0]), np.cos(q[0])
+        r = q[1] + centres[1]
+        first = -s * (masses[0] * centres[0] + masses[1] * r) - masses[1] * 0.02 * c
+        return 9.81 * np.array([first, masses[1] * c])
+
+    coms = ([0, 0, 0.03], [-0.02, 0, -0.12])
+    rows = (("revolute", -np.pi / 2, 0.0), ("prismatic", 0.0, 0.1))
+    links = [
+        kl.DHLink(kind, a=0, alpha=alpha, d=d, theta=0, mass=m, com=com, inertia=0.01 * np.eye(3))
+        for (kind, alpha, d), m, com in zip(rows, masses, coms, strict=True)
+    ]
+    arm = kl.DHTable("slide", "standard", links, gravity=[0, -9.81, 0])
+    said = str(kl.diagnose(arm, "gravity_torques", slide))
+    assert "-0.12 should be" not in said
+    assert "0.1" in said

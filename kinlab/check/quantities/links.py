@@ -43,22 +43,37 @@ def inverse_without_gravity(robot: Robot, q: Any, v: Any, a: Any) -> Array:
 
 
 _ROWS: tuple[tuple[str, str, Any, str], ...] = (
-    ("link_poses", "q", links.link_poses, "poses of the link frames in the base, (n, 4, 4)"),
-    ("link_velocities", "q v", links.link_velocities, "(v, omega), link axes, (n, 6)"),
+    (
+        "link_poses",
+        "q",
+        links.link_poses,
+        "poses in the base of the frames at each link's own joint, as Craig's, (n, 4, 4)",
+    ),
+    (
+        "link_velocities",
+        "q v",
+        links.link_velocities,
+        "(v, omega) of the frames of link_poses, link axes, (n, 6)",
+    ),
     (
         "link_accelerations",
         "q v a",
         links.link_accelerations,
-        "(v_dot, omega_dot), link axes, without gravity, (n, 6)",
+        "(v_dot, omega_dot) of the frames of link_poses, link axes, without gravity, (n, 6)",
     ),
     ("com_positions", "q", links.com_positions, "centres of mass in the base, m, (n, 3)"),
     ("com_jacobians", "q", links.com_jacobians, "of each centre, base axes, (n, 6, n)"),
-    ("com_accelerations", "q v a", links.com_accelerations, "link axes, m/s², (n, 3)"),
+    (
+        "com_accelerations",
+        "q v a",
+        links.com_accelerations,
+        "axes of the frames of link_poses, m/s², (n, 3)",
+    ),
     (
         "joint_wrenches",
         "q v a wrench",
         links.joint_wrenches,
-        "(f_i, n_i) through joint i, link axes; the tool exerts a wrench, (n, 6)",
+        "(f_i, n_i) through joint i, axes as link_poses; the tool exerts a wrench, (n, 6)",
     ),
     (
         "static_wrenches",
@@ -66,7 +81,12 @@ _ROWS: tuple[tuple[str, str, Any, str], ...] = (
         links.static_wrenches,
         "the same at rest without gravity, (n, 6)",
     ),
-    ("inertial_wrenches", "q v a", links.inertial_wrenches, "(F_i, N_i) at C_i, (n, 6)"),
+    (
+        "inertial_wrenches",
+        "q v a",
+        links.inertial_wrenches,
+        "(F_i, N_i) at C_i, axes as link_poses, (n, 6)",
+    ),
     ("link_kinetic_energies", "q v", links.link_kinetic_energies, "k_i, J, (n,)"),
     ("link_potential_energies", "q", links.link_potential_energies, "u_i, J, (n,)"),
     ("christoffel", "q", lagrange.christoffel, "D_ijk, (n, n, n)"),

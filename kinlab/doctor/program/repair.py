@@ -417,13 +417,13 @@ class LineSearch:
         answers = [lanes.answers(which, None, left) for which in (none, each)]
         self.work += lanes.work + _WOVEN * len(some)
         as_it_is, values = (None if one is None else self.of_lanes(one) for one in answers)
-        if as_it_is is None or values is None or not self._as_alone(as_it_is[0], own):
+        if as_it_is is None or values is None or not self.same(as_it_is[0], own):
             return []
         placed = [k for k in sorted(lanes.placed) if np.isfinite(values[k]).all()]
         return [(some[k], values[k]) for k in placed]
 
-    def _as_alone(self, values: Array, own: Array) -> bool:
-        """Whether a lane without an edit answers as the program does."""
+    def same(self, values: Array, own: Array) -> bool:
+        """Whether answers at the first states are the same, as those of a lane without an edit."""
         none = ~np.isfinite(values) & ~np.isfinite(own)
         return bool((none | (np.abs(values - own) <= self._near)).all())
 
@@ -605,7 +605,9 @@ class LineSearch:
         """
         found: list[tuple[float, int, ProgramRepair]] = []
         against = self.evidence.against
+        sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [*numbers(self.trial, self.observed)]
+        every = [p for p in every if p.part != DATA or not sure(p.edit(p.value))]
         if strange:
             own = len(own_numbers(self.case.robot)) > 0
             every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]

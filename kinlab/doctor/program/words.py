@@ -18,9 +18,10 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
+from kinlab.doctor.program.edits.as_the_arm import of_table
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.own.definitions import DEFAULT
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, row_of
+from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, row_of
 from kinlab.doctor.program.read import read
 from kinlab.doctor.program.repair import LineSearch, ProgramRepair, changed
 from kinlab.doctor.program.several.repairs import several
@@ -41,6 +42,8 @@ _NO_LIKELIER = 0.06
 """Cost beyond the likeliest meaning's of another that may be meant as well."""
 _PAIR = 2
 """Repairs of which two may leave what differences leave."""
+_LONGEST = 120
+"""Letters of a statement up to which it is shown as a whole where several places are wrong."""
 _WIDE = 72
 """Letters of a piece of a program that is shown; more of it where it is shorter."""
 
@@ -108,12 +111,17 @@ class WrongLines:
             matrices.
         numbers: those that the program comes to at the first state, sorted.
         excuse: of a program that is right all the same, why; nothing else is said then.
+        odd: whether a number of the program is none that the arm's table has in its place.
+        hidden: of several lines those of which all but one do nothing as long as that one is wrong,
+            with the kind of that one's slip.
     """
 
     causes: list[Cause]
     written_out: bool
     numbers: Array
     excuse: Excuse | None = None
+    odd: bool = False
+    hidden: tuple[tuple[Cause, str], ...] = ()
 
 
 def lines(
@@ -143,12 +151,31 @@ def lines(
     if excuse is not None:
         yield WrongLines([], search.written_out, numbers, excuse)
         return
+    odd = any(True for _edit in of_table(search.trial, search.observed, case.robot))
     for found in (LineSearch.singles, several):
         repairs = found(search)[:_MOST]
         if not search.faithful:
             return  # an edit has written into what the program keeps
         told = [one for one in (believed(repair, search) for repair in repairs) if one]
-        yield WrongLines([cause_of(one, search) for one in told], search.written_out, numbers)
+        causes = [cause_of(one, search) for one in told]
+        pairs = zip(causes, told, strict=True)
+        hidden = ((cause, kind) for cause, one in pairs if (kind := _hiding(one, search)))
+        yield WrongLines(causes, search.written_out, numbers, odd=odd, hidden=(*hidden,))
+
+
+def _hiding(repair: ProgramRepair, search: LineSearch) -> str:
+    """The kind of the slip that hides the others: without it, they do nothing; empty of none."""
+    own = search.values(search.first)
+    for edit in repair.edits if len(repair.edits) > 1 and own is not None else ():
+        others = tuple(one for one in repair.edits if one is not edit)
+        try:
+            with quietly(), changed(search.trial, others):
+                values = search.values(search.first)
+        except NoProgramError:
+            continue
+        if values is not None and own is not None and search.same(values, own):
+            return edit.kind
+    return ""
 
 
 def _of_cuts(search: LineSearch) -> Excuse | None:
@@ -175,6 +202,16 @@ def _little(hand: Array, answers: Array) -> bool:
     """Whether answers differ by no more than rounding may change them."""
     same = hand.shape == answers.shape and bool(np.isfinite(answers).all())
     return same and bool(np.max(relative_errors(hand, answers)) <= TOLERANCES.may_be_rounded)
+
+
+def behind(more: WrongLines, read: list[Cause]) -> list[Cause]:
+    """Lines that are wrong, too, where one of them alone is what explains the formula.
+
+    Args:
+        more: what several lines should be.
+        read: what the formula does otherwise, as a whole.
+    """
+    return [x for x, kind in more.hidden if any(_same_slip(cause, kind) for cause in read)]
 
 
 def meant(edited: list[Cause], read: list[Cause]) -> list[Cause]:
@@ -283,7 +320,7 @@ def _told(repair: ProgramRepair, trial: Trial) -> Iterator[str]:
     lines = _by_statement(repair, trial)
     for edit in repair.edits:
         statement, several = next(pair for pair in lines if any(one is edit for one in pair[1]))
-        if statement is not None and len(several) > 1:
+        if statement is not None and len(several) > 1 and not _is_long(statement, several):
             if edit is several[0]:
                 yield _of_statement(statement, several, trial)
             continue
@@ -330,6 +367,14 @@ def _statements(tree: ast.AST, inside: ast.stmt | None = None) -> dict[int, ast.
     for child in ast.iter_child_nodes(tree):
         out |= _statements(child, own)
     return out
+
+
+def _is_long(statement: ast.stmt, several: list[ProgramEdit]) -> bool:
+    """Whether a statement is too long to be shown whole, and its places are apart from another."""
+    if len(_text(statement)) <= _LONGEST:
+        return False
+    places = [edit.node for edit in several]
+    return not any(one is not other and _inside(one, other) for one in places for other in places)
 
 
 def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial) -> str:
@@ -429,7 +474,8 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
 
     A test that is changed until it never holds says only that its branch is wrong; the robot's own
     g is not to be another; decimals of a rounding and the step of a difference are no formula; and
-    what takes a statement's own part away and adds the right one names nothing.
+    what takes a statement's own part away and adds the right one names nothing. A line that writes
+    somewhere else where it does nothing is one too many.
     """
     for _statement, own in _by_statement(repair, search.trial):
         if sum(edit.kind == "missing term" for edit in own) > 1:
@@ -443,7 +489,7 @@ def believed(repair: ProgramRepair, search: LineSearch) -> ProgramRepair | None:
     for edit in repair.edits:
         if _robots_own(edit, search) or _of_rounding(edit, search) or _a_step(edit, repair, search):
             return None
-        edits.append(_branch(edit, repair, search) or edit)
+        edits.append(_branch(edit, repair, search) or _idle(edit, repair, search) or edit)
     rivals = [believed(one, search) for one in repair.rivals]
     return replace(repair, edits=tuple(edits), rivals=tuple(one for one in rivals if one))
 
@@ -522,6 +568,35 @@ def _branch(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> Pro
                 whole = tuple(other if one is edit else one for one in repair.edits)
                 if _right(whole, search):
                     return other
+    return None
+
+
+def _idle(edit: ProgramEdit, repair: ProgramRepair, search: LineSearch) -> ProgramEdit | None:
+    """The whole line, where it is to write somewhere else, and the program is right without it."""
+    if edit.part == DATA or edit.kind in ("order of lines", *_MOVED):
+        return None
+    tree = search.trial.trees[edit.part]
+    line = _statements(tree).get(id(edit.node))
+    if not isinstance(line, ast.Assign | ast.AugAssign):
+        return None
+    targets = line.targets if isinstance(line, ast.Assign) else [line.target]
+    target, value = targets[0], ast.unparse(line.value)
+    if not isinstance(target, ast.Subscript):
+        return None
+    place = ast.unparse(target)
+    with changed(search.trial, (edit,)):
+        if ast.unparse(line.value) != value or ast.unparse(target) == place:
+            return None
+    for node in nodes(tree):
+        for field in BLOCKS:
+            block = getattr(node, field, None)
+            if not isinstance(block, list) or not any(one is line for one in block):
+                continue
+            rest = [ast.Pass() if one is line else one for one in block]
+            change = FieldChange(node, field, rest)
+            other = ProgramEdit(edit.part, (change,), "extra statement", edit.cost, line)
+            if _right(tuple(other if one is edit else one for one in repair.edits), search):
+                return other
     return None
 
 

@@ -336,7 +336,7 @@ def _as_factor(line: Line, place: Place) -> None:
     if not is_term(place):
         return
     start, end = place.span
-    first = start + len(piece) - len(piece.lstrip("- "))
+    first = start + len(piece) - len(piece.lstrip("+- "))
     extra = 0.3 if whole else 0.0
     body = wrapped if whole else piece
     numbered = 0.15 * bool(re.search(r"(?<![\w.*])(?:/\s*)?\d", body))  # 2*x/2 is x
@@ -349,7 +349,7 @@ def _as_factor(line: Line, place: Place) -> None:
         line.instead(place, new, size * place.value, "factor", cost, None if whole else span)
     signed = place.above is not None and isinstance(place.above.node, ast.BinOp)
     if not signed or place.role == 0:
-        span = (start, first, "") if piece.startswith("-") else (start, start, "-")
+        span = (start, first, "" if piece.startswith("-") else "-")
         turned, only = _turned(line, place), None if whole else span
         line.instead(place, turned, -place.value, "sign", 1.0 + extra, only)
     front, before = _openings(line, place)
@@ -426,7 +426,8 @@ def _turned(line: Line, place: Place) -> str:
     """A piece with the opposite sign, without a sign in front of a sign."""
     if not is_sum(place.node):
         piece = line.segment(place)
-        return piece[1:].lstrip() if piece.startswith("-") else f"-{piece}"
+        bare = piece.removeprefix("+").lstrip()
+        return piece[1:].lstrip() if piece.startswith("-") else f"-{bare}"
     left, right = line.siblings[id(place)]
     gap = line.source[left.span[1] : right.span[0]]
     sign = next(c for c in gap if c in "+-")

@@ -14,8 +14,10 @@ from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
+_GIVEN = 0.06
+"""What it costs more to transpose what a line only returns."""
 _NEAR = 0.06
-"""The same of a matrix that stands in front of another vector of the line."""
+"""What a matrix costs more that stands in front of another vector of the line."""
 _TURNING = 0.1
 """The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
@@ -36,6 +38,9 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     if row and not isinstance(parent, ast.Subscript | ast.BinOp | ast.Attribute):
         total = ast.Attribute(ast.Name("np", ast.Load()), "cumsum", ast.Load())
         yield here.instead(ast.Call(total, [node], []), "function", 1.1)
+    for term in _in_the_other_case(here) if zero else ():
+        if scope.observed.shape(term) == ():
+            yield here.instead(copied(term), "number", 1.06)
     if zero and isinstance(parent, ast.Call | ast.List | ast.Tuple):
         yield from _instead_of_zero(here, scope)
     if isinstance(parent, ast.Subscript | ast.Attribute) or zero or literal:
@@ -53,7 +58,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     argument = isinstance(parent, ast.Call) and not trig
     first = summand and here.field == "left"
     negative = isinstance(_leftmost(node), ast.UnaryOp) or isinstance(parent, ast.UnaryOp)
-    if not negative and (first or not operated):
+    pose = shape == (4, 4) and scope.is_pose(node)
+    if not negative and not pose and (first or not operated):
         outer = here.above[-2] if isinstance(parent, ast.Tuple) else parent
         given = isinstance(outer, ast.Assign | ast.Return)
         alone = isinstance(node, ast.Name | ast.Subscript | ast.Attribute) and given
@@ -65,7 +71,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         counted = isinstance(_leftmost(node), ast.Constant)
         for value in (2, 0.5, *([_THRICE] * (isinstance(node, ast.Name) and not trig))):
             times = ast.BinOp(number(value), ast.Mult(), node)
-            cost = 1.15 if trig or value == _THRICE else 1.05 + _ODD * (passed or counted)
+            rare = trig or value == _THRICE or _keeps(parent, node)
+            cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             yield here.instead(times, "factor", cost)
     if trig:
         yield from _angle(here, scope)
@@ -88,6 +95,34 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         yield from _terms(here, scope, shape, whole)
 
 
+def _in_the_other_case(here: Here) -> Iterator[ast.expr]:
+    """The terms of what the other case has in a place: ``theta`` of ``q + theta``."""
+    node, outer, entry = here.node, here.parent, None
+    if isinstance(outer, ast.Tuple):
+        node, outer, entry = outer, here.above[-2], here.field
+    others: list[ast.expr] = []
+    if isinstance(outer, ast.IfExp):
+        others = [one for one in (outer.body, outer.orelse) if one is not node]
+    elif isinstance(outer, ast.Assign):
+        case = next((one for one in reversed(here.above) if isinstance(one, ast.If)), None)
+        lines = [] if case is None else [x for x in nodes(case) if isinstance(x, ast.Assign)]
+        own = [*map(ast.dump, outer.targets)]
+        others = [x.value for x in lines if x is not outer and [*map(ast.dump, x.targets)] == own]
+    for other in others:
+        if entry is not None:
+            entries = other.elts if isinstance(other, ast.Tuple) else []
+            other = entries[entry] if entry < len(entries) else ast.Tuple([], ast.Load())
+        for term in summands(other):
+            if isinstance(term, ENTRIES):
+                yield term
+
+
+def _keeps(parent: ast.AST, node: ast.expr) -> bool:
+    """Whether an object keeps what it is given, by the same name: ``self.m = m``."""
+    target = parent.targets[0] if isinstance(parent, ast.Assign) else None
+    return isinstance(target, ast.Attribute) and target.attr == getattr(node, "id", "")
+
+
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     """A name for a zero that is given on, or that is an entry."""
     for _text, scalar in scope.simple(()):
@@ -106,7 +141,9 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
     transposed = isinstance(node, ast.Attribute) and node.attr == "T"
     if len(shape) == 2 and not transposed and not scope.is_pose(node):
-        yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", 1.04)
+        given = isinstance(here.parent, ast.Return) and isinstance(node, ast.Name)
+        cost = 1.04 + _GIVEN * given
+        yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
     if isinstance(node, ast.Name) and len(shape) > 2:

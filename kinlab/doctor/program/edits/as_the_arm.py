@@ -30,6 +30,8 @@ _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
 _SEVERAL = 0.01
 """What it costs more where several numbers of a row are off."""
+_END, _DECIMALS = 1.0, 15
+"""Cost of the arm's base or tool for the identity; decimals that its numbers have."""
 _PARTS = 12
 """Into how many parts of pi a number may fall."""
 
@@ -42,6 +44,7 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     table = table_of(robot)
     if table is None:
         return
+    yield from _ends(trial, table)
     known = vocabulary(table).values
     for leaf in leaves(trial):
         if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
@@ -60,6 +63,27 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
         yield from (cell.edit(right) for some in cells.values() for cell, right in some)
+
+
+def _ends(trial: Trial, table: DHTable) -> Iterator[ProgramEdit]:
+    """The arm's base, and its tool, for a transform that does nothing."""
+    one = np.eye(4)
+    for name in trial.program.data:
+        if np.array_equal(trial.space[name], one):
+            for end in (table.base, table.tool):
+                end = np.round(np.asarray(end, dtype=float), _DECIMALS) + 0.0
+                if not np.array_equal(end, one):
+                    told = (_matrix(one), _matrix(end))
+                    change = FieldChange(trial.space, name, end)
+                    yield ProgramEdit(DATA, (change,), "number", _END, name, exchanged=told)
+
+
+def _matrix(value: Array) -> str:
+    """A matrix as it is shown."""
+    diagonal = np.diagonal(value)
+    if np.array_equal(value, np.diag(diagonal)):
+        return f"diag({', '.join(f'{x:.6g}' for x in diagonal)})"
+    return f"[{', '.join('[' + ', '.join(f'{x:.6g}' for x in row) + ']' for row in value)}]"
 
 
 def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:

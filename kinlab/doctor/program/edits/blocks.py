@@ -14,6 +14,8 @@ from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
 """Lines over which a statement may have been moved."""
+_UPDATED = 1.06
+"""Cost of a line right before or behind the one that updates what it uses: it is one too late."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""
 _PLAIN = (ast.Assign, ast.AugAssign, ast.Expr)
@@ -37,6 +39,7 @@ def of_blocks(
             yield from _updates(part, tree, node, scope, observed)
         if isinstance(node, ast.If) and node.orelse:
             yield from _of_the_other_case(part, node, scope)
+            yield from _in_both_cases(part, node)
 
 
 def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[ProgramEdit]:
@@ -58,6 +61,19 @@ def _of_the_other_case(part: int, node: ast.If, scope: Scope) -> Iterator[Progra
                     yield _missing(part, node, name, block, 0, new, 1.12)
 
 
+def _in_both_cases(part: int, node: ast.If) -> Iterator[ProgramEdit]:
+    """A line that the other case has, too, and that is one too many: of a hinge, for a slide."""
+    for name, block, there in (
+        ("body", node.body, node.orelse),
+        ("orelse", node.orelse, node.body),
+    ):
+        known = {ast.dump(line) for line in there}
+        for k, line in enumerate(block if len(block) > 1 else ()):
+            if isinstance(line, _PLAIN) and ast.dump(line) in known:
+                change = FieldChange(node, name, [*block[:k], *block[k + 1 :]])
+                yield ProgramEdit(part, (change,), "extra statement", 1.04, line)
+
+
 def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
     """Two statements in the other order, where one uses what the other sets."""
     for i in range(len(block)):
@@ -69,11 +85,21 @@ def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Itera
                 continue
             later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
             change = FieldChange(node, name, later)
-            yield ProgramEdit(part, (change,), "order of lines", 1.15, moved)
+            updated = j == i + 1 and (
+                _updates_for(moved, block[j]) or _updates_for(block[j], moved)
+            )
+            cost = _UPDATED if updated else 1.15
+            yield ProgramEdit(part, (change,), "order of lines", cost, moved)
             if j > i + 1:
                 early = [*block[:i], block[j], *block[i:j], *block[j + 1 :]]
                 change = FieldChange(node, name, early)
                 yield ProgramEdit(part, (change,), "order of lines", 1.16, block[j])
+
+
+def _updates_for(line: ast.stmt, user: ast.stmt) -> bool:
+    """Whether a line makes of a name's value its next one, which another uses: ``w = R @ w``."""
+    plain = isinstance(line, ast.Assign) and isinstance(user, ast.Assign | ast.AugAssign)
+    return plain and bool(_sets(line) & _reads(line) & _reads(user))
 
 
 def _loops(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -21,6 +22,7 @@ from kinlab.doctor.program.edits.data import of_data
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
 from kinlab.doctor.program.edits.operators import (
+    is_diagonal,
     keys_of,
     negated,
     of_attribute,
@@ -45,6 +47,8 @@ from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
+_WRITTEN = 1.15
+"""Cost of another index of where a value is written: slips are made rather where it is read."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -62,6 +66,8 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                 if observed.of(node) is not None:
                     every = (*_expression(here, scope, observed),)
                     every += (*elsewhere.edits(here, scope, observed),)
+                    if _says_where(here):
+                        every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
                     beside = _rotations_beside(here, observed)
                     found += [x for x in every if not (beside and _undoes(x, beside))]
                 elif isinstance(node, ast.Constant) and isinstance(node.value, str):
@@ -72,6 +78,12 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     found += of_data(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
+
+
+def _says_where(here: Here) -> bool:
+    """Whether an expression is in the index of where a value is written."""
+    targets = (one for one in here.above if isinstance(one, ast.Subscript))
+    return any(isinstance(one.ctx, ast.Store) for one in targets)
 
 
 def _rotations_beside(here: Here, observed: Observed) -> set[str]:
@@ -129,7 +141,8 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     if isinstance(node, ast.BinOp):
         yield from of_operator(here, observed, index or whole)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        yield here.instead(node.operand, "sign", 0.97)
+        if not is_diagonal(here):
+            yield here.instead(node.operand, "sign", 0.97)
     elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
         yield here.instead(ast.UnaryOp(ast.USub(), node.operand), "sign", 1.0)
     elif isinstance(node, ast.Call):

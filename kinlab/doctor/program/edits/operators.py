@@ -37,6 +37,8 @@ _OF_RODS = {3: 12, 12: 3}
 """A rod's moments of inertia about its end, and about its middle, are its mass by these."""
 _DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
+_DIAGONAL = 1.02
+"""Cost of the main diagonal for another."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 
@@ -96,6 +98,11 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
             yield here.instead(kept, "extra factor", _TYPED if typed else cost)
         if isinstance(op, ast.MatMult):
             yield here.instead(ast.BinOp(right, op, left), "order", 1.06)
+            sizes = observed.shape(node) or (0,)
+            twice = _halved(node) if len(sizes) == _PAIR and sizes[0] == sizes[1] else None
+            if twice is not None:  # A + A.T for 2*A
+                both = ast.BinOp(twice, ast.Add(), ast.Attribute(twice, "T", ast.Load()))
+                yield here.instead(both, "transposed", 1.0)
             yield from _in_turn(here)
             if isinstance(left, ast.BinOp) and isinstance(left.op, ast.MatMult):
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
@@ -142,6 +149,16 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
         yield here.within(node, "op", ast.Div(), "whole division", 0.97)
 
 
+def _halved(product: ast.expr) -> ast.expr | None:
+    """A product of matrices without the 2 that it begins with: ``A @ B`` of ``2*A @ B``."""
+    if not isinstance(product, ast.BinOp):
+        return None
+    if isinstance(product.op, ast.Mult):
+        return product.right if getattr(product.left, "value", 0) == 2 else None
+    rest = _halved(product.left) if isinstance(product.op, ast.MatMult) else None
+    return None if rest is None else ast.BinOp(rest, product.op, product.right)
+
+
 def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
     """Whether a matrix stands before its own transpose: ``R.T @ (R @ v)``."""
     while isinstance(product, ast.BinOp) and isinstance(product.op, ast.MatMult):
@@ -151,13 +168,18 @@ def _turns_back(matrix: ast.expr, product: ast.expr) -> bool:
 
 
 def _in_turn(here: Here) -> Iterator[ProgramEdit]:
-    """A product of several matrices from another one on, or from the last to the first."""
+    """A product of several matrices from another one on, from the last to the first, or with one
+    of them further on or further back."""
     parent = here.parent
     if isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.MatMult):
         return
     every = chains.members(chains.chain(here.node, (ast.MatMult,)))
     if len(every) > _PAIR:
         orders = [[*every[k:], *every[:k]] for k in range(1, len(every))]
+        for k, to in permutations(range(len(every)), _PAIR):
+            if 1 < abs(k - to) < len(every) - 1:  # others are of those above
+                rest = [*every[:k], *every[k + 1 :]]
+                orders.append([*rest[:to], every[k], *rest[to:]])
         for first, *others in (*orders, every[::-1]):
             by = [(ast.MatMult(), one) for one in others]
             yield here.instead(chains.joined(first, by), "order", 1.1)
@@ -186,6 +208,14 @@ def _is_turned_into(one: ast.expr, other: ast.expr) -> bool:
     return f"{ast.unparse(one)}.T" == ast.unparse(other)
 
 
+def is_diagonal(here: Here) -> bool:
+    """Whether an argument is the number of a diagonal."""
+    call = here.parent
+    if not isinstance(call, ast.Call) or called(call) not in _DIAGONALS or len(call.args) < _PAIR:
+        return False
+    return here.node is call.args[-1]
+
+
 def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     name = called(node)
@@ -210,7 +240,8 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
     if name in _DIAGONALS and len(node.args) > 1:
         diagonal = getattr(node.args[-1], "operand", node.args[-1])
         for k in (0, 1, -1) if whole_constant(diagonal) else ():
-            yield here.within(node.args, len(node.args) - 1, number(k), "index", 1.04)
+            cost = _DIAGONAL + _APART * bool(k)
+            yield here.within(node.args, len(node.args) - 1, number(k), "index", cost)
     if name == "range":
         yield from _range(here, scope)
     if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
@@ -612,7 +643,7 @@ def _with_member(row: Any, k: int, new: ast.expr) -> Any:
 def _signs_of_two(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:
     """Two rows or columns of a rotation matrix with the other sign: a frame is turned over."""
     entries = [one.elts for one in rows if isinstance(one, ast.List | ast.Tuple)]
-    if len(entries) != len(rows) or {len(one) for one in entries} != {_THREE}:
+    if len(entries) != len(rows) or {len(rows), *map(len, entries)} != {_THREE}:
         return
     for some in combinations(range(_THREE), 2):
         for columns in (False, True):
