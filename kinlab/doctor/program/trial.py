@@ -361,7 +361,6 @@ class Trial:
                 for k in every:
                     self.place(k, kept[k])
 
-
     def function(self, *state: Any) -> Any:
         """The program at one state.
 
