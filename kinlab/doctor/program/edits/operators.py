@@ -357,9 +357,9 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                 cost = _BESIDE if name in beside else 1.13
                 yield here.within(holder, field, ast.Name(name, ast.Load()), "index", cost)
         elif not isinstance(key, ast.Constant | ast.Slice):
-            for text, other in beside.items():
+            for text, index in beside.items():
                 if text not in _near(key):
-                    yield here.within(holder, field, copied(other), "index", 1.08)
+                    yield here.within(holder, field, copied(index), "index", 1.08)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
