@@ -5,6 +5,7 @@ Every program is right before the slip, which its verdict tells first.
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from hand_programs import asked, with_slips, written
 
@@ -151,11 +152,13 @@ PROGRAMS = {
 }
 SLIPS = [
     ("articulated", " + Ia @ c[i]", "", "a matrix times a vector"),
+    ("articulated", "np.outer(U[i], U[i])/D[i]", "np.outer(U[i], U[i])", "a divisor"),
     ("unrolled", " + a[1]*Z", "", "a number that is given, times a vector"),
     ("subscripts", "'i,ija,ika->jk'", "'j,ija,ika->jk'", "a letter of another axis"),
     ("subscripts", "'i,ij,ik->jk'", "'i,ji,ik->jk'", "two letters of one array"),
 ]
 SEVERAL = [
+    ("articulated", [("crm(V[i]) @ joint", "crm(joint) @ V[i]"), ("np.outer(U[i], U[i])/D[i]", "np.outer(U[i], U[i])")], "a product's order and a divisor"),
     ("jacobians", [("+ Jw.T @ Iw @ Jw", ""), ("R @ com[i]", "R @ com[i]/2")], "a product of what is used nowhere"),
     ("jacobians", [("m[i]*Jv.T @ Jv + ", ""), ("R @ inertia[i] @ R.T", "R.T @ inertia[i] @ R")], "a square of what is used nowhere"),
     ("recursion", [("np.r_[[0, 0, 0], [0, 0, 9.81]]", "np.r_[[0, 0, 9.81], [0, 0, 0]]"), ("F = X[i].T @ F", "F = X[i] @ F"), ("[0.35, 0, 0]", "[0, 0.35, 0]")], "the halves of a twist"),
@@ -182,3 +185,35 @@ def test_it_is_told_beside_other_slips(name, slips) -> None:
     found, _good = asked(with_slips(text, slips), robot, quantity)
     told = found.causes[0].sentence
     assert all(right.strip(" +") in told or right[1:-1] in told for right, _wrong in slips), told
+
+
+POLAR = """
+import numpy as np
+
+m1, m2, lc1, I1, I2, g = 4.0, 1.8, 0.3, 0.13, 0.035, 9.81
+
+def f(q, v, tau):
+    r = 0.2 + q[1]
+    turn, slide = v
+    inertia = m1*lc1**2 + I1 + m2*r**2 + I2
+    h1 = 2*m2*r*turn*slide
+    h2 = -m2*r*turn**2
+    g1 = (m1*lc1 + m2*r)*g*np.cos(q[0])
+    g2 = m2*g*np.sin(q[0])
+    return np.array([(tau[0] - h1 - g1)/inertia, (tau[1] - h2 - g2)/m2])
+"""
+
+
+def test_a_lost_square_is_told_where_the_rate_stands() -> None:
+    q = np.pi / 2
+    rod = {"mass": 4.0, "com": [0, 0.3, 0], "inertia": np.diag([0.12, 0.02, 0.13])}
+    slide = {"mass": 1.8, "com": [0, 0, -0.15], "inertia": np.diag([0.03, 0.035, 0.004])}
+    links = [
+        kl.DHLink(theta=-q, **rod),
+        kl.DHLink("prismatic", alpha=-q, d=0.35, lower=0.0, upper=0.6, **slide),
+    ]
+    arm = kl.DHTable("polar", "modified", links, gravity=[0, -9.81, 0])
+    assert kl.diagnose(arm, "forward_dynamics", written(POLAR)).agrees
+    slipped = written(POLAR.replace("turn**2", "turn"))
+    found = kl.diagnose(arm, "forward_dynamics", slipped)
+    assert "`h2 = -m2*r*turn` should be" in found.causes[0].sentence.replace(" * ", "*")

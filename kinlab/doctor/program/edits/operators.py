@@ -105,6 +105,10 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
                 yield here.instead(last, "order", 1.07)
             yield from _turned(here)
+            inner = left.args[0] if isinstance(left, ast.Call) and len(left.args) == 1 else None
+            if inner is not None and observed.shape(inner) == matrices[1] is not None:
+                crossed = ast.Call(left.func, [right], left.keywords)  # skew(a) @ b
+                yield here.instead(ast.BinOp(crossed, op, inner), "order", 1.03)
         elif isinstance(op, ast.Mult):
             if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
                 squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)

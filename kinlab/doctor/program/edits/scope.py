@@ -67,6 +67,7 @@ class Scope:
         tests: conditions on what a counter counts, of kinds of joints that nothing asks, too.
         present, set_at: the names that it has, and the lines in which it sets them first.
         fronts: names in what stands in front of any product of matrices.
+        divisors: what something is divided by, as text.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
@@ -94,8 +95,9 @@ class Scope:
         self.idle: list[tuple[Shape, ast.expr]] = []
         self.inner: set[str] = set()
         self.factors: dict[int, set[str]] = {}
-        products = (x for x in nodes(tree) if isinstance(x, ast.BinOp))
-        fronts = (x.left for x in products if isinstance(x.op, ast.MatMult))
+        operations = [x for x in nodes(tree) if isinstance(x, ast.BinOp)]
+        self.divisors = {ast.unparse(x.right) for x in operations if isinstance(x.op, ast.Div)}
+        fronts = (x.left for x in operations if isinstance(x.op, ast.MatMult))
         self.fronts = {name for one in fronts for name in names(one)}
         self.pi = _pi_of(trial.space)
         self._inside: frozenset[str] = frozenset()

@@ -56,6 +56,8 @@ _SAME = ("abs", "array", "asarray", "float", "sum", "negative", "copy", "ravel",
 _STATEMENTS = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
 _FAR, LIKE = 1.2, 0.12
 """What it costs less to take a name for a far one of the same dimension."""
+_DUE = 0.15
+"""What it costs less where sums that use what is set become sound with it."""
 _APART, _CHANGED = 0.12, 0.1
 """What an edit costs more that adds what is of different dimensions, or that changes one."""
 
@@ -193,8 +195,33 @@ class Dimensions:
         if found is None or was is None:
             return 0.0
         if not _alike(was, found):
+            due = self._due.get(id(old))
+            if due is not None and abs(found - was - due) <= TOLERANCES.tried_further:
+                return -_DUE
             return _CHANGED if self.consistent else 0.0
         return -LIKE if edit.kind == "name" and edit.cost > _FAR and was else 0.0
+
+    @cached_property
+    def _due(self) -> dict[int, float]:
+        """By how much the factors of what is set should change, for sums that use it to be sound.
+
+        Of names beside what has another dimension than they.
+        """
+        asked: dict[str, float] = {}
+        every = [node for tree in self.trial.trees for node in nodes(tree)]
+        for node in every:
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+                for one, other in ((node.left, node.right), (node.right, node.left)):
+                    own, beside = self.of(one), self.of(other)
+                    if isinstance(one, ast.Name) and own is not None and beside is not None:
+                        asked |= {} if _alike(own, beside) else {one.id: beside - own}
+        lines = [node for node in every if isinstance(node, ast.Assign)]
+        found: dict[int, float] = {}
+        for line in lines if asked else ():
+            for target, value in paired(line.targets[0], line.value):
+                if isinstance(target, ast.Name) and target.id in asked:
+                    found |= {id(one): asked[target.id] for one in _factors_of(value)}
+        return found
 
     def _of_new(self, node: Any) -> float | None:
         """The dimension of an expression that is put in."""
@@ -354,6 +381,16 @@ def _only(every: Array) -> Array | None:
     least, most = np.fmin.reduce(every), np.fmax.reduce(every)
     apart = (most - least) > TOLERANCES.tried_further
     return None if apart.any() else np.asarray(least)
+
+
+def _factors_of(node: ast.expr) -> Iterator[ast.expr]:
+    """What multiplies in a product, itself included."""
+    yield node
+    if isinstance(node, ast.UnaryOp):
+        yield from _factors_of(node.operand)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        yield from _factors_of(node.left)
+        yield from _factors_of(node.right) if isinstance(node.op, ast.Mult) else ()
 
 
 def _larger(
