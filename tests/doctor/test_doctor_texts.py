@@ -209,6 +209,8 @@ def test_a_length_may_be_a_distance_or_stand_along_its_axis(length, tmp_path) ->
     assert not kl.diagnose(arm, "G2", f"m2*g*{length}*cos(q1+q2)").agrees
     # what the table itself calls so is with its sign
     assert not kl.diagnose(arm, "G2", "m2*g*cx2*sin(q1+q2)").agrees
+
+
 def test_a_plus_in_front_gives_way_to_the_minus() -> None:
     (cause,) = kl.diagnose("planar2r", "J11", "+l1*s1 - l2*s12").causes[:1]
     assert "+l1*s1 should be -l1*s1" in cause.sentence

@@ -135,6 +135,24 @@ def root(piece: ast.AST) -> str:
     return piece.id if isinstance(piece, ast.Name) else ""
 
 
+def reads(node: ast.AST) -> set[str]:
+    """The names that are used for more than to write into what they stand for."""
+    filled = {id(one) for one in written_into(node)}
+    found = [one for one in nodes(node) if isinstance(one, ast.Name) and id(one) not in filled]
+    return {one.id for one in found if isinstance(one.ctx, ast.Load)}
+
+
+def written_into(node: ast.AST) -> Iterator[ast.Name]:
+    """The names of what is written into: of ``S`` in ``S[:3, 3] = v``."""
+    for one in nodes(node):
+        inner: ast.AST = one
+        while isinstance(inner, ast.Subscript):
+            inner = inner.value
+        stored = inner is not one and isinstance(getattr(one, "ctx", None), ast.Store)
+        if stored and isinstance(inner, ast.Name):
+            yield inner
+
+
 def called(node: ast.Call) -> str:
     """The last name of what is called: ``cross`` of ``np.cross``."""
     target = node.func

@@ -23,5 +23,6 @@ module            what it holds
                   numbers
 ``scope``         What is known in one part of a program: names, entries, angles, and what may
                   stand in a place
+``subscripts``    The subscripts of a sum of products: another letter, two for one another
 ================  =================================================================================
 """

@@ -22,6 +22,8 @@ _TURNING = 0.1
 """The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
+_DIVIDED = 1.07
+"""Cost of a divisor that is lost."""
 _THRICE = 3
 """How often a name may stand in a sum of three equal links."""
 
@@ -74,6 +76,8 @@ def as_a_term(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
             rare = trig or value == _THRICE or _keeps(parent, node)
             cost = 1.15 if rare else 1.05 + _ODD * (passed or counted)
             yield here.instead(times, "factor", cost)
+    if (summand or whole) and not isinstance(node, ast.Constant):
+        yield from _divided(here, scope, summand)
     if trig:
         yield from _angle(here, scope)
         return
@@ -121,6 +125,19 @@ def _keeps(parent: ast.AST, node: ast.expr) -> bool:
     """Whether an object keeps what it is given, by the same name: ``self.m = m``."""
     target = parent.targets[0] if isinstance(parent, ast.Assign) else None
     return isinstance(target, ast.Attribute) and target.attr == getattr(node, "id", "")
+
+
+def _divided(here: Here, scope: Scope, summand: bool) -> Iterator[ProgramEdit]:
+    """A term, or all that is set, by what is a divisor elsewhere."""
+    node = here.node
+    op = node.op if isinstance(node, ast.BinOp) else None
+    if (summand and isinstance(op, ast.Add | ast.Sub)) or isinstance(op, ast.Div):
+        return
+    own = {ast.unparse(one) for one in nodes(node) if isinstance(one, ENTRIES)}
+    for text, divisor in scope.simple(()):
+        if text in scope.divisors and text not in own:
+            new = ast.BinOp(node, ast.Div(), divisor)
+            yield here.instead(new, "missing factor", _DIVIDED)
 
 
 def _instead_of_zero(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, OtherName
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import ProgramEdit, paired, root
+from kinlab.doctor.program.places import ProgramEdit, paired, reads, root, written_into
 from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
@@ -81,7 +81,7 @@ def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Itera
             moved = block[i]
             if isinstance(block[j], ast.Return):
                 continue
-            if not (_fills(moved) & _reads(block[j]) or _reads(moved) & _fills(block[j])):
+            if not (_fills(moved) & reads(block[j]) or reads(moved) & _fills(block[j])):
                 continue
             later = [*block[:i], *block[i + 1 : j + 1], moved, *block[j + 1 :]]
             change = FieldChange(node, name, later)
@@ -394,21 +394,4 @@ def _uses(node: ast.AST) -> set[str]:
 
 def _fills(node: ast.AST) -> set[str]:
     """The names that are set, and those of what is written into: ``S[:3, 3] = v``."""
-    return _sets(node) | {one.id for one in _written_into(node)}
-
-
-def _reads(node: ast.AST) -> set[str]:
-    """The names that are used for more than to write into what they stand for."""
-    filled = {id(one) for one in _written_into(node)}
-    found = [one for one in nodes(node) if isinstance(one, ast.Name) and id(one) not in filled]
-    return {one.id for one in found if isinstance(one.ctx, ast.Load)}
-
-
-def _written_into(node: ast.AST) -> Iterator[ast.Name]:
-    for one in nodes(node):
-        root: ast.AST = one
-        while isinstance(root, ast.Subscript):
-            root = root.value
-        stored = root is not one and isinstance(getattr(one, "ctx", None), ast.Store)
-        if stored and isinstance(root, ast.Name):
-            yield root
+    return _sets(node) | {one.id for one in written_into(node)}

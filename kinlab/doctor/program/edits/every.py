@@ -42,6 +42,7 @@ from kinlab.doctor.program.edits.operators import (
     whole_constant,
 )
 from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
 from kinlab.doctor.program.trial import Trial
@@ -72,6 +73,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     found += [x for x in every if not (beside and _undoes(x, beside))]
                 elif isinstance(node, ast.Constant) and isinstance(node.value, str):
                     found += of_letters(here)
+                    found += of_subscripts(here, observed)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)
@@ -165,7 +167,7 @@ def _expression(here: Here, scope: Scope, observed: Observed) -> Iterator[Progra
     elif isinstance(node, ast.Constant):
         yield from of_constant(here, index, scope)
     elif isinstance(node, ast.List | ast.Tuple):
-        yield from of_sequence(here)
+        yield from of_sequence(here, observed)
     elif isinstance(node, ast.IfExp):
         yield here.within(node, "test", negated(node.test), "condition", 1.3)
     elif isinstance(node, ast.Compare):

@@ -39,6 +39,11 @@ _DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
 _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
+
+_HALVED = 1.04
+"""Cost of the halves of a twist, or of a wrench, for one another."""
+_BESIDE = 1.06
+"""Cost of an index that another row has in the same line."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 
@@ -108,6 +113,10 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 last = ast.BinOp(ast.BinOp(left.left, op, right), left.op, left.right)
                 yield here.instead(last, "order", 1.07)
             yield from _turned(here)
+            inner = left.args[0] if isinstance(left, ast.Call) and len(left.args) == 1 else None
+            if inner is not None and observed.shape(inner) == matrices[1] is not None:
+                crossed = ast.Call(left.func, [right], left.keywords)  # skew(a) @ b
+                yield here.instead(ast.BinOp(crossed, op, inner), "order", 1.03)
         elif isinstance(op, ast.Mult):
             if isinstance(right, ast.BinOp) and isinstance(right.op, ast.Pow):
                 squared = ast.BinOp(ast.BinOp(left, op, right.left), right.op, right.right)
@@ -362,9 +371,9 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     if isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
         yield from _of_key(here, node.slice, scope)
         return
-    if getattr(node.value, "attr", "") in ("r_", "c_"):  # its entries are no indices
+    if _is_stacked(node):
         if isinstance(node.slice, ast.Tuple) and len(node.slice.elts) <= _LONGEST:
-            yield from _swapped(here, node.slice)
+            yield from _swapped(here, node.slice, observed)
         return
     keys = keys_of(node)
     if isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
@@ -372,6 +381,7 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     yield from of_keys(here, node, 1.1)
     yield from _other_slices(here)
     yield from _in_another_order(here)
+    beside = _keys_beside(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
         if whole_constant(key):
@@ -380,7 +390,12 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
                     near = abs(other - value_of(key)) == 1
                     yield here.within(holder, field, number(other), "index", 1.05 if near else 1.1)
             for name in scope.counters:
-                yield here.within(holder, field, ast.Name(name, ast.Load()), "index", 1.13)
+                cost = _BESIDE if name in beside else 1.13
+                yield here.within(holder, field, ast.Name(name, ast.Load()), "index", cost)
+        elif not isinstance(key, ast.Constant | ast.Slice):
+            for text, index in beside.items():
+                if text not in _near(key):
+                    yield here.within(holder, field, copied(index), "index", 1.08)
     _holder, _field, key = keys[0]
     single = len(keys) == 1 and not isinstance(node.slice, ast.Tuple)
     if single and shape is not None and len(shape) == 2 and not isinstance(key, ast.Slice):
@@ -396,6 +411,24 @@ def _other_slices(here: Here) -> Iterator[ProgramEdit]:
         for text, other in known.items() if isinstance(key, ast.Slice) else ():
             if text != ast.dump(key):
                 yield here.within(holder, field, copied(other), "index", 1.09)
+
+
+def _keys_beside(here: Here) -> dict[str, ast.expr]:
+    """The indices that rows have in the same line, and that are counted: ``i``, ``j + 1``."""
+    line = next(one for one in reversed(here.above) if isinstance(one, ast.stmt))
+    rows = [one for one in nodes(line) if isinstance(one, ast.Subscript) and not _is_stacked(one)]
+    keys = [key for one in rows for _holder, _field, key in keys_of(one)]
+    return {ast.unparse(one): one for one in keys if isinstance(one, ast.Name) or shifted(one)}
+
+
+def _is_stacked(node: ast.Subscript) -> bool:
+    """Whether it is ``np.r_[a, b]``, whose entries are no indices."""
+    return getattr(node.value, "attr", "") in ("r_", "c_")
+
+
+def _near(key: ast.expr) -> set[str]:
+    """What is tried in place of an index all the same: itself, one more, one less."""
+    return {ast.unparse(one) for one in (key, plus(key, 1), plus(key, -1))}
 
 
 def _in_another_order(here: Here) -> Iterator[ProgramEdit]:
@@ -580,13 +613,13 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.within(here.node, "value", new, kind, 1.08 if power else 1.18)
 
 
-def of_sequence(here: Here) -> Iterator[ProgramEdit]:
+def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     elements = here.node.elts
     if any(isinstance(e, ast.Starred) for e in elements) or len(elements) > _LONGEST:
         return
     if isinstance(here.parent, ast.Subscript) and here.field == "slice":
         return
-    yield from _swapped(here, here.node)
+    yield from _swapped(here, here.node, observed)
     yield from _across(here, elements)
     yield from _between(here, elements)
     yield from _signs_of_two(here, elements)
@@ -674,15 +707,23 @@ def _opposite(node: ast.expr) -> ast.expr:
     return ast.UnaryOp(ast.USub(), node)
 
 
-def _swapped(here: Here, row: ast.List | ast.Tuple) -> Iterator[ProgramEdit]:
+def _swapped(here: Here, row: ast.List | ast.Tuple, observed: Observed) -> Iterator[ProgramEdit]:
     """Two entries for one another."""
+    halves = _are_halves(row, observed)
     for i, j in combinations(range(len(row.elts)), 2):
         if ast.dump(row.elts[i]) != ast.dump(row.elts[j]):
             swapped = [*row.elts]
             swapped[i], swapped[j] = swapped[j], swapped[i]
             moved = j == _PLACE and getattr(row.elts[j], "value", None) == 1
             cost = 1.12 + _FLAT * moved  # of what is a place, and no direction
+            cost = _HALVED if halves else cost
             yield here.within(row, "elts", swapped, "entries swapped", cost)
+
+
+def _are_halves(row: ast.List | ast.Tuple, observed: Observed) -> bool:
+    """Whether two vectors stand one behind the other: a twist, the angular half and the linear."""
+    shapes = [observed.shape(one) for one in row.elts]
+    return len(shapes) == _PAIR and shapes[0] == shapes[1] and len(shapes[0] or ()) == 1
 
 
 def of_letters(here: Here) -> Iterator[ProgramEdit]:

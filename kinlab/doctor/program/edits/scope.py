@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections import Counter
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from functools import lru_cache
 from math import pi
 from types import FunctionType, ModuleType
@@ -16,7 +16,7 @@ from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.chains import without_numbers
 from kinlab.doctor.program.edits.data import is_object
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import called, paired
+from kinlab.doctor.program.places import Here, called, paired, places, reads
 from kinlab.doctor.program.read import OwnFunction, read
 from kinlab.doctor.program.trial import Trial
 
@@ -52,6 +52,7 @@ class Scope:
         ranges: what they count through.
         idle_attributes: of objects those that no function uses.
         unused: names that are set, in the part or in the module, and used nowhere.
+        idle_entries: entries of what the function is given that it uses nowhere, as text.
         arcs: names of angles whose sine, cosine or tangent was known.
         turned: names of which sines and cosines are taken.
         angles: what sines and cosines are taken of.
@@ -66,6 +67,7 @@ class Scope:
         tests: conditions on what a counter counts, of kinds of joints that nothing asks, too.
         present, set_at: the names that it has, and the lines in which it sets them first.
         fronts: names in what stands in front of any product of matrices.
+        divisors: what something is divided by, as text.
         pi: how the program may write it; None where it cannot.
         root: what gives square roots, where it is known.
         cross: what gives the product of two vectors, where it is known.
@@ -93,8 +95,9 @@ class Scope:
         self.idle: list[tuple[Shape, ast.expr]] = []
         self.inner: set[str] = set()
         self.factors: dict[int, set[str]] = {}
-        products = (x for x in nodes(tree) if isinstance(x, ast.BinOp))
-        fronts = (x.left for x in products if isinstance(x.op, ast.MatMult))
+        operations = [x for x in nodes(tree) if isinstance(x, ast.BinOp)]
+        self.divisors = {ast.unparse(x.right) for x in operations if isinstance(x.op, ast.Div)}
+        fronts = (x.left for x in operations if isinstance(x.op, ast.MatMult))
         self.fronts = {name for one in fronts for name in names(one)}
         self.pi = _pi_of(trial.space)
         self._inside: frozenset[str] = frozenset()
@@ -124,7 +127,6 @@ class Scope:
             for name, told in getattr(kind, "__annotations__", {}).items():
                 if told in (float, "float"):
                     self.attributes.setdefault(name, ())
-        every = {name for one in trial.trees for name in names(one, ast.Load)}
         here = {*names(tree, ast.Load)}
         local = {n.arg for n in nodes(tree.args) if isinstance(n, ast.arg)}
         local |= {*names(tree)} - here
@@ -163,9 +165,13 @@ class Scope:
                 if known is not None:
                     self.shapes.setdefault(name, known)
         self.turned = {name for one in self.angles.values() for name in names(one)}
+        every, used = set[str]().union(*map(_used, trial.trees)), _used(tree)
         self.unused = {
-            name for name in self.shapes if name not in (here if name in local else every)
+            name
+            for name in (*self.shapes, *self.lists)
+            if name not in (used if name in local else every)
         }
+        self.idle_entries = set[str]() if part else _idle_entries(trial, self.shapes)
         for name, shape in self.shapes.items():
             if name in self.counters:
                 continue
@@ -236,6 +242,13 @@ class Scope:
             return node.attr in self.idle_attributes
         return isinstance(node, ast.Name) and node.id in self.unused
 
+    def uses_idle(self, node: ast.AST) -> bool:
+        """Whether there is anything in it that is set or given, and used nowhere."""
+        if not self.unused.isdisjoint(names(node)):
+            return True
+        entries = [one for one in nodes(node) if isinstance(one, ast.Subscript)]
+        return bool(self.idle_entries) and any(ast.unparse(x) in self.idle_entries for x in entries)
+
     def _of_siblings(self, trial: Trial) -> None:
         """What other objects of the module have where one has it: ``two.m`` beside ``one.m``."""
         kinds: dict[str, set[str]] = {}
@@ -260,14 +273,10 @@ class Scope:
             return
         given = [one.arg for one in tree.args.args][len(trial.bound) :]
         name = given[0] if given else ""
-        entries = [x for x in nodes(tree) if isinstance(x, ast.Subscript)]
-        used = [k for k in (_entry_of(x, name) for x in entries) if k is not None]
         rows = (self.shapes.get(one, ()) for one in given)  # of as many joints
         sizes = next((one for one in rows if len(one) == 1), ())
-        alone = names(tree).count(name) == len(used)
-        idle = {*range(sizes[0] if sizes else 0)}.difference(used)
         calls = [x for x in nodes(tree) if isinstance(x, ast.Call) and called(x) in self.functions]
-        for k in sorted(idle) if alone else ():
+        for k in _idle_of(tree, name, sizes):
             entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
             one: Any = ast.Call(copied(func), [entry], [])
             known = self.pieces.setdefault((), {})
@@ -406,9 +415,7 @@ class Scope:
             return 0.0 if node.id in self.unused else _UNUSED / 2
         if self.idle_attributes and self.is_idle(node):
             return 0.0
-        if not self.unused:
-            return _UNUSED
-        return _UNUSED if self.unused.isdisjoint(names(node)) else 0.0
+        return 0.0 if self.uses_idle(node) else _UNUSED
 
     def crosses(self, node: ast.AST) -> bool:
         """Whether a call takes the product of two vectors, by whatever name."""
@@ -449,6 +456,54 @@ class Scope:
         for text, node in self.pieces_here(shape).items():
             if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
                 yield text, node
+
+
+def standing(
+    trial: Trial, scopes: Sequence[Scope], asked: Callable[[Here], bool]
+) -> Iterator[tuple[Here, Scope]]:
+    """The places of a program that are asked for, each with the scope, which stands there.
+
+    Args:
+        trial: a program.
+        scopes: those of its parts.
+        asked: whether a place is meant.
+    """
+    for part, tree in enumerate(trial.trees):
+        for here in places(part, tree):
+            if asked(here):
+                scopes[part].stand((*here.above, here.node))
+                yield here, scopes[part]
+
+
+def _used(tree: ast.AST) -> set[str]:
+    """The names that are used for more than to be filled: ``J`` in ``J[:, j] = z``."""
+    grown = {id(one) for node in nodes(tree) for one in _appended_to(node)}
+    kept = (one for one in nodes(tree) if isinstance(one, ast.Name) and id(one) not in grown)
+    return {one.id for one in kept if isinstance(one.ctx, ast.Load)} & reads(tree)
+
+
+def _appended_to(node: ast.AST) -> Iterator[ast.expr]:
+    """The list into which a statement only puts an entry more."""
+    call = node.value if isinstance(node, ast.Expr) else None
+    if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
+        yield from [call.func.value] * (call.func.attr == "append")
+
+
+def _idle_entries(trial: Trial, shapes: dict[str, Shape]) -> set[str]:
+    """The entries of rows that the function is given, and of which it uses others alone."""
+    tree = trial.trees[0]
+    given = [one.arg for one in tree.args.args][len(trial.bound) :]
+    idle = [(name, k) for name in given for k in _idle_of(tree, name, shapes.get(name, ()))]
+    return {f"{name}[{k}]" for name, k in idle}
+
+
+def _idle_of(tree: ast.AST, name: str, sizes: Shape) -> list[int]:
+    """The entries of a row that nothing uses, where single ones are used alone."""
+    entries = [x for x in nodes(tree) if isinstance(x, ast.Subscript)]
+    used = [k for k in (_entry_of(x, name) for x in entries) if k is not None]
+    loads = [x for x in names(tree, ast.Load) if x == name]
+    alone = len(loads) == len(used) and len(sizes) == 1
+    return sorted({*range(sizes[0])}.difference(used)) if alone else []
 
 
 def _not_called(trial: Trial, called_: Container[str]) -> Iterator[str]:

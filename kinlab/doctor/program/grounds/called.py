@@ -24,9 +24,13 @@ def stem(name: str) -> str:
 
 def kinds_called(name: str) -> tuple[str, ...]:
     """What may be called so; nothing where that cannot be told."""
-    found = next((kinds for begin, kinds in _CALLED if begin.match(stem(name))), ())
-    first = name.strip("_").partition("_")[0]  # ``A_PREV``
-    return found or (kinds_called(first) if first != name else ())
+    found: tuple[str, ...] = next(
+        (kinds for begin, kinds in _CALLED if begin.match(stem(name))), ()
+    )
+    words = name.strip("_").split("_")
+    for word in (words[0], words[-1]):  # ``A_PREV``, ``dh_d``
+        found = found or (kinds_called(word) if word != name else ())
+    return found
 
 
 def unlike(one: str, other: str) -> bool:

@@ -19,12 +19,21 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.data import NumberPlace, leaves_of, numbers, together
+from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.edits.own_numbers import among, may_be_gravity, sizes_of
 from kinlab.doctor.program.edits.scope import ANGLES, ARCS
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.scaled import unused
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import DATA, ProgramEdit, called, paired, with_other
+from kinlab.doctor.program.places import (
+    DATA,
+    Here,
+    ProgramEdit,
+    called,
+    paired,
+    places,
+    with_other,
+)
 from kinlab.doctor.program.trial import FailedError, NoProgramError, Trial
 from kinlab.model.dh import DHTable
 from kinlab.tolerances import TOLERANCES
@@ -47,6 +56,8 @@ _SAME = ("abs", "array", "asarray", "float", "sum", "negative", "copy", "ravel",
 _STATEMENTS = ast.Assign | ast.AugAssign | ast.Return | ast.Expr
 _FAR, LIKE = 1.2, 0.12
 """What it costs less to take a name for a far one of the same dimension."""
+_DUE = 0.15
+"""What it costs less where sums that use what is set become sound with it."""
 _APART, _CHANGED = 0.12, 0.1
 """What an edit costs more that adds what is of different dimensions, or that changes one."""
 
@@ -74,6 +85,7 @@ class Dimensions:
     ) -> None:
         self.trial = trial
         self._known: dict[int, float] = {}
+        self._seen: dict[int, tuple[Seen, Seen]] = {}
         table = table_of(robot)
         turns = table is not None and all(link.joint == "revolute" for link in table.links)
         self._alike = alike and turns
@@ -92,6 +104,7 @@ class Dimensions:
             for node in nodes(tree):
                 one, other = observed.of(node), there.of(node)
                 if one is not None and other is not None:
+                    self._seen[id(node)] = one, other
                     ratio = _ratio(one, other)
                     if ratio is not None:
                         self._known[id(node)] = ratio
@@ -106,6 +119,30 @@ class Dimensions:
             return self._of_new(node)
         except _ApartError:
             return None
+
+    def of_entries(self, node: ast.expr) -> Array | None:
+        """The dimensions of a vector's or matrix's entries, nan where nothing is told.
+
+        Of names and entries of the program, of what is transposed, and of products of these.
+        """
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.MatMult):
+            one, other = self.of_entries(node.left), self.of_entries(node.right)
+            return None if one is None or other is None else _of_product(one, other)
+        if isinstance(node, ast.Attribute) and node.attr == "T":
+            inner = self.of_entries(node.value)
+            return None if inner is None else inner.T
+        own = self._seen.get(id(node))
+        if own is not None:
+            return _each_ratio(*own)
+        return self._entries_of_text(ast.unparse(node))
+
+    def _entries_of_text(self, text: str) -> Array | None:
+        if text not in self._by_text:
+            every = [_each_ratio(*self._seen[one]) for one in self._nodes_of.get(text, ())]
+            told = [one for one in every if one is not None]
+            alike = len(told) == len(every) > 0 and len({one.shape for one in told}) == 1
+            self._by_text[text] = _only(np.stack(told)) if alike else None
+        return self._by_text[text]
 
     def of_text(self, text: str) -> float | None:
         """The same of a name or an entry, by what it is as text."""
@@ -158,8 +195,33 @@ class Dimensions:
         if found is None or was is None:
             return 0.0
         if not _alike(was, found):
+            due = self._due.get(id(old))
+            if due is not None and abs(found - was - due) <= TOLERANCES.tried_further:
+                return -_DUE
             return _CHANGED if self.consistent else 0.0
         return -LIKE if edit.kind == "name" and edit.cost > _FAR and was else 0.0
+
+    @cached_property
+    def _due(self) -> dict[int, float]:
+        """By how much the factors of what is set should change, for sums that use it to be sound.
+
+        Of names beside what has another dimension than they.
+        """
+        asked: dict[str, float] = {}
+        every = [node for tree in self.trial.trees for node in nodes(tree)]
+        for node in every:
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+                for one, other in ((node.left, node.right), (node.right, node.left)):
+                    own, beside = self.of(one), self.of(other)
+                    if isinstance(one, ast.Name) and own is not None and beside is not None:
+                        asked |= {} if _alike(own, beside) else {one.id: beside - own}
+        lines = [node for node in every if isinstance(node, ast.Assign)]
+        found: dict[int, float] = {}
+        for line in lines if asked else ():
+            for target, value in paired(line.targets[0], line.value):
+                if isinstance(target, ast.Name) and target.id in asked:
+                    found |= {id(one): asked[target.id] for one in _factors_of(value)}
+        return found
 
     def _of_new(self, node: Any) -> float | None:
         """The dimension of an expression that is put in."""
@@ -180,7 +242,8 @@ class Dimensions:
         if isinstance(node, ast.Attribute) and node.attr == "T":
             return self._of_new(node.value)
         if isinstance(node, ast.Name | ast.Subscript | ast.Attribute):
-            return self._texts.get(ast.unparse(node))
+            known = self._texts.get(ast.unparse(node))
+            return self._of_entry(node) if known is None else known
         return None
 
     def _of_operation(self, node: ast.BinOp) -> float | None:
@@ -210,6 +273,32 @@ class Dimensions:
         if name in ("cross", "dot", "outer") and len(given) == 2:
             return None if None in given else sum(x for x in given if x is not None)
         return given[0] if name in _SAME and len(given) == 1 else None
+
+    @cached_property
+    def _by_text(self) -> dict[str, Array | None]:
+        """What was asked for already of the entries of names, by their text."""
+        return {}
+
+    @cached_property
+    def _nodes_of(self) -> dict[str, list[int]]:
+        """The nodes of names and entries that were seen, by their text."""
+        found: dict[str, list[int]] = {}
+        for tree in self.trial.trees:
+            for node in nodes(tree):
+                if isinstance(node, ast.Name | ast.Subscript) and id(node) in self._seen:
+                    found.setdefault(ast.unparse(node), []).append(id(node))
+        return found
+
+    def _of_entry(self, node: ast.expr) -> float | None:
+        """The dimension of an entry of a row that the program uses others of."""
+        key = node.slice if isinstance(node, ast.Subscript) else None
+        k = getattr(key, "value", None)
+        if not isinstance(node, ast.Subscript) or type(k) is not int:
+            return None
+        row = self.of_entries(node.value)
+        if row is None or row.ndim != 1 or k >= len(row) or not np.isfinite(row[k]):
+            return None
+        return float(row[k])
 
     @cached_property
     def _texts(self) -> dict[str, float]:
@@ -258,6 +347,52 @@ def _ratio(one: Seen, other: Seen) -> float | None:
     return float(logs[0])
 
 
+def _each_ratio(one: Seen, other: Seen) -> Array | None:
+    """By how much each entry of what an expression was grows, as a logarithm.
+
+    nan where it is zero all the time; None where an entry does not grow alike.
+    """
+    if not one.values or len(one.values) != len(other.values) or one.shape is None:
+        return None
+    if one.shape != other.shape:
+        return None
+    before, after = np.stack(one.values).astype(float), np.stack(other.values).astype(float)
+    told = np.abs(before) > TOLERANCES.tried_further
+    ratio = np.divide(after, before, out=np.full(before.shape, np.nan), where=told)
+    if (ratio[told] <= 0.0).any():
+        return None
+    return _only(np.log(ratio))
+
+
+def _of_product(one: Array, other: Array) -> Array | None:
+    """The dimensions of a matrix product's entries; None where it adds what has no sum."""
+    if one.ndim not in (1, 2) or other.ndim not in (1, 2) or one.shape[-1] != len(other):
+        return None
+    columns = other if other.ndim == 2 else other[:, None]
+    rows = one if one.ndim == 2 else one[None]
+    found = _only(np.moveaxis(rows[:, :, None] + columns[None], 1, 0))
+    if found is None:
+        return None
+    return found.reshape((*one.shape[:-1], *other.shape[1:]))
+
+
+def _only(every: Array) -> Array | None:
+    """Of each column the one number that it has beside nan; None where one has several."""
+    least, most = np.fmin.reduce(every), np.fmax.reduce(every)
+    apart = (most - least) > TOLERANCES.tried_further
+    return None if apart.any() else np.asarray(least)
+
+
+def _factors_of(node: ast.expr) -> Iterator[ast.expr]:
+    """What multiplies in a product, itself included."""
+    yield node
+    if isinstance(node, ast.UnaryOp):
+        yield from _factors_of(node.operand)
+    elif isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
+        yield from _factors_of(node.left)
+        yield from _factors_of(node.right) if isinstance(node.op, ast.Mult) else ()
+
+
 def _larger(
     table: DHTable, names: Sequence[str], states: Sequence[tuple[Any, ...]]
 ) -> list[tuple[Any, ...]] | None:
@@ -288,9 +423,14 @@ def _in_other_units(trial: Trial, observed: Observed, table: DHTable) -> list[Pr
     kinds = sizes_of(table)
     angles = {abs(x) for link in table.links for x in (link.alpha, link.theta)}
     put: list[tuple[NumberPlace, float]] = []
-    named = _named(trial)
+    named, axes, counting = _named(trial), _axes(trial), _counting(trial)
     every = [*numbers(trial, observed), *_unused(trial)]
-    told = [_kind(place, kinds, angles, named) for place in every]
+    told = [
+        "none"
+        if id(one.node) in axes or _is_count(one, named, counting)
+        else _kind(one, kinds, angles, named)
+        for one in every
+    ]
     typed, columns = _typed_columns(trial), dict[Any, set[str]]()
     for place, kind in zip(every, told, strict=True):
         if kind not in (None, "none"):
@@ -343,6 +483,45 @@ def _named(trial: Trial) -> dict[int, str]:
                     over = value.generators[0].iter if isinstance(value, ast.ListComp) else value
                     found |= {id(one): name for one in _alone(over) if name is not None}
     return found
+
+
+def _axes(trial: Trial) -> set[int]:
+    """Each 1 of the text that is the only number of a row but zeros, as an axis has it."""
+    found: set[int] = set()
+    for node in (node for tree in trial.trees for node in nodes(tree)):
+        if isinstance(node, ast.List | ast.Tuple) and len(node.elts) > 1:
+            filled = [one for one in node.elts if getattr(one, "value", 1) != 0]
+            if len(filled) == 1 and getattr(filled[0], "value", None) == 1:
+                found.add(id(filled[0]))
+    return found
+
+
+def _counting(trial: Trial) -> set[str]:
+    """Names that only count or tell apart: of how many links, of kinds of joints."""
+    used: dict[str, set[bool]] = {}
+    for here in (here for k, tree in enumerate(trial.trees) for here in places(k, tree)):
+        if isinstance(here.node, ast.Name) and isinstance(here.node.ctx, ast.Load):
+            used.setdefault(here.node.id, set()).add(_counts(here))
+    return {name for name, ways in used.items() if ways == {True}}
+
+
+def _is_count(place: NumberPlace, named: Mapping[int, str], counting: set[str]) -> bool:
+    """Whether a whole number has a name that only counts, and is that of no size."""
+    name = place.node if place.part == DATA else named.get(id(place.node))
+    whole = type(place.value) is int and not place.place
+    return whole and name in counting and _told_by(str(name)) is None
+
+
+def _counts(here: Here) -> bool:
+    """Whether a name counts where it is used: ``range(n - 1)``, ``[None]*n``, ``kind == SLIDE``."""
+    parent = here.parent
+    if isinstance(parent, ast.BinOp):
+        other = parent.right if parent.left is here.node else parent.left
+        step = isinstance(parent.op, ast.Add | ast.Sub) and type(getattr(other, "value", "")) is int
+        return step or isinstance(other, ast.List)
+    if isinstance(parent, ast.Call):
+        return called(parent) in SIZES and called(parent) not in ANGLES
+    return isinstance(parent, ast.Compare | ast.Subscript | ast.Tuple | ast.List)
 
 
 def _alone(value: ast.expr) -> Iterator[ast.expr]:

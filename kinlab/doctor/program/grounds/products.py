@@ -7,10 +7,10 @@ from collections.abc import Iterator, Sequence
 from functools import reduce
 from itertools import combinations, islice, permutations
 
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.edits.scope import Scope, standing
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number, places
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
@@ -36,13 +36,10 @@ def missing_products(
         scopes: those of its parts.
         known: their dimensions.
     """
-    for part, tree in enumerate(trial.trees):
-        scope = scopes[part]
-        for here in places(part, tree):
-            size = known.of(here.node) if _is_whole(here) else None
-            if size and observed.shape(here.node) == ():
-                scope.stand((*here.above, here.node))
-                yield from _missing(here, scope, known, size)
+    for here, scope in standing(trial, scopes, _is_whole):
+        size = known.of(here.node)
+        if size and observed.shape(here.node) == ():
+            yield from _missing(here, scope, known, size)
 
 
 def _is_whole(here: Here) -> bool:
@@ -56,7 +53,8 @@ def _missing(here: Here, scope: Scope, known: Dimensions, size: float) -> Iterat
     for products, most in ((_products, _MOST), (_longer, _LONGER)):
         new = (one for one in products(scope, known, size) if ast.unparse(one[0]) not in own)
         for product, used in islice(new, most):
-            cost = _USED if scope.unused.isdisjoint(used) else _UNUSED
+            idle = not scope.unused.isdisjoint(used) or scope.uses_idle(product)
+            cost = _UNUSED if idle else _USED
             for op in (ast.Add(), ast.Sub()):
                 more = _OF_MORE * (products is _longer)
                 new_ = ast.BinOp(here.node, op, product)

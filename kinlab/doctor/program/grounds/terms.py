@@ -4,27 +4,31 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from itertools import combinations
 
 import numpy as np
 
+from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import copied, names
 from kinlab.doctor.program.edits.additions import OtherName
-from kinlab.doctor.program.edits.scope import Scope, summands
+from kinlab.doctor.program.edits.scope import Scope, standing, statement_of, summands
 from kinlab.doctor.program.grounds.dimensions import Dimensions
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, places
+from kinlab.doctor.program.places import Here, ProgramEdit, called
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
 _VECTOR = (3,)
-_VECTORS, _SCALARS, _MADE = 10, 10, 4
-"""Names and numbers of which a term may be, and things that are made of several."""
+_VECTORS, _SCALARS, _MADE, _FACTORS = 10, 10, 4, 24
+"""Names and numbers of which a term may be, things that are made of several; factors of squares."""
 _MOST, _FEW = 40, 12
 """Terms that may be missing in one place; of a dimension that is not known."""
-_IDLE, _USED = 1.08, 1.17
+_IDLE, _USED = 1.06, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
 _NEXT = 1.05
 """What one is with which each of the arm's links has its own."""
+_OF_SEVERAL, _OF_IDLE, _FITTING = 1.0, 1.05, 1.08
+"""The same of products of matrices: of several such names, of one; that fit a twist's entries."""
 _SET = ast.Assign | ast.AugAssign | ast.Return
 
 
@@ -39,20 +43,19 @@ def missing_terms(
         scopes: those of its parts.
         known: their dimensions.
     """
-    for part, tree in enumerate(trial.trees):
-        scope = scopes[part]
-        for here in places(part, tree):
-            if isinstance(here.node, ast.expr) and _is_whole(here):
-                shape = observed.shape(here.node)
-                if shape is not None:
-                    scope.stand((*here.above, here.node))
-                    yield from _of_other_links(here, scope)
-                if shape is not None and len(shape) == 1:
-                    yield from _of_dimension(here, scope, known, shape)
+    for here, scope in standing(trial, scopes, _is_whole):
+        shape = observed.shape(here.node)
+        if shape is not None:
+            yield from _of_other_links(here, scope)
+            yield from _of_matrices(here, scope, known, shape)
+        if shape is not None and len(shape) == 1:
+            yield from _of_dimension(here, scope, known, shape)
 
 
 def _is_whole(here: Here) -> bool:
-    """Whether an expression is all that is set, or that is put into a list."""
+    """Whether it is an expression that is all that is set, or that is put into a list."""
+    if not isinstance(here.node, ast.expr):
+        return False
     kept = isinstance(here.parent, ast.Call) and called(here.parent) == "append"
     literal = isinstance(here.node, ast.Constant | ast.List | ast.Tuple)
     return (kept or isinstance(here.parent, _SET)) and not literal
@@ -87,7 +90,7 @@ def _of_dimension(
     zeros = seen is not None and not any(map(np.any, seen.values))
     found: list[tuple[float, ast.expr]] = []
     for term in _terms(scope, shape):
-        made, idle = known.of_made(term), not scope.unused.isdisjoint(names(term))
+        made, idle = known.of_made(term), scope.uses_idle(term)
         told = None if size is None or made is None else abs(made - size)
         if (told is None and not idle) or ast.unparse(term) in own:
             continue
@@ -99,11 +102,91 @@ def _of_dimension(
         yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
 
 
+def _of_matrices(
+    here: Here, scope: Scope, known: Dimensions, shape: Shape
+) -> Iterator[ProgramEdit]:
+    """Products of matrices: of what is set and used nowhere, and what only fits by dimensions."""
+    size, own = known.of_entries(here.node), {ast.unparse(one) for one in summands(here.node)}
+    line = statement_of(here.above).lineno
+    found: list[tuple[float, int, ast.expr]] = []
+    for term in _matrix_products(scope, shape):
+        if ast.unparse(term) in own or any(scope.set_at.get(x, 0) > line for x in names(term)):
+            continue
+        made = known.of_entries(term)
+        told = size is not None and made is not None and _compared(size, made)
+        used = len({*names(term)} - scope.unused)
+        if told and size is not None and made is not None and not _fits(size, made):
+            continue
+        if scope.uses_idle(term):
+            several = len(scope.unused.intersection(names(term))) > 1
+            found.append((_OF_SEVERAL if several else _OF_IDLE, used, term))
+        elif told and size is not None and _varies(size):
+            found.append((_FITTING, used, term))
+    found.sort(key=lambda one: one[:2])
+    for cost, _used, term in found[:_FEW]:
+        yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", cost)
+
+
+def _compared(size: Array, made: Array) -> bool:
+    """Whether at least half of what is known of the sum's entries is known of a term's."""
+    both = np.isfinite(size) & np.isfinite(made)
+    return bool(2 * np.count_nonzero(both) >= np.count_nonzero(np.isfinite(size)) > 0)
+
+
+def _fits(size: Array, made: Array) -> bool:
+    """Whether the entries of a term are of the dimensions of the sum's, where both are known."""
+    apart = np.abs(size - made) > TOLERANCES.tried_further
+    return not apart.any()
+
+
+def _varies(size: Array) -> bool:
+    """Whether the entries are of several dimensions, as those of a twist: little fits by chance."""
+    return bool(np.nanmax(size) - np.nanmin(size) > TOLERANCES.tried_further)
+
+
+def _matrix_products(scope: Scope, shape: Shape) -> Iterator[ast.expr]:
+    """``J.T @ I @ J`` and ``m*J.T @ J`` as a matrix, ``A @ v`` as a vector, ``f @ v`` alone."""
+    every = {size: [one for _text, one in scope.simple(size)] for size in scope.pieces if size}
+    for some in every.values():
+        some.sort(key=lambda one: not scope.uses_idle(one))
+    simple = {size: some[:_VECTORS] for size, some in every.items()}
+    matrices = [(size, one) for size, some in simple.items() if len(size) == 2 for one in some]
+    if shape == ():
+        rows = [some for size, some in simple.items() if len(size) == 1 < size[0]]
+        for left, right in (both for some in rows for both in combinations(some, 2)):
+            if scope.uses_idle(left) or scope.uses_idle(right):
+                yield _times(left, right)
+    for (height, width), matrix in matrices:
+        across = ast.Attribute(matrix, "T", ast.Load())
+        if shape == (height,):
+            yield from (_times(matrix, vector) for vector in simple.get((width,), ()))
+        if shape == (width,):
+            yield from (_times(across, vector) for vector in simple.get((height,), ()))
+        if shape == (width, width):
+            yield from _squares(scope, matrix, simple.get((height, height), []))
+
+
+def _squares(scope: Scope, matrix: ast.expr, inner: Sequence[ast.expr]) -> Iterator[ast.expr]:
+    """``J.T @ I @ J``, where either is used nowhere, and such a matrix's own, times a number."""
+    across, idle = ast.Attribute(matrix, "T", ast.Load()), scope.uses_idle(matrix)
+    for one in inner:
+        if one is not matrix and (idle or scope.uses_idle(one)):
+            yield _times(_times(across, one), matrix)
+    if idle:
+        yield _times(across, matrix)
+        for scalar in [one for _text, one in scope.simple(())][:_FACTORS]:
+            yield _times(ast.BinOp(scalar, ast.Mult(), across), matrix)
+
+
+def _times(one: ast.expr, other: ast.expr) -> ast.expr:
+    return ast.BinOp(one, ast.MatMult(), other)
+
+
 def _terms(scope: Scope, shape: Shape) -> Iterator[ast.expr]:
     """A vector times a number, and of vectors in space the products of two."""
     pieces = scope.pieces_here(shape)
     numbers = [one for text, one in scope.simple(()) if text not in scope.counters]
-    numbers.sort(key=lambda one: scope.unused.isdisjoint(names(one)))
+    numbers.sort(key=lambda one: not scope.uses_idle(one))
     rows = {ast.unparse(one.value) for one in numbers if isinstance(one, ast.Subscript)}
     vectors = [one for text, one in scope.simple(shape) if text not in rows][:_VECTORS]
     typed = [one for one in pieces.values() if _is_typed(one)][:_MADE]
