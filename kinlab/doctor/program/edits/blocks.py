@@ -99,7 +99,7 @@ def _orders(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Itera
 def _updates_for(line: ast.stmt, user: ast.stmt) -> bool:
     """Whether a line makes of a name's value its next one, which another uses: ``w = R @ w``."""
     plain = isinstance(line, ast.Assign) and isinstance(user, ast.Assign | ast.AugAssign)
-    return plain and bool(_sets(line) & _reads(line) & _reads(user))
+    return plain and bool(_sets(line) & reads(line) & reads(user))
 
 
 def _loops(part: int, node: ast.AST, name: str, block: list[ast.stmt]) -> Iterator[ProgramEdit]:
