@@ -25,7 +25,7 @@ _MOST, _FEW = 40, 12
 """Terms that may be missing in one place; of a dimension that is not known."""
 _IDLE, _USED = 1.06, 1.17
 """What a term is far-fetched with a name that is used nowhere else, and without one."""
-_NEXT = 1.05
+_NEXT = 0.98
 """What one is with which each of the arm's links has its own."""
 _OF_SEVERAL, _OF_IDLE, _FITTING = 1.0, 1.05, 1.08
 """The same of products of matrices: of several such names, of one; that fit a twist's entries."""
