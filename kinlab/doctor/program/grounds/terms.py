@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from itertools import combinations
 
 import numpy as np
@@ -43,11 +44,16 @@ def missing_terms(
         scopes: those of its parts.
         known: their dimensions.
     """
+    beside: set[str] = set()
+    for here, scope in standing(trial, scopes, _is_whole):
+        if observed.shape(here.node) is not None:
+            for new, cost in _of_other_links(here, scope):
+                beside.add(ast.unparse(new))
+                yield here.instead(ast.BinOp(here.node, ast.Add(), new), "missing term", cost)
     for here, scope in standing(trial, scopes, _is_whole):
         shape = observed.shape(here.node)
         if shape is not None:
-            yield from _of_other_links(here, scope)
-            yield from _of_matrices(here, scope, known, shape)
+            yield from _of_matrices(here, scope, known, shape, beside)
         if shape is not None and len(shape) == 1:
             yield from _of_dimension(here, scope, known, shape)
 
@@ -61,7 +67,7 @@ def _is_whole(here: Here) -> bool:
     return (kept or isinstance(here.parent, _SET)) and not literal
 
 
-def _of_other_links(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+def _of_other_links(here: Here, scope: Scope) -> Iterator[tuple[ast.expr, float]]:
     """``I2*Jw2.T @ Jw2`` beside ``I1*Jw1.T @ Jw1``: each of its names is the other link's."""
     terms = [*summands(here.node)]
     own = {ast.unparse(one) for one in terms}
@@ -78,8 +84,7 @@ def _of_other_links(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                     new = OtherName(name, instead).visit(new)
                 if isinstance(new, ast.expr) and ast.unparse(new) not in own:
                     idle = not scope.unused.isdisjoint(others.values())
-                    cost = _NEXT if idle else _USED
-                    yield here.instead(ast.BinOp(here.node, ast.Add(), new), "missing term", cost)
+                    yield new, _NEXT if idle else _USED
 
 
 def _of_dimension(
@@ -103,10 +108,14 @@ def _of_dimension(
 
 
 def _of_matrices(
-    here: Here, scope: Scope, known: Dimensions, shape: Shape
+    here: Here, scope: Scope, known: Dimensions, shape: Shape, beside: AbstractSet[str]
 ) -> Iterator[ProgramEdit]:
-    """Products of matrices: of what is set and used nowhere, and what only fits by dimensions."""
-    size, own = known.of_entries(here.node), {ast.unparse(one) for one in summands(here.node)}
+    """Products of matrices: of what is set and used nowhere, and what only fits by dimensions.
+
+    But none that another link's stands beside in some line.
+    """
+    size = known.of_entries(here.node)
+    own = {*beside, *map(ast.unparse, summands(here.node))}
     line = statement_of(here.above).lineno
     found: list[tuple[float, int, ast.expr]] = []
     for term in _matrix_products(scope, shape):
