@@ -235,7 +235,8 @@ def _coefficient(one: float, two: float, meanings: Meanings) -> str | None:
     for exact in RODS:
         for digits in range(2, 7):
             part = literal(np.format_float_positional(exact, digits, fractional=False, trim="-"))
-            gap = abs(one - two) / abs(part.value - exact) if part.value != exact else 0.0
+            off = abs(part.value - exact)
+            gap = abs(one - two) / off if 0 < off <= TOLERANCES.typed_rounding * exact else 0.0
             if any(abs(rod - gap) <= TOLERANCES.same_relation * gap for rod in meanings.rods):
                 return stands_for(part.text, meanings.named(exact))
     return None if whole is None else ""
