@@ -17,6 +17,7 @@ module            what it holds
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement
 ``forgotten``     What is forgotten as one writes: a term of two names, a vector behind its number
+``guards``        What counts for some joints alone: conditions, and masks of arrays, around a term
 ``own_numbers``   The arm's own numbers: one for another, one for a number of nobody's, one that is
                   missing
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,

@@ -21,6 +21,7 @@ from kinlab.doctor.program.edits.composites import of_composites
 from kinlab.doctor.program.edits.data import of_data
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
+from kinlab.doctor.program.edits.guards import choices, masks, of_guards
 from kinlab.doctor.program.edits.operators import (
     is_diagonal,
     keys_of,
@@ -59,7 +60,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     found: list[ProgramEdit] = []
     elsewhere = Elsewhere(trial, observed)
     for part, tree in enumerate(trial.trees):
-        scope = scopes[part]
+        scope, by = scopes[part], (masks(tree), choices(tree))
         for here in places(part, tree):
             node = here.node
             scope.stand((*here.above, node))
@@ -67,6 +68,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                 if observed.of(node) is not None:
                     every = (*_expression(here, scope, observed),)
                     every += (*elsewhere.edits(here, scope, observed),)
+                    every += (*of_guards(here, scope, observed, *by),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
                     beside = _rotations_beside(here, observed)

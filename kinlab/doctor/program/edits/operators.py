@@ -10,7 +10,7 @@ from typing import Any
 from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.data import measured, moved_on, other_words
-from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned
+from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned, statement_of
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import Here, ProgramEdit, called, number
 
@@ -44,6 +44,8 @@ _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 _BESIDE = 1.06
 """Cost of an index that another row has in the same line."""
+_IN_LINE = 1.12
+"""Cost of a name for another that stands in the same line."""
 _ARGUMENTS, _APART = 4, 0.03
 """The same of arguments; what it costs more of those that do not stand side by side."""
 
@@ -524,6 +526,8 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             kind = "index" if near and _letters(other) == _letters(node.id) else "name"
             beside = other in scope.beside.get(node.id, ())
             cost = 1.1 if near else 1.14 if beside else 1.25
+            if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
+                cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):
                 cost = _HALF
             if other == across and {other, node.id} <= scope.sines:

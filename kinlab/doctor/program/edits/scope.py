@@ -153,6 +153,7 @@ class Scope:
                 for name, shape in _unpacked(node.targets[0], node.value, observed):
                     self.shapes.setdefault(name, shape)
         self.beside = _set_together(tree)
+        self._names_in: dict[int, frozenset[str]] = {}
         self.tests = _tests(tree, trial, self.counters)
         self.arcs, self.sines = _set_by(tree, ARCS), _set_by(tree, ANGLES)
         self.counters = [name for name in self.counters if self.shapes.get(name, ()) == ()]
@@ -445,6 +446,19 @@ class Scope:
             known = {text: one for text, one in every if outside.isdisjoint(names(one))}
             self._known_here[self._inside, shape] = known
         return known
+
+    @property
+    def counting(self) -> frozenset[str]:
+        """The counters of the loops around the place."""
+        return frozenset(self._inside)
+
+    def names_in(self, statement: ast.stmt) -> frozenset[str]:
+        """The names that a statement reads."""
+        if id(statement) not in self._names_in:
+            simple = isinstance(statement, ast.Assign | ast.AugAssign | ast.Return)
+            read = names(statement, ast.Load) if simple else ()
+            self._names_in[id(statement)] = frozenset(read)
+        return self._names_in[id(statement)]
 
     def tests_here(self) -> list[ast.expr]:
         """The conditions that may stand there."""

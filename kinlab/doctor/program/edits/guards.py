@@ -1,0 +1,71 @@
+"""What counts for some joints alone: conditions, and masks of arrays, around a term."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+
+from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.observed import Observed
+from kinlab.doctor.program.places import Here, ProgramEdit, called
+
+_GUARDED = 1.08
+"""What it costs that a term counts for some joints only."""
+_CHOICE = 3
+"""Arguments of ``np.where``."""
+
+
+def masks(tree: ast.AST) -> dict[str, ast.expr]:
+    """By what a program chooses from arrays, by its text: ``slide`` of ``where(slide, 0, q)``."""
+    calls = (one for one in nodes(tree) if isinstance(one, ast.Call) and called(one) == "where")
+    asked = (one.args[0] for one in calls if len(one.args) == _CHOICE)
+    return {ast.unparse(one): one for one in asked if isinstance(one, ast.Name | ast.Attribute)}
+
+
+def choices(tree: ast.AST) -> dict[str, ast.expr]:
+    """Conditions by which something else is nothing: ``i == 1`` of ``q[i] if i == 1 else 0``."""
+    every = (one for one in nodes(tree) if isinstance(one, ast.IfExp))
+    some = (one for one in every if _is_nothing(one.body) or _is_nothing(one.orelse))
+    return {ast.unparse(one.test): one.test for one in some}
+
+
+def _is_nothing(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value == 0
+
+
+def of_guards(
+    here: Here,
+    scope: Scope,
+    observed: Observed,
+    known: dict[str, ast.expr],
+    tests: dict[str, ast.expr],
+) -> Iterator[ProgramEdit]:
+    """A term for a hinge or a slide alone: ``0 if slides[i] else q[i]``, ``np.where(slide, 0, q)``.
+
+    Args:
+        here: the term of a sum.
+        scope: what may stand there.
+        observed: its shape.
+        known: what arrays are chosen by.
+        tests: what numbers are chosen by.
+    """
+    node, shape = here.node, observed.shape(here.node)
+    if not isinstance(getattr(here.parent, "op", None), ast.Add | ast.Sub) or shape is None:
+        return
+    if not isinstance(node, ast.Name | ast.Subscript | ast.Attribute | ast.Call):
+        return
+    nothing = ast.Constant(0)
+    if shape == ():
+        inside = {*scope.shapes, *scope.counting}
+        own = {text: one for text, one in tests.items() if inside.issuperset(names(one))}
+        own |= {ast.unparse(one): one for one in scope.tests_here()}
+        for test in own.values():
+            for both in ((nothing, node), (node, nothing)):
+                yield here.instead(ast.IfExp(test, *both), "condition", _GUARDED)
+    elif len(shape) == 1 and scope.has_numpy:
+        where = ast.Attribute(ast.Name("np", ast.Load()), "where", ast.Load())
+        for mask in known.values():
+            for first, last in ((nothing, node), (node, nothing)):
+                chosen = ast.Call(where, [mask, first, last], [])
+                yield here.instead(chosen, "condition", _GUARDED)
