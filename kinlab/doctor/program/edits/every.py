@@ -42,7 +42,7 @@ from kinlab.doctor.program.edits.operators import (
     value_of,
     whole_constant,
 )
-from kinlab.doctor.program.edits.scope import Scope
+from kinlab.doctor.program.edits.scope import Scope, statement_of, summands
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
 from kinlab.doctor.program.places import Here, ProgramEdit, number, places
@@ -51,6 +51,8 @@ from kinlab.tolerances import TOLERANCES
 
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
+_SUMMED = 0.02
+"""What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""
 
@@ -69,6 +71,8 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     every = (*_expression(here, scope, observed),)
                     every += (*elsewhere.edits(here, scope, observed),)
                     every += (*of_guards(here, scope, observed, *by),)
+                    if _sums_names(here, scope):
+                        every = (*(_dearer(x, _SUMMED) for x in every),)
                     if _says_where(here):
                         every = (*(replace(x, cost=max(x.cost, _WRITTEN)) for x in every),)
                     beside = _rotations_beside(here, observed)
@@ -82,6 +86,17 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
     found += of_data(trial)
     # of equal ones the later line: what is set there is used more rarely
     return sorted(found, key=lambda edit: (edit.cost, edit.part, -_line(edit)))
+
+
+def _dearer(edit: ProgramEdit, more: float) -> ProgramEdit:
+    return replace(edit, cost=edit.cost + more) if edit.kind in ("sign", "factor") else edit
+
+
+def _sums_names(here: Here, scope: Scope) -> bool:
+    """Whether it is of a sum of nothing but names, which are set before: ``m + c + g``."""
+    value = getattr(statement_of(here.above), "value", None)
+    terms = [*summands(value)] if isinstance(value, ast.BinOp) else []
+    return len(terms) > 1 and all(isinstance(x, ast.Name) and x.id in scope.set_at for x in terms)
 
 
 def _says_where(here: Here) -> bool:
