@@ -569,8 +569,7 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
             cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
-            half = _is_half(node, other, scope, observed)
-            yield here.within(node, "attr", other, "name", _HALF if half else cost)
+            yield here.within(node, "attr", other, "name", cost)
         elif other != node.attr and product:
             yield here.within(node, "attr", other, "name", 1.15)
     for _text, piece in scope.simple(shape):
@@ -581,16 +580,6 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
         if known == shape and other not in scope.counters and shape == ():
             cost = 1.2 if other[:1].lower() == node.attr[:1].lower() else 1.25
             yield here.instead(ast.Name(other, ast.Load()), "name", cost)
-
-
-def _is_half(node: ast.Attribute, other: str, scope: Scope, observed: Observed) -> bool:
-    """Whether one of an object's numbers of one link is half of the other."""
-    if node.attr[len(_letters(node.attr)) :] != other[len(_letters(other)) :]:
-        return False
-    piece = scope.pieces.get((), {}).get(f"{ast.unparse(node.value)}.{other}")
-    both = [observed.of(one) for one in (node, piece) if one is not None]
-    values = [float(seen.values[0]) for seen in both if seen is not None and seen.values]
-    return len(values) > 1 and min(values) * 2 == max(values)
 
 
 def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
