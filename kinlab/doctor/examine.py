@@ -258,6 +258,8 @@ def _possible(
             read_so = [] if program.written_out else exact or rough
             plain = [cause for cause in read_so if cause.cost <= _FETCHED]
             return meant(edited, plain), (), None, None
+        if program is not None:
+            exact = [*map(_without_a_line, exact)]
         causes = _outranked(causes, exact)
         by_values = program is None or program.written_out
         if not written and by_values and off and (not causes or len(off) <= RIVALS):
@@ -304,6 +306,12 @@ def _exactly(causes: list[Cause], worst: float) -> list[Cause]:
     """Explanations that leave nothing; where there are none, those that leave differences."""
     exact = [cause for cause in causes if cause.error_after <= TOLERANCES.formula_agrees]
     return exact or _roughly(causes, worst)
+
+
+def _without_a_line(cause: Cause) -> Cause:
+    """What explains a program of which no line was found that does it: something else may, too."""
+    said = _("{slip}, or does what amounts to that: no line was found that does it")
+    return replace(cause, sentence=said.format(slip=cause.sentence))
 
 
 def _roughly(causes: list[Cause], worst: float) -> list[Cause]:

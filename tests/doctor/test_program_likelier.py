@@ -304,3 +304,50 @@ def test_of_a_long_table_its_wrong_rows_are_shown(said) -> None:
     told = said(BASED, "ur5", "fk", ("0.0823", "0.823"), ("0.0, 0.10915", "0.0, 0.1915"))
     assert "`(0.0, 0.1915, np.pi/2)` should be `(0.0, 0.10915, np.pi/2)`" in told
     assert "`(0.0, 0.823, 0.0)` should be `(0.0, 0.0823, 0.0)`" in told
+
+
+BY_NAMES = """
+import numpy as np
+A, ALPHA, D = (0.0, 0.3, 0.2), (0.3, -0.7, 0.4), (0.2, 0.1, 0.15)
+
+def turn(angle, k):
+    i, j = [n for n in range(3) if n != k]
+    T = np.eye(4)
+    T[i, i] = T[j, j] = np.cos(angle)
+    T[j, i] = np.sin(angle) * (-1) ** k
+    T[i, j] = -T[j, i]
+    return T
+
+def move(length, k):
+    T = np.eye(4)
+    T[k, 3] = length
+    return T
+
+def f(q):
+    T = np.eye(4)
+    for i in range(3):
+        steps = {"Rx": turn(ALPHA[i], 0), "Tx": move(A[i], 0)}
+        steps |= {"Rz": turn(q[i], 2), "Tz": move(D[i], 2)}
+        for name in "Rz Tz Tx Rx".split():
+            T = T @ steps[name]
+    return T
+"""
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+def test_of_what_no_line_does_it_is_said_that_something_may_amount_to_it(
+    convention, tmp_path
+) -> None:
+    """The order stands in a word, in which nothing is edited."""
+    rows = zip((0.0, 0.3, 0.2), (0.3, -0.7, 0.4), (0.2, 0.1, 0.15), strict=True)
+    links = [kl.DHLink(a=a, alpha=alpha, d=d) for a, alpha, d in rows]
+    path = tmp_path / "hand.py"
+    path.write_text(BY_NAMES)
+    hand = written(BY_NAMES, path)
+    found = kl.diagnose(kl.DHTable("own", convention, links), "fk", hand)
+    assert found.agrees == (convention == "standard")
+    if not found.agrees:
+        assert found.causes[0].sentence.startswith(
+            "the formula reads the modified table as standard"
+        )
+        assert "or does what amounts to that: no line was found" in found.causes[0].sentence
