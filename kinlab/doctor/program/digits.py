@@ -12,7 +12,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import error_sizes
 from kinlab.doctor.bytecode.syntax import nodes
-from kinlab.doctor.program.edits.data import NumberPlace, numbers, together
+from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers, together
 from kinlab.doctor.program.places import ProgramEdit, places
 from kinlab.doctor.program.repair import LineSearch, changed
 from kinlab.doctor.program.trial import quietly

@@ -159,6 +159,8 @@ def called(node: ast.Call) -> str:
     return target.attr if isinstance(target, ast.Attribute) else getattr(target, "id", "")
 
 
+ANGLES = ("sin", "cos", "tan")
+"""Functions of angles."""
 ROUNDING = ("round", "around", "round_", "rint", "trunc", "fix")
 """Functions that round."""
 

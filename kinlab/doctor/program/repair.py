@@ -24,10 +24,10 @@ from kinlab.check.compare import error_sizes, relative_errors
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import ANY_ZERO, Case, table_of
 from kinlab.doctor.glossary.textbook import Glossary, meanings
-from kinlab.doctor.program.edits.as_the_arm import as_it_is, of_table
-from kinlab.doctor.program.edits.data import NumberPlace, numbers
 from kinlab.doctor.program.edits.every import edits
-from kinlab.doctor.program.edits.own_numbers import of_own_numbers
+from kinlab.doctor.program.edits.numbers.as_the_arm import as_it_is, of_table
+from kinlab.doctor.program.edits.numbers.data import NumberPlace, numbers
+from kinlab.doctor.program.edits.numbers.own_numbers import of_own_numbers
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.grounds.apart import arm_apart
 from kinlab.doctor.program.grounds.dimensions import LIKE, Dimensions

@@ -18,7 +18,7 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
-from kinlab.doctor.program.edits.as_the_arm import of_table
+from kinlab.doctor.program.edits.numbers.as_the_arm import of_table
 from kinlab.doctor.program.named import named
 from kinlab.doctor.program.own.definitions import DEFAULT
 from kinlab.doctor.program.places import BLOCKS, DATA, ProgramEdit, called, row_of

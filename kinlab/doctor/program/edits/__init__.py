@@ -4,26 +4,23 @@
 module            what it holds
 ================  =================================================================================
 ``additions``     What may be missing in a program: a sign, a transpose, a factor, a matrix, a term
-``as_the_arm``    The numbers of a program as the arm's table has them
 ``blocks``        Statements in other places: earlier or later, in a loop or behind it, one that is
                   missing
 ``chains``        Sums and products of a program otherwise: their parentheses, a factor of another
                   term
 ``composites``    What is missing of several names at once: a cross product, a moment about another
                   axis
-``data``          The numbers of a program: those in its text, and those in the data that it uses
 ``elsewhere``     What a program has elsewhere in the same company, or in the line of another link
 ``every``         What could stand in a place of a program instead
 ``exchanges``     What a slip moves together: two names for one another, one name throughout a
                   statement
 ``forgotten``     What is forgotten as one writes: a term of two names, a vector behind its number
 ``guards``        What counts for some joints alone: conditions, and masks of arrays, around a term
-``own_numbers``   The arm's own numbers: one for another, one for a number of nobody's, one that is
-                  missing
 ``operators``     Single expressions of a program otherwise: their operators, calls, indices, names,
                   numbers
 ``scope``         What is known in one part of a program: names, entries, angles, and what may
                   stand in a place
 ``subscripts``    The subscripts of a sum of products: another letter, two for one another
+``numbers/``      The numbers of a program otherwise: those of its text, of its data, and the arm's
 ================  =================================================================================
 """

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from math import pi
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
-from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned, statement_of, stem_of, summands
+from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
 
 ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 _ODD = 0.04

@@ -18,10 +18,10 @@ from kinlab.doctor.program.edits import exchanges
 from kinlab.doctor.program.edits.additions import as_a_term
 from kinlab.doctor.program.edits.blocks import of_blocks
 from kinlab.doctor.program.edits.composites import of_composites
-from kinlab.doctor.program.edits.data import of_data
 from kinlab.doctor.program.edits.elsewhere import Elsewhere
 from kinlab.doctor.program.edits.forgotten import of_forgotten, of_kinds_of_joints, with_slices
 from kinlab.doctor.program.edits.guards import choices, masks, of_guards
+from kinlab.doctor.program.edits.numbers.data import of_data
 from kinlab.doctor.program.edits.operators import (
     is_diagonal,
     keys_of,

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from kinlab.doctor.bytecode.syntax import copied, nodes
-from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned
+from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
 
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""

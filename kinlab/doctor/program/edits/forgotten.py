@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
-from kinlab.doctor.program.edits.scope import ANGLES, Scope, Turned
+from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
 
 _FORCES = ("f", "F")
 """How names of forces begin."""

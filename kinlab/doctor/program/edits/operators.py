@@ -9,10 +9,10 @@ from typing import Any
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
 from kinlab.doctor.program.edits import chains
-from kinlab.doctor.program.edits.data import measured, moved_on, other_words
-from kinlab.doctor.program.edits.scope import ANGLES, PI, Scope, Turned, statement_of
+from kinlab.doctor.program.edits.numbers.data import measured, moved_on, other_words
+from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
 
 _ORDERED = ("cross", "dot", "arctan2", "atan2", "outer", "solve", "matmul", "subtract", "array")
 SIZES = ("eye", "zeros", "ones", "range", "sin", "cos", "tan", "full", "reshape", "identity")

@@ -14,13 +14,12 @@ import numpy as np
 
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.chains import without_numbers
-from kinlab.doctor.program.edits.data import is_object
+from kinlab.doctor.program.edits.numbers.data import is_object
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, called, paired, places, reads
+from kinlab.doctor.program.places import ANGLES, Here, called, paired, places, reads
 from kinlab.doctor.program.read import OwnFunction, read
 from kinlab.doctor.program.trial import Trial
 
-ANGLES = ("sin", "cos", "tan")
 ARCS = ("arccos", "acos", "arcsin", "asin", "arctan2", "atan2", "arctan", "atan")
 PI = ast.Attribute(ast.Name("np", ast.Load()), "pi", ast.Load())
 _SQUARES = {(2, 2), (3, 3), (4, 4)}

@@ -19,7 +19,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
+from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
 from kinlab.doctor.program.grounds.called import kinds_called, unlike
 from kinlab.doctor.program.grounds.labels import Label, Labels
 from kinlab.doctor.program.grounds.scaled import (

@@ -14,7 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.data import NumberPlace, leaves, together
+from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import DATA, ProgramEdit, number
 from kinlab.doctor.program.trial import FieldChange, Trial

@@ -1,0 +1,11 @@
+"""The numbers of a program otherwise: those of its text, of its data, and the arm's.
+
+===============  ==================================================================================
+module           what it holds
+===============  ==================================================================================
+``as_the_arm``   The numbers of a program as the arm's table has them
+``data``         The numbers of a program: those in its text, and those in the data that it uses
+``own_numbers``  The arm's own numbers: one for another, one for a number of nobody's, one that is
+                 missing
+===============  ==================================================================================
+"""
