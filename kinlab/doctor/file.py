@@ -127,29 +127,35 @@ def _of_chain(parts: list[Diagnosis]) -> Diagnosis:
 def _examined(file: FormulaFile, robot: Mechanism, samples: int, seed: int) -> list[Diagnosis]:
     given = {*file.symbols}
     file = with_habits(with_forces(file, robot), robot)
-    done = _by_quantity(file, robot, samples, seed)
-    found = [one for some in done.values() for one in some]
+
+    def judged(other: FormulaFile) -> list[Diagnosis]:
+        done = _by_quantity(other, robot, samples, seed)
+        return [one for found in done.values() for one in found]
+
+    found = judged(file)
     if all(one.agrees for one in found):
         return found
     named, said = constants_named(file, robot)
     if said:
-        again = _by_quantity(named, robot, samples, seed)
-        second = [one for plain in done for one in again[plain]]
-        pairs = zip(found, second, strict=True)
+        pairs = zip(found, judged(named), strict=True)
         found = [_read_better(one, other, file, said) for one, other in pairs]
     away, said = as_distances(file, robot, given)
     if said:
-        again = _by_quantity(away, robot, samples, seed)
-        second = [one for plain in done for one in again[plain]]
-        pairs = zip(found, second, strict=True)
-        told = tuple(said.values())
-        found = [
-            replace(other, remarks=(*told, *other.remarks))
-            if other.agrees and not one.agrees
-            else one
-            for one, other in pairs
-        ]
+        pairs = zip(found, judged(away), strict=True)
+        found = [_by_distances(one, other, file, said) for one, other in pairs]
     return found
+
+
+def _by_distances(
+    first: Diagnosis, second: Diagnosis, file: FormulaFile, said: dict[str, str]
+) -> Diagnosis:
+    """The second reading, in which lengths are distances, where only that one is right."""
+    if first.agrees or not second.agrees:
+        return first
+    texts = (file.formulas.get(entry) for entry in first.function.split(", "))
+    here = {name for text in texts if text is not None for name in tree.names(text)}
+    notes = tuple(told for name, told in said.items() if name in here)
+    return replace(second, remarks=(*notes, *second.remarks))
 
 
 def _by_quantity(

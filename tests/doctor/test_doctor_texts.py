@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.doctor.file import examine_file
 
 
 @pytest.mark.parametrize(
@@ -215,3 +216,13 @@ def test_a_plus_in_front_gives_way_to_the_minus() -> None:
     (cause,) = kl.diagnose("planar2r", "J11", "+l1*s1 - l2*s12").causes[:1]
     assert "+l1*s1 should be -l1*s1" in cause.sentence
     assert cause.shown == {"J11": "-l1*s1 - l2*s12"}
+
+
+def test_of_distances_those_of_the_formula_are_told(tmp_path) -> None:
+    arm, sheet = tmp_path / "behind.toml", tmp_path / "two.toml"
+    arm.write_text(_BEHIND)
+    texts = 'G2 = "m2*g*lc2*sin(q1+q2)"\nM11 = "m1*lc1**2"'
+    sheet.write_text(f"robot = {str(arm)!r}\n[formulas]\n{texts}\n")
+    found = {one.function: one for one in examine_file(sheet)}
+    assert [told.partition(" ")[0] for told in found["G2"].remarks] == ["lc2"]
+    assert not found["M11"].agrees

@@ -170,6 +170,11 @@ def number(value: Any) -> ast.expr:
     return ast.UnaryOp(ast.USub(), ast.Constant(-value)) if value < 0 else ast.Constant(value)
 
 
+def is_nothing(node: ast.AST) -> bool:
+    """Whether it is a zero as it is written."""
+    return isinstance(node, ast.Constant) and node.value == 0 and node.value is not False
+
+
 def row_of(edit: ProgramEdit) -> int:
     """The line in which the piece stands, of a sum of several lines: its operator's."""
     node = edit.node

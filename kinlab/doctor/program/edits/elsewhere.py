@@ -20,7 +20,14 @@ from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import Here, ProgramEdit, called, paired, with_other
+from kinlab.doctor.program.places import (
+    Here,
+    ProgramEdit,
+    called,
+    is_nothing,
+    paired,
+    with_other,
+)
 from kinlab.doctor.program.trial import Trial
 
 _VECTOR, _ROTATION = (3,), (3, 3)
@@ -89,8 +96,8 @@ class Elsewhere:
             mine = ast.unparse(node)
             for text, one in self._given.get((called(here.parent), here.field), {}).items():
                 if text != mine and observed.shape(one) == (shape or ()) and _known(one, scope):
-                    yield here.instead(one, "name", 1.05 if _is_nothing(node) else 1.1)
-        if _is_nothing(node) and isinstance(here.parent, ast.Assign):
+                    yield here.instead(one, "name", 1.05 if is_nothing(node) else 1.1)
+        if is_nothing(node) and isinstance(here.parent, ast.Assign):
             yield from _of_the_mirror(here)
         if shape is None or isinstance(node, ast.Constant | ast.List | ast.Tuple):
             return
@@ -274,10 +281,6 @@ def _role(*values: Array) -> str:
         same = np.isclose(np.linalg.norm(answer), np.linalg.norm(given[1]))
         return "turned" if same and given[0] else ""
     return ""
-
-
-def _is_nothing(node: ast.AST) -> bool:
-    return isinstance(node, ast.Constant) and node.value == 0 and node.value is not False
 
 
 def _of_the_mirror(here: Here) -> Iterator[ProgramEdit]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from kinlab.doctor.bytecode.syntax import names, nodes
 from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import Here, ProgramEdit, called
+from kinlab.doctor.program.places import Here, ProgramEdit, called, is_nothing
 
 _GUARDED = 1.08
 """What it costs that a term counts for some joints only."""
@@ -26,12 +26,8 @@ def masks(tree: ast.AST) -> dict[str, ast.expr]:
 def choices(tree: ast.AST) -> dict[str, ast.expr]:
     """Conditions by which something else is nothing: ``i == 1`` of ``q[i] if i == 1 else 0``."""
     every = (one for one in nodes(tree) if isinstance(one, ast.IfExp))
-    some = (one for one in every if _is_nothing(one.body) or _is_nothing(one.orelse))
+    some = (one for one in every if is_nothing(one.body) or is_nothing(one.orelse))
     return {ast.unparse(one.test): one.test for one in some}
-
-
-def _is_nothing(node: ast.expr) -> bool:
-    return isinstance(node, ast.Constant) and node.value == 0
 
 
 def of_guards(

@@ -39,7 +39,6 @@ _DIAGONALS = ("tril", "triu", "eye", "diag")
 """Functions whose last argument is the number of a diagonal."""
 _DIAGONAL = 1.02
 """Cost of the main diagonal for another."""
-
 _HALVED = 1.04
 """Cost of the halves of a twist, or of a wrench, for one another."""
 _BESIDE = 1.06
@@ -417,8 +416,8 @@ def _other_slices(here: Here) -> Iterator[ProgramEdit]:
 
 def _keys_beside(here: Here) -> dict[str, ast.expr]:
     """The indices that rows have in the same line, and that are counted: ``i``, ``j + 1``."""
-    line = next(one for one in reversed(here.above) if isinstance(one, ast.stmt))
-    rows = [one for one in nodes(line) if isinstance(one, ast.Subscript) and not _is_stacked(one)]
+    line = nodes(statement_of(here.above))
+    rows = [one for one in line if isinstance(one, ast.Subscript) and not _is_stacked(one)]
     keys = [key for one in rows for _holder, _field, key in keys_of(one)]
     return {ast.unparse(one): one for one in keys if isinstance(one, ast.Name) or shifted(one)}
 

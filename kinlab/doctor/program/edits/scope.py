@@ -449,7 +449,7 @@ class Scope:
     @property
     def counting(self) -> frozenset[str]:
         """The counters of the loops around the place."""
-        return frozenset(self._inside)
+        return self._inside
 
     def names_in(self, statement: ast.stmt) -> frozenset[str]:
         """The names that a statement reads."""

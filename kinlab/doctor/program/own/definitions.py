@@ -134,39 +134,26 @@ def bounded(tree: ast.FunctionDef, function: FunctionType | None) -> ast.Functio
 @contextmanager
 def with_products(tree: ast.AST) -> Iterator[None]:
     """A tree with functions for ``@`` and ``@=``, as it is compiled."""
-    spots: list[tuple[Any, str, int | None]] = []
+    spots: list[tuple[Any, Any]] = []
     every = [tree]
     for node in every:
         for name in node._fields:
             value: Any = getattr(node, name, None)
-            several = isinstance(value, list)
-            for k, one in enumerate(value if several else (value,)):
+            holder: Any = value if isinstance(value, list) else vars(node)
+            for key, one in enumerate(value) if isinstance(value, list) else [(name, value)]:
                 if isinstance(one, ast.AST):
                     every.append(one)
                     if isinstance(getattr(one, "op", None), ast.MatMult):
-                        spots.append((node, name, k if several else None))
-    kept = [_in(spot) for spot in spots]
+                        spots.append((holder, key))
+    kept = [holder[key] for holder, key in spots]
     try:
-        for spot in reversed(spots):
-            if isinstance(_in(spot), ast.BinOp | ast.AugAssign):  # what hangs twice is done once
-                _put_in(spot, _called(_in(spot)))
+        for holder, key in reversed(spots):
+            if isinstance(holder[key], ast.BinOp | ast.AugAssign):  # what hangs twice is done once
+                holder[key] = _called(holder[key])
         yield
     finally:
-        for spot, one in zip(spots, kept, strict=True):
-            _put_in(spot, one)
-
-
-def _in(spot: tuple[Any, str, int | None]) -> Any:
-    holder, name, k = spot
-    return getattr(holder, name) if k is None else getattr(holder, name)[k]
-
-
-def _put_in(spot: tuple[Any, str, int | None], value: Any) -> None:
-    holder, name, k = spot
-    if k is None:
-        setattr(holder, name, value)
-    else:
-        getattr(holder, name)[k] = value
+        for (holder, key), one in zip(spots, kept, strict=True):
+            holder[key] = one
 
 
 def _called(node: Any) -> Any:
