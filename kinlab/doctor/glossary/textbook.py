@@ -258,6 +258,8 @@ class _Gathered:
         theta = flips * q + [link.theta for link in self.table.links]
         self.put("positions", q)
         self.each("q", q)
+        if self.plane and self.hinge.all():
+            self.put("angles", np.cumsum(theta), rank=1)
         turning = [int(k) for k in np.flatnonzero(self.hinge)]
         for name, values, rank in (("q", q, 0), ("theta", theta, 1)):
             for first in range(len(turning)):
@@ -290,6 +292,8 @@ class _Gathered:
         r, c, P = self.o - self.at, self.c, self.P
         bearer = w if self.standard else np.concatenate([np.zeros((1, 3)), w[:-1]])
         self.put("velocities", v)
+        if self.plane and self.hinge.all():
+            self.put("rates", np.cumsum(v), rank=1)
         self.each("qd", v)
         twist = kinematics.jacobian(robot, q) @ v
         self.put("twist", twist)

@@ -274,6 +274,11 @@ class LineSearch:
         self.suspected |= self.dimensions.apart
 
     @property
+    def _positions(self) -> list[Array]:
+        """The joints' positions at every state, where the program is asked there."""
+        return [stack for name, stack in self.case.arguments.items() if name == "q"]
+
+    @property
     def scale(self) -> Array:
         """What differences at the first states are relative to, beside the answers there."""
         sizes = self.sizes[self.first]
@@ -371,7 +376,8 @@ class LineSearch:
         scopes = [Scope(self.trial, self.observed, k) for k in range(len(self.trial.trees))]
         every = edits(self.trial, self.observed, scopes)
         every += of_table(self.trial, self.observed, self.case.robot)
-        every += of_own_numbers(self.trial, self.observed, self.case.robot)
+        at = [stack[k] for k in self.watched for stack in self._positions]
+        every += of_own_numbers(self.trial, self.observed, self.case.robot, at)
         every += missing_products(self.trial, self.observed, scopes, self.dimensions)
         every += missing_terms(self.trial, self.observed, scopes, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)
@@ -450,7 +456,8 @@ class LineSearch:
         most = max(rights.values())
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
-        same = [one for one in ahead if abs(one.cost - first.cost) <= _SAME]
+        least = self.likely(first.edits[-1]) + _SAME
+        same = [one for one in ahead if self.likely(one.edits[-1]) <= least]
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 

@@ -14,7 +14,7 @@ from kinlab.doctor.program.trial import FieldChange
 
 _FAR = 6
 """Lines over which a statement may have been moved."""
-_UPDATED = 1.06
+_UPDATED = 1.09
 """Cost of a line right before or behind the one that updates what it uses: it is one too late."""
 _LONG, _NAMES = 100, 8
 """Characters of a line of which another is made."""

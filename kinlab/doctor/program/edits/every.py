@@ -79,7 +79,7 @@ def edits(trial: Trial, observed: Observed, scopes: Sequence[Scope]) -> list[Pro
                     found += [x for x in every if not (beside and _undoes(x, beside))]
                 elif isinstance(node, ast.Constant) and isinstance(node.value, str):
                     found += of_letters(here)
-                    found += of_subscripts(here, observed)
+                    found += of_subscripts(here, observed, scope)
             elif isinstance(node, ast.stmt):
                 found += _statement(here, scope, observed)
         found += of_blocks(part, tree, scope, observed)

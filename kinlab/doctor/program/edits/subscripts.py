@@ -6,19 +6,25 @@ import ast
 from collections import Counter
 from collections.abc import Iterator
 from itertools import combinations
+from typing import Any
 
+from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.program.edits.scope import Scope
 from kinlab.doctor.program.observed import Observed, Shape
 from kinlab.doctor.program.places import Here, ProgramEdit, called
 
 _LETTER, _EXCHANGED = 1.04, 1.05
 """Cost of another letter, and of two for one another."""
+_MORE = 1.1
+"""Cost of an array that lacks."""
 _ARROW, _BETWEEN = "->", ","
 _LONGEST = 24
 """Letters and signs of subscripts of which any may be another."""
 
 
-def of_subscripts(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
-    """One letter another of those in use, two of one array for one another: what the shapes allow.
+def of_subscripts(here: Here, observed: Observed, scope: Scope) -> Iterator[ProgramEdit]:
+    """One letter another of those in use, two of one array for one another, an array that lacks:
+    what the shapes allow.
 
     What only gives the letters other names is the same sum.
     """
@@ -35,6 +41,21 @@ def of_subscripts(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
         if _renamed(new) not in seen and _lone(new) <= lone and _fits(new, shapes, answer):
             seen.add(_renamed(new))
             yield here.within(here.node, "value", new, kind, cost)
+    yield from _lacking(own, here, observed, scope)
+
+
+def _lacking(own: str, here: Here, observed: Observed, scope: Scope) -> Iterator[ProgramEdit]:
+    """A stack of the arm's numbers more, one for each of a letter: ``'i,ij->j', m, J``."""
+    call: Any = here.parent
+    sizes: dict[str, int] = {}
+    for group, one in zip(own.partition(_ARROW)[0].split(_BETWEEN), call.args[1:], strict=False):
+        sizes.update(zip(group, observed.shape(one) or (), strict=False))
+    used = {one.id for one in nodes(call) if isinstance(one, ast.Name)}
+    for letter, size in sizes.items():
+        for name, stack in scope.simple((size,)):
+            if name not in used:
+                given = [ast.Constant(f"{letter}{_BETWEEN}{own}"), stack, *call.args[1:]]
+                yield here.within(call, "args", given, "missing factor", _MORE)
 
 
 def _plain(text: str) -> bool:

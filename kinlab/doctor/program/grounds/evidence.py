@@ -8,7 +8,8 @@ coincidence of the numbers.
 from __future__ import annotations
 
 import ast
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,7 +21,7 @@ from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import DATA, ProgramEdit
+from kinlab.doctor.program.places import DATA, ProgramEdit, called
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 
@@ -34,6 +35,10 @@ _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
+_USED = 0.02
+"""What it costs more to put right where a value is used than where it is worked out."""
+_AGREED = 0.04
+"""What it costs more to give a function something else for what has the argument's own name."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
 """Things of which an arm has one."""
 _STEPS = ("T", "T0", "R", "R0", "frame_inertia")
@@ -44,6 +49,8 @@ _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "i
 """Kinds of edit that make another of the textbooks' functions of one."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
+_OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix")
+"""Kinds of edit that may as well stand where a value is worked out."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
 
@@ -58,7 +65,7 @@ class Grounds:
     """
 
     def __init__(self, trial: Trial, observed: Observed, known: list[Glossary]) -> None:
-        self.trial = trial
+        self.trial, self.observed = trial, observed
         self.known = known
         self.right: set[int] = set()
         self.partly: set[int] = set()
@@ -68,6 +75,10 @@ class Grounds:
         self.trusted: set[int] = set()
         self.helpers: set[int] = set()
         self._of_data: dict[str, float] = {}
+        self.worked_out = {
+            (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
+        }
+        self.agreed = {id(node) for tree in trial.trees for node in self._agreed(tree)}
         if not known:
             return
         for part, tree in enumerate(trial.trees):
@@ -98,10 +109,50 @@ class Grounds:
             return _SPOILED
         if edit.kind == "factor" and id(edit.node) in self.flags:
             return _SPOILED
+        if edit.kind == "sign" and self._is_typed(edit.node):
+            return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
-        unlike_ = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
-        return unlike_ + (_TRUSTED if edit.part in self.trusted else 0.0)
+        more = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
+        more += _AGREED if id(edit.node) in self.agreed else 0.0
+        more += _USED if self._where_it_is_used(edit) else 0.0
+        return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _is_typed(self, node: Any) -> bool:
+        """Whether it is an array of several numbers that are typed, whose signs are their own."""
+        given = node.args if isinstance(node, ast.Call) else []
+        if not given or not isinstance(given[0], ast.List):
+            return False
+        seen = self.observed.of(node)
+        if seen is None or not seen.shape or not seen.values:
+            return False
+        first = seen.values[0]
+        constant = all(np.array_equal(first, value) for value in seen.values)
+        return constant and int(np.count_nonzero(first)) > 1
+
+    def _where_it_is_used(self, edit: ProgramEdit) -> bool:
+        """Whether an edit turns round, or multiplies, a value that was worked out before.
+
+        A term of a sum has its sign there.
+        """
+        node, holder = edit.node, edit.changes[0].holder
+        if edit.kind not in _OF_THE_WHOLE:
+            return False
+        if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
+            term = isinstance(holder, ast.BinOp) and isinstance(holder.op, ast.Add | ast.Sub)
+            return not (term and edit.kind == "sign") and self._of(node, self.observed) is None
+        return False
+
+    def _agreed(self, tree: ast.AST) -> Iterator[ast.Name]:
+        """Names that are given to a function whose arguments are called so."""
+        for call in nodes(tree):
+            if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
+                continue
+            for part, other in zip(self.trial.program.parts, self.trial.trees, strict=True):
+                if part.name == call.func.id and isinstance(other, ast.FunctionDef):
+                    for given, taken in zip(call.args, other.args.args, strict=False):
+                        if isinstance(given, ast.Name) and given.id == taken.arg:
+                            yield given
 
     def _adds_unlike(self, new: Any) -> bool:
         """Whether an edit makes a sum of the arm's numbers that are of different kinds."""
@@ -125,12 +176,8 @@ class Grounds:
 
     def count(self, observed: Observed) -> int:
         """How many statements give what a textbook has."""
-        return sum(
-            self._of(node.value, observed) is not None
-            for tree in self.trial.trees
-            for node in nodes(tree)
-            if isinstance(node, ast.Assign | ast.Return) and node.value is not None
-        )
+        given = (_given(node) for tree in self.trial.trees for node in nodes(tree))
+        return sum(self._of(one, observed) is not None for one in given if one is not None)
 
     def _look(self, part: int, tree: ast.FunctionDef, observed: Observed) -> None:
         """Statements that give what a textbook has, and whether the part returns it."""
@@ -256,6 +303,31 @@ class Grounds:
         """The parts that are named in a tree."""
         inside = named_in(tree)
         return {k for k, part in enumerate(self.trial.program.parts) if part.name in inside}
+
+
+def _given(node: ast.AST) -> ast.expr | None:
+    """What a statement returns, gives a name to, or puts at the end of a list."""
+    if isinstance(node, ast.Assign | ast.Return):
+        return node.value
+    call = node.value if isinstance(node, ast.Expr) else None
+    if isinstance(call, ast.Call) and called(call) == "append" and len(call.args) == 1:
+        return call.args[0]
+    return None
+
+
+def _worked_out(tree: ast.AST) -> set[str]:
+    """The names to which one statement gives what it works out."""
+    given = Counter(
+        node.id
+        for node in nodes(tree)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
+    )
+    return {
+        node.targets[0].id
+        for node in nodes(tree)
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+        if not isinstance(node.value, ast.Constant) and given[node.targets[0].id] == 1
+    }
 
 
 def _are_flags(seen: Seen | None) -> bool:

@@ -245,17 +245,19 @@ def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
     own = (values / scale).ravel()
     lost = ~np.isfinite(own)
     own[lost] = _NOWHERE
-    kept: dict[bytes, tuple[list[ProgramEdit], Array]] = {}
+    kept: dict[Any, tuple[list[ProgramEdit], Array]] = {}
+    norm = search.wanted[0].size == 1  # vectors that are turned have the same energy: only alone
     for edit, values in tried:
         row = (values / scale).ravel()
         effect = np.where(lost & ~np.isfinite(row), _NOWHERE, row) - own
         if not np.isfinite(effect).all():
             continue
-        key = (np.round(effect, 7) + 0.0).tobytes()
+        key: Any = (np.round(effect, 7) + 0.0).tobytes()
+        key = (key, id(edit.node)) if norm else key
         if np.max(np.abs(effect)) < TOLERANCES.effects_add_up:
             if not lost.any():
                 continue
-            key = str(id(edit)).encode()  # what it does to an answer that is none is not known
+            key = id(edit)  # what it does to an answer that is none is not known
         kept.setdefault(key, ([], effect))[0].append(edit)
     alike = [(sorted(edits, key=search.likely)[:_ALIKE], row) for edits, row in kept.values()]
     alike.sort(key=lambda pair: search.likely(pair[0][0]))

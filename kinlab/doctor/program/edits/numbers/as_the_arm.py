@@ -58,8 +58,8 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             for at, right in dict.fromkeys(_wrong([found[i].value for i in rows], told)):
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
-    for (name, k), cells in off.items():
-        whole = [found[k] for key, found in columns.items() if key[0] == name and k in found]
+    for (table_, k), cells in off.items():
+        whole = [found[k] for key, found in columns.items() if key[0] == table_ and k in found]
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
         yield from (cell.edit(right) for some in cells.values() for cell, right in some)
@@ -91,16 +91,17 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
     table = table_of(robot)
     if table is None:
         return lambda _edit: False
-    known, same = vocabulary(table).values, set()
+    known = vocabulary(table).values
+    same: set[Any] = set()
     for leaf in leaves(trial):
         if not leaf.place and leaf.node in known and _same(float(known[leaf.node]), leaf.value):
-            same.add((leaf.node,))
+            same.add(((leaf.node,), ()))
     for name, found in _columns_of(trial, observed).items():
         values = [found[i].value for i in sorted(found)]
         told = len(values) == table.n and len({*map(abs, values)}) > 1
         if told and any(all(map(_same, column, values)) for column in _columns(table)):
             same.add(name)
-    return lambda edit: (edit.node, *edit.place[1:]) in same
+    return lambda edit: _column(edit.node, edit.place)[0] in same
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,7 +120,7 @@ class _Cell:
         kind = "sign" if right == -self.value else "number"
         if self.place is not None:
             return self.place.edit(right, kind, _COST)
-        change = FieldChange(self.holder, self.field, _typed(right))
+        change = FieldChange(self.holder, self.field, typed(right))
         both = (self.value, right)
         return ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
 
@@ -141,7 +142,7 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
     return ProgramEdit(DATA, tuple(changes), kind, cost, node, (k,), exchanged=told)
 
 
-def _typed(value: float) -> ast.expr:
+def typed(value: float) -> ast.expr:
     """A number as it is typed: parts of pi as such."""
     part = Fraction(value / np.pi).limit_denominator(_PARTS)
     if not value or abs(value - float(part) * np.pi) > TOLERANCES.same_number * abs(value):
@@ -153,14 +154,24 @@ def _typed(value: float) -> ast.expr:
     return ast.BinOp(pi, ast.Div(), number(part.denominator)) if part.denominator > 1 else pi
 
 
+def _column(node: Any, place: tuple[Any, ...]) -> tuple[Any, int | None]:
+    """The column of a number of the data, with the table before it, and the number's row.
+
+    An attribute of a class may be a table, as a name of the module is.
+    """
+    row = next((k for k, at in enumerate(place) if isinstance(at, int)), None)
+    if row is None:
+        return ((node, *place), ()), None
+    return ((node, *place[:row]), place[row + 1 :]), place[row]
+
+
 def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]:
     """The columns of the tables of a program, each by the row."""
     found: dict[Any, dict[int, _Cell]] = {}
     for leaf in leaves(trial):
-        first = leaf.place[0] if leaf.place else None
-        if isinstance(first, int):
-            cell = _Cell(float(leaf.value), leaf)
-            found.setdefault((leaf.node, *leaf.place[1:]), {})[first] = cell
+        column, at = _column(leaf.node, leaf.place)
+        if at is not None:
+            found.setdefault(column, {})[at] = _Cell(float(leaf.value), leaf)
     for part, tree in enumerate(trial.trees):
         for table in nodes(tree):
             if isinstance(table, ast.List | ast.Tuple) and isinstance(table.ctx, ast.Load):

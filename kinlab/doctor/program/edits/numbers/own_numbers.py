@@ -13,6 +13,7 @@ import numpy as np
 
 from kinlab.arrays import Array
 from kinlab.doctor.changes import table_of
+from kinlab.doctor.program.edits.numbers.as_the_arm import typed
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, measured, numbers
 from kinlab.doctor.program.observed import Observed
 from kinlab.doctor.program.places import ANGLES, DATA, Here, ProgramEdit, called, number, places
@@ -30,12 +31,23 @@ _SUMMED = 0.04
 """The same of a number that is a sum of two, in place of one of these."""
 _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
+_OFFSET = 1.06
+"""Cost of the part of a joint's coordinate that does not move."""
 _MOST = 16
 """Numbers of one kind of which any may be meant."""
 
 
-def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEdit]:
-    """Numbers of a program as others of the arm's of their kind, and lengths that are missing."""
+def of_own_numbers(
+    trial: Trial, observed: Observed, robot: Any, positions: Sequence[Array]
+) -> Iterator[ProgramEdit]:
+    """Numbers of a program as others of the arm's of their kind, and lengths that are missing.
+
+    Args:
+        trial: the program.
+        observed: what its expressions were.
+        robot: the arm.
+        positions: where its joints were at each of the states; empty where it is not asked there.
+    """
     table = table_of(robot)
     if table is None:
         return
@@ -52,6 +64,14 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
     left_out = [x for x in lengths if not among(x, given)]
+    offsets = {
+        k: cell
+        for k, link in enumerate(table.links)
+        if (cell := link.d if robot.joint_kinds[k] == "prismatic" else link.theta)
+    }
+    for part, tree in enumerate(trial.trees) if offsets and len(positions) else ():
+        for here in places(part, tree):
+            yield from _without_offset(here, observed, positions, offsets)
     if weight and not any(map(may_be_gravity, given)):
         yield from _without_gravity(trial, observed, np.asarray(table.gravity, dtype=float))
     if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
@@ -59,6 +79,27 @@ def of_own_numbers(trial: Trial, observed: Observed, robot: Any) -> Iterator[Pro
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
                 yield from _instead_of_zero(here, trial, left_out)
+
+
+def _without_offset(
+    here: Here, observed: Observed, positions: Sequence[Array], offsets: dict[int, float]
+) -> Iterator[ProgramEdit]:
+    """A joint's position with the part of its coordinate that does not move."""
+    node, parent = here.node, here.parent
+    stored = isinstance(getattr(node, "ctx", None), ast.Store)
+    if not isinstance(node, ast.Name | ast.Subscript) or stored or observed.shape(node) != ():
+        return
+    seen = observed.of(node)
+    summed = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Add | ast.Sub)
+    if seen is None or summed or not seen.values or len(seen.values) % len(positions):
+        return
+    at = np.repeat(positions, len(seen.values) // len(positions), axis=0)
+    for k, offset in offsets.items():
+        beside = np.abs(np.ravel(seen.values) - at[:, k])  # where differences are taken
+        if np.max(beside) <= TOLERANCES.may_be_step:
+            new = ast.BinOp(node, ast.Add(), typed(offset))
+            edit = here.instead(new, "missing term", _OFFSET)
+            yield replace(edit, of_the_arm=True)
 
 
 def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[ProgramEdit]:
