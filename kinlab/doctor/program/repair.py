@@ -457,7 +457,11 @@ class LineSearch:
         ahead = [one for one in lines.values() if rights.get(id(one)) == most]
         first = ahead[0]
         least = self.likely(first.edits[-1]) + _SAME
-        same = [one for one in ahead if self.likely(one.edits[-1]) <= least]
+        same = [
+            one
+            for one in ahead
+            if abs(one.cost - first.cost) <= _SAME and self.likely(one.edits[-1]) <= least
+        ]
         first = replace(first, rivals=tuple(same[1:2]))
         return [first, *(one for one in found if one.edits != first.edits)]
 

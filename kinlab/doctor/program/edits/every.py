@@ -51,7 +51,7 @@ from kinlab.tolerances import TOLERANCES
 
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
-_SUMMED = 0.02
+_SUMMED = 0.06
 """What a sign or factor costs more in a sum of names, each of which has a line of its own."""
 _ROWS = 6
 """Rows of as many joints of which any may share out what is added to one entry."""

@@ -567,7 +567,8 @@ def of_attribute(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     product = isinstance(getattr(here.parent, "op", None), ast.MatMult)
     for other, known in scope.attributes.items():
         if other != node.attr and known == shape:
-            cost = 1.05 if len(scope.attributes) <= _FEW else 1.15
+            cost = 1.07 if _alike(other, node.attr) else 1.15
+            cost = 1.05 if len(scope.attributes) <= _FEW else cost
             yield here.within(node, "attr", other, "name", cost)
         elif other != node.attr and product:
             yield here.within(node, "attr", other, "name", 1.15)

@@ -35,7 +35,7 @@ _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
-_USED = 0.02
+_USED = 0.05
 """What it costs more to put right where a value is used than where it is worked out."""
 _AGREED = 0.04
 """What it costs more to give a function something else for what has the argument's own name."""
@@ -49,7 +49,9 @@ _LAYOUTS = ("entries swapped", "rows", "rows swapped", "transposed", "order", "i
 """Kinds of edit that make another of the textbooks' functions of one."""
 _WHOLLY = ("sign", "factor")
 """Kinds of edit that leave a value right at no pass, where they change it as a whole."""
-_OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix")
+_STATES = ("q", "qd", "qdd", "positions", "velocities", "accelerations")
+"""What is given: another name for it may be meant to be more."""
+_OF_THE_WHOLE = (*_WHOLLY, "transposed", "missing matrix", "missing term")
 """Kinds of edit that may as well stand where a value is worked out."""
 _SPOILING = ("sign", "factor", "number", "power", "parentheses", "extra term", "missing factor")
 """Kinds of edit that leave no right value right; another index makes another thing."""
@@ -140,7 +142,9 @@ class Grounds:
             return False
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
             term = isinstance(holder, ast.BinOp) and isinstance(holder.op, ast.Add | ast.Sub)
-            return not (term and edit.kind == "sign") and self._of(node, self.observed) is None
+            known = {one.what for one in self._of(node, self.observed) or ()}
+            known -= {*_STATES} if edit.kind not in _WHOLLY else set()
+            return not (known or (term and edit.kind in ("sign", "missing term")))
         return False
 
     def _agreed(self, tree: ast.AST) -> Iterator[ast.Name]:
@@ -322,12 +326,18 @@ def _worked_out(tree: ast.AST) -> set[str]:
         for node in nodes(tree)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     )
-    return {
-        node.targets[0].id
-        for node in nodes(tree)
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
-        if not isinstance(node.value, ast.Constant) and given[node.targets[0].id] == 1
-    }
+    found: set[str] = set()
+    for node in nodes(tree):
+        if isinstance(node, ast.Assign):
+            pairs = [(node.targets[0], node.value)]
+            if isinstance(node.targets[0], ast.Tuple) and isinstance(node.value, ast.Tuple):
+                pairs = [*zip(node.targets[0].elts, node.value.elts, strict=False)]
+            found |= {
+                one.id
+                for one, what in pairs
+                if isinstance(one, ast.Name) and not isinstance(what, ast.Constant)
+            }
+    return {name for name in found if given[name] == 1}
 
 
 def _are_flags(seen: Seen | None) -> bool:

@@ -32,8 +32,8 @@ _RIVALS = 6
 """Repairs of which it is looked what they leave right."""
 _ALIKE = 0.15
 """Cost beyond the first's of repairs that nothing else tells from it."""
-_TIED = 0.08
-"""Of these, costs that are one."""
+_TIED, _TIED_BESIDE = 0.08, 0.02
+"""Of these, costs that are one; where the others are the same edits."""
 _NAMED = 3
 """Repairs that are kept."""
 _STEPS = 3
@@ -327,7 +327,8 @@ class _Tried:
     def _tied(self, one: Way, other: Way, costs: dict[Way, float]) -> bool:
         """Whether nothing tells which of two repairs of different places it is."""
         apart = {_place(edit) for edit in one} != {_place(edit) for edit in other}
-        return apart and abs(costs[one] - costs[other]) <= _TIED
+        near = _TIED_BESIDE if {*one} & {*other} else _TIED
+        return apart and abs(costs[one] - costs[other]) <= near
 
     def _own(self, edit: ProgramEdit) -> bool:
         """Whether a number that is nothing of the arm's becomes one of its own."""
