@@ -1,0 +1,211 @@
+"""A value is put right where it is worked out rather than where it is used, and what an arm's own
+numbers rule out is not told."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hand_programs import written
+
+import kinlab as kl
+
+POLAR = """
+import numpy as np
+m1, m2, I1, I2, lc, b, g = 3.0, 1.4, 0.2, 0.06, 0.25, 0.12, 9.81
+
+def f(q, v, a):
+    r = q[1] - b
+    inertia = m1*lc**2 + I1 + I2 + m2*r**2
+    change = 2*m2*r
+    momentum = inertia*a[0] + change*v[1]*v[0]
+    pull = 0.5*change*v[0]**2
+    turn = (m1*lc + m2*r)*g*np.cos(q[0])
+    lift = m2*g*np.sin(q[0])
+    return [momentum + turn, m2*a[1] - pull + lift]
+"""
+STATICS = """
+import numpy as np
+L = [0.5, 0.4, 0.25]
+
+def jacobian(q):
+    phi = np.cumsum(q)
+    x, y = [L[k]*np.cos(phi[k]) for k in range(3)], [L[k]*np.sin(phi[k]) for k in range(3)]
+    J = np.ones((3, 3))
+    for j in range(3):
+        J[0, j] = -sum(y[j:])
+        J[1, j] = sum(x[j:])
+    return J
+
+def f(q, wrench):
+    J = jacobian(q)
+    return np.array([J[0, j]*wrench[0] + J[1, j]*wrench[1] + J[2, j]*wrench[5] for j in range(3)])
+"""
+BENT = """
+import numpy as np
+
+class Arm:
+    masses = [8.0, 5.0, 2.0]
+    centres = np.array([[0, 0.02, -0.12], [0.05, 0.1, 0.0], [0.03, 0, -0.2]])
+    tensors = [np.diag([0.2, 0.18, 0.09]), np.diag([0.04, 0.31, 0.27]), np.diag([0.26, 0.25, 0.03])]
+
+    def __init__(self, q):
+        c, s = np.cos(q[0]), np.sin(q[0])
+        turned = np.array([[c, 0, -s], [s, 0, c], [0, -1, 0]])
+        self.R = [np.eye(3), np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]), turned, turned]
+        at = np.array([0, 0, 0.3 + q[1]])
+        self.o = [np.zeros(3), np.array([0, 0, 0.3]), at, at + (q[2] + 0.25)*np.array([-s, c, 0])]
+
+def f(q):
+    arm, M = Arm(q), np.zeros((3, 3))
+    for k in range(3):
+        Jv, Jw = np.zeros((3, 3)), np.zeros((3, 3))
+        p = arm.o[k + 1] + arm.R[k + 1] @ arm.centres[k]
+        for j in range(k + 1):
+            z = arm.R[j][:, 2]
+            if j == 0:
+                Jv[:, j], Jw[:, j] = np.cross(z, p - arm.o[j]), z
+            else:
+                Jv[:, j] = z
+        R = arm.R[k + 1]
+        M += arm.masses[k]*Jv.T @ Jv + Jw.T @ R @ arm.tensors[k] @ R.T @ Jw
+    return M
+"""
+WRIST = """
+import numpy as np
+LINKS = [(0.2, -np.pi/2, 1.5, (0, 0.06, 0.01), (0.008, 0.004, 0.007)),
+         (0.0, np.pi/2, 1.0, (0.01, 0, 0.05), (0.005, 0.006, 0.002)),
+         (0.12, 0.0, 0.8, (0.03, 0.02, -0.04), (0.003, 0.0045, 0.0025))]
+
+def turn(theta, alpha):
+    ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
+    return np.array([[ct, -st*ca, st*sa], [st, ct*ca, -ct*sa], [0, sa, ca]])
+
+def f(q, v):
+    R, omega, speed, T = np.eye(3), np.zeros(3), np.zeros(3), 0.0
+    for (d, alpha, m, c, inertia), th, rate in zip(LINKS, q, v):
+        z = R[:, 2]
+        omega = omega + rate*z
+        speed = speed + np.cross(omega, d*z)
+        R = R @ turn(th, alpha)
+        own = speed + np.cross(omega, R @ np.array(c))
+        body = R.T @ omega
+        T += 0.5*m*own @ own
+        T += 0.5*body @ (np.array(inertia)*body)
+    return T
+"""
+FLAT = """
+import numpy as np
+m, l, r = np.array([3.0, 2.0, 1.0]), np.array([0.5, 0.4, 0.25]), np.array([0.25, 0.2, 0.125])
+
+def f(q):
+    phi = np.cumsum(q)
+    u = np.stack([-np.sin(phi), np.cos(phi)])
+    Jv = np.zeros((3, 2, 3))
+    for i in range(3):
+        for k in range(i + 1):
+            arm = r[k] if k == i else l[k]
+            Jv[i, :, :k + 1] += arm*u[:, k][:, None]
+    return np.einsum("i,ixj,ixk->jk", m, Jv, Jv)
+"""
+
+
+def _arm(name: str, links: list[kl.DHLink], **more: object) -> kl.Robot:
+    return kl.Robot.from_dh(kl.DHTable(name=name, convention="standard", links=links, **more))
+
+
+def polar() -> kl.Robot:
+    return _arm(
+        "polar",
+        [
+            kl.DHLink("revolute", theta=np.pi / 2, alpha=np.pi / 2, mass=3.0, com=[0, 0, 0.25],
+                      inertia=np.diag([0.15, 0.2, 0.1])),
+            kl.DHLink("prismatic", lower=0.4, upper=1.2, mass=1.4, com=[0, 0, -0.12],
+                      inertia=np.diag([0.04, 0.06, 0.03])),
+        ],
+        gravity=[0, -9.81, 0],
+    )  # fmt: skip
+
+
+def bent() -> kl.Robot:
+    return _arm(
+        "bent",
+        [
+            kl.DHLink("revolute", d=0.3, mass=8.0, com=[0, 0.02, -0.12],
+                      inertia=np.diag([0.2, 0.18, 0.09])),
+            kl.DHLink("prismatic", alpha=-np.pi / 2, lower=0.1, upper=0.6, mass=5.0,
+                      com=[0.05, 0.1, 0.0], inertia=np.diag([0.04, 0.31, 0.27])),
+            kl.DHLink("prismatic", d=0.25, lower=0.0, upper=0.5, mass=2.0, com=[0.03, 0, -0.2],
+                      inertia=np.diag([0.26, 0.25, 0.03])),
+        ],
+    )  # fmt: skip
+
+
+def wrist() -> kl.Robot:
+    return _arm(
+        "wrist",
+        [
+            kl.DHLink("revolute", d=0.2, alpha=-np.pi / 2, mass=1.5, com=[0, 0.06, 0.01],
+                      inertia=np.diag([0.008, 0.004, 0.007])),
+            kl.DHLink("revolute", alpha=np.pi / 2, mass=1.0, com=[0.01, 0, 0.05],
+                      inertia=np.diag([0.005, 0.006, 0.002])),
+            kl.DHLink("revolute", d=0.12, mass=0.8, com=[0.03, 0.02, -0.04],
+                      inertia=np.diag([0.003, 0.0045, 0.0025])),
+        ],
+    )  # fmt: skip
+
+
+def flat() -> kl.Robot:
+    sizes = ((3.0, 0.5, 0.25), (2.0, 0.4, 0.2), (1.0, 0.25, 0.125))
+    links = [
+        kl.DHLink("revolute", a=length, mass=mass, com=[centre - length, 0, 0])
+        for mass, length, centre in sizes
+    ]
+    return _arm("flat", links)
+
+
+CASES = {
+    "a factor of a value is lost where it is worked out": (
+        POLAR, polar, "inverse_dynamics", [("pull = 0.5*change", "pull = change")],
+        "`pull = change*v[0]**2` should be `pull = 0.5*(change*v[0]**2)`",
+    ),
+    "absolute angles have their sign": (
+        STATICS, "planar3r", "statics", [("J[0, j] = -sum", "J[0, j] = sum")],
+        "`J[0, j] = sum(y[j:])` should be `J[0, j] = -sum(y[j:])`",
+    ),
+    "what a function takes for q is q": (
+        STATICS, "planar3r", "statics", [("phi = np.cumsum(q)", "phi = q")],
+        "`phi = q` should be `phi = np.cumsum(q)`",
+    ),
+    "the part of a coordinate that does not move": (
+        BENT, bent, "mass_matrix", [("(q[2] + 0.25)", "q[2]")], "(q[2] + 0.25)",
+    ),
+    "two that turn vectors, of which an energy tells one only": (
+        WRIST, wrist, "kinetic_energy",
+        [("omega = omega + rate*z", "omega = rate*z"), ("R @ np.array(c)", "np.array(c)")],
+        "`own = speed + np.cross(omega, np.array(c))` should be "
+        "`own = speed + np.cross(omega, R @ np.array(c))`",
+    ),
+    "an array that a sum of products lacks": (
+        FLAT, flat, "mass_matrix", [('"i,ixj,ixk->jk", m, Jv', '"ixj,ixk->jk", Jv')],
+        "should be `return np.einsum('i,ixj,ixk->jk', m, Jv, Jv)`",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_it_is_put_right_where_it_is_worked_out(case, tmp_path) -> None:
+    program, arm, quantity, slips, told = CASES[case]
+    robot, path = kl.load(arm) if isinstance(arm, str) else arm(), tmp_path / "hand.py"
+
+    def said(text: str) -> kl.Diagnosis:
+        path.write_text(text)
+        return kl.diagnose(robot, quantity, written(text, path))
+
+    assert said(program).agrees
+    for right, wrong in slips:
+        assert program.count(right) == 1
+        program = program.replace(right, wrong)
+    first = said(program).causes[0].sentence
+    assert told in first
+    assert "or else" not in first
+    assert first.count("should be") == len(slips)
