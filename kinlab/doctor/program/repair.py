@@ -273,10 +273,10 @@ class LineSearch:
         self.suspected = suspects(self.trial, self.observed, self.known)
         self.suspected |= self.dimensions.apart
 
-    @property
-    def _positions(self) -> list[Array]:
-        """The joints' positions at every state, where the program is asked there."""
-        return [stack for name, stack in self.case.arguments.items() if name == "q"]
+    def _watched_at(self, asked: str) -> list[Array]:
+        """One of the arguments at the watched states, where the quantity has it."""
+        given = self.case.arguments
+        return [given[asked][k] for k in self.watched] if asked in given else []
 
     @property
     def scale(self) -> Array:
@@ -376,8 +376,8 @@ class LineSearch:
         scopes = [Scope(self.trial, self.observed, k) for k in range(len(self.trial.trees))]
         every = edits(self.trial, self.observed, scopes)
         every += of_table(self.trial, self.observed, self.case.robot)
-        at = [stack[k] for k in self.watched for stack in self._positions]
-        every += of_own_numbers(self.trial, self.observed, self.case.robot, at)
+        moving = [self._watched_at("q"), self._watched_at("a")]
+        every += of_own_numbers(self.trial, self.observed, self.case.robot, *moving)
         every += missing_products(self.trial, self.observed, scopes, self.dimensions)
         every += missing_terms(self.trial, self.observed, scopes, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)

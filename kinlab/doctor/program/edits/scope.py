@@ -109,7 +109,8 @@ class Scope:
         for node in nodes(tree):
             if isinstance(node, ast.For | ast.comprehension):
                 set_here = names(node.target)
-                passed = dict(_passed(node.target, node.iter, observed))
+                over = _as_rows(node.iter, trial)
+                passed = dict(_passed(node.target, over, observed))
                 self.shapes |= {n: s for n, s in passed.items() if n not in self.shapes}
                 self.counters += [n for n in set_here if n not in (*self.counters, *passed)]
                 (inner if isinstance(node, ast.comprehension) else outer).update(set_here)
@@ -728,6 +729,17 @@ def _shape(value: object) -> Shape | None:
     except ValueError:
         return None
     return numbers.shape if numbers.dtype.kind in "fi" else None
+
+
+def _as_rows(over: ast.expr, trial: Trial) -> ast.expr:
+    """What a loop goes over, with what a function of the program's yields in its place."""
+    if not isinstance(over, ast.Call):
+        return over
+    for part, tree in zip(trial.program.parts, trial.trees, strict=True):
+        given = [one.value for one in nodes(tree) if isinstance(one, ast.Yield) and one.value]
+        if part.name == called(over) and given:
+            return ast.List(given[-1:], ast.Load())
+    return ast.Call(over.func, [_as_rows(one, trial) for one in over.args], over.keywords)
 
 
 def _passed(target: ast.expr, over: ast.expr, observed: Observed) -> Iterator[tuple[str, Shape]]:

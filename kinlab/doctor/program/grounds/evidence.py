@@ -8,6 +8,7 @@ coincidence of the numbers.
 from __future__ import annotations
 
 import ast
+import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -37,6 +38,9 @@ _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
 _USED = 0.05
 """What it costs more to put right where a value is used than where it is worked out."""
+_MEANT = 0.1
+"""What it costs less to make a textbook's function of one with the other sign, or a chain of
+transforms of one whose names do not follow on one another."""
 _AGREED = 0.04
 """What it costs more to give a function something else for what has the argument's own name."""
 _WHOLE = ("M", "J", "C", "Jv", "Jw", "gravity", "tool_pose", "kinetic", "potential", "C v", "tau")
@@ -76,9 +80,17 @@ class Grounds:
         self.sound: set[int] = set()
         self.trusted: set[int] = set()
         self.helpers: set[int] = set()
+        self.mirrored: set[int] = set()
         self._of_data: dict[str, float] = {}
         self.worked_out = {
             (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
+        }
+        self.chains = {
+            id(node.value): step
+            for tree in trial.trees
+            for node in nodes(tree)
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.BinOp)
+            if isinstance(node.value.op, ast.MatMult) and (step := _step(node.targets[0]))
         }
         self.agreed = {id(node) for tree in trial.trees for node in self._agreed(tree)}
         if not known:
@@ -91,7 +103,7 @@ class Grounds:
                     own = float(seen.values[0])
                     self.values |= {own, 1 / own} if own else set()
         self._below()
-        self.helpers = true_helpers(trial, observed)
+        self.helpers, self.mirrored = true_helpers(trial, observed)
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""
@@ -115,10 +127,30 @@ class Grounds:
             return _SPOILED
         if self.coincident(edit):
             return _COINCIDENT
+        mirrored = edit.kind == "sign" and edit.part in self.mirrored
+        if mirrored or self._makes_a_chain(edit):
+            return -_MEANT
         more = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
         more += _USED if self._where_it_is_used(edit) else 0.0
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
+
+    def _makes_a_chain(self, edit: ProgramEdit) -> bool:
+        """Whether names follow on one another with an edit alone: ``T03 = T02 @ T23``."""
+        holder, side = edit.changes[0].holder, edit.changes[0].field
+        if id(holder) not in self.chains or side not in ("left", "right"):
+            return False
+        before, after = _step(edit.node), _step(edit.changes[0].new)
+        beside = _step(holder.right if side == "left" else holder.left)
+        whole = self.chains[id(holder)]
+        if before is None or after is None or beside is None:
+            return False
+        ends = (after, beside) if side == "left" else (beside, after)
+        one_kind = {step[0] for step in (before, *ends, whole)} == {whole[0]}
+        return one_kind and [one[1:] for one in ends] == [
+            (whole[1], ends[1][1]),
+            (ends[0][2], whole[2]),
+        ]
 
     def _is_typed(self, node: Any) -> bool:
         """Whether it is an array of several numbers that are typed, whose signs are their own."""
@@ -317,6 +349,16 @@ def _given(node: ast.AST) -> ast.expr | None:
     if isinstance(call, ast.Call) and called(call) == "append" and len(call.args) == 1:
         return call.args[0]
     return None
+
+
+_STEP = re.compile(r"(.*?)_?(\d)_?(\d)")
+"""The name of what leads from one frame to another: ``T03``, ``R_1_2``."""
+
+
+def _step(node: Any) -> tuple[str, str, str] | None:
+    """What a name of a transform says: which, from where, to where."""
+    found = _STEP.fullmatch(node.id) if isinstance(node, ast.Name) else None
+    return None if found is None else (found[1], found[2], found[3])
 
 
 def _worked_out(tree: ast.AST) -> set[str]:

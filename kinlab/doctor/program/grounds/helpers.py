@@ -24,17 +24,23 @@ _MOST = 6
 """Calls that are looked at."""
 
 
-def true_helpers(trial: Trial, observed: Observed) -> set[int]:
-    """The parts of a program that are one of those functions in each of their calls."""
+def true_helpers(trial: Trial, observed: Observed) -> tuple[set[int], set[int]]:
+    """The parts of a program that are one of those functions in each of their calls.
+
+    Returns:
+        those that are, and those that are with the other sign.
+    """
     names = [part.name for part in trial.program.parts]
-    found: set[int] = set()
+    found: tuple[set[int], set[int]] = set(), set()
     for k in range(1, len(names)):
         calls = [*_calls(trial, observed, names[k])] if names.count(names[k]) == 1 else []
         if calls and any(_tells(given) for given, _value in calls):
             shapes = tuple(x.shape for x in calls[0][0]), calls[0][1].shape
             known = _KNOWN.get(shapes)
-            if known is not None and _is_one_of([*known(calls[0])], calls, known):
-                found.add(k)
+            mirrored = [(given, -value) for given, value in calls]
+            for parts, answers in zip(found, (calls, mirrored), strict=True):
+                if known is not None and _is_one_of([*known(answers[0])], answers, known):
+                    parts.add(k)
     return found
 
 

@@ -31,14 +31,18 @@ _SUMMED = 0.04
 """The same of a number that is a sum of two, in place of one of these."""
 _OF_POINTS = 1.14
 """Cost of a point's coordinate for a number."""
-_OFFSET = 1.06
-"""Cost of the part of a joint's coordinate that does not move."""
+_CONSTANT = 1.06
+"""Cost of the part of a joint's coordinate that does not move, and of gravity."""
 _MOST = 16
 """Numbers of one kind of which any may be meant."""
 
 
 def of_own_numbers(
-    trial: Trial, observed: Observed, robot: Any, positions: Sequence[Array]
+    trial: Trial,
+    observed: Observed,
+    robot: Any,
+    positions: Sequence[Array],
+    accelerations: Sequence[Array],
 ) -> Iterator[ProgramEdit]:
     """Numbers of a program as others of the arm's of their kind, and lengths that are missing.
 
@@ -46,7 +50,7 @@ def of_own_numbers(
         trial: the program.
         observed: what its expressions were.
         robot: the arm.
-        positions: where its joints were at each of the states; empty where it is not asked there.
+        positions, accelerations: its joints' at each of the states; empty where none are asked for.
     """
     table = table_of(robot)
     if table is None:
@@ -64,14 +68,17 @@ def of_own_numbers(
     lengths = kinds["length"][:_MOST]
     typed = {abs(float(place.value)) for place in every if place.part != DATA}
     left_out = [x for x in lengths if not among(x, given)]
-    offsets = {
-        k: cell
-        for k, link in enumerate(table.links)
-        if (cell := link.d if robot.joint_kinds[k] == "prismatic" else link.theta)
-    }
-    for part, tree in enumerate(trial.trees) if offsets and len(positions) else ():
+    slides = [kind == "prismatic" for kind in robot.joint_kinds]
+    cells = [one.d if slide else one.theta for one, slide in zip(table.links, slides, strict=True)]
+    falls = [weight, -weight] if weight else []
+    sums = (
+        (positions, {k: [x] for k, x in enumerate(cells) if x}),
+        (accelerations, {k: falls for k, slide in enumerate(slides) if slide}),
+    )
+    for part, tree in enumerate(trial.trees) if any(more for _, more in sums) else ():
         for here in places(part, tree):
-            yield from _without_offset(here, observed, positions, offsets)
+            for stack, more in sums:
+                yield from _without_what_is_constant(here, observed, stack, more)
     if weight and not any(map(may_be_gravity, given)):
         yield from _without_gravity(trial, observed, np.asarray(table.gravity, dtype=float))
     if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
@@ -81,25 +88,27 @@ def of_own_numbers(
                 yield from _instead_of_zero(here, trial, left_out)
 
 
-def _without_offset(
-    here: Here, observed: Observed, positions: Sequence[Array], offsets: dict[int, float]
+def _without_what_is_constant(
+    here: Here, observed: Observed, stack: Sequence[Array], more: dict[int, list[float]]
 ) -> Iterator[ProgramEdit]:
-    """A joint's position with the part of its coordinate that does not move."""
+    """A joint's position with the part of its coordinate that does not move, or a slide's
+    acceleration with gravity's."""
     node, parent = here.node, here.parent
     stored = isinstance(getattr(node, "ctx", None), ast.Store)
     if not isinstance(node, ast.Name | ast.Subscript) or stored or observed.shape(node) != ():
         return
     seen = observed.of(node)
     summed = isinstance(parent, ast.BinOp) and isinstance(parent.op, ast.Add | ast.Sub)
-    if seen is None or summed or not seen.values or len(seen.values) % len(positions):
+    if seen is None or summed or not seen.values or not len(stack):
         return
-    at = np.repeat(positions, len(seen.values) // len(positions), axis=0)
-    for k, offset in offsets.items():
+    if len(seen.values) % len(stack):
+        return
+    at = np.repeat(stack, len(seen.values) // len(stack), axis=0)
+    for k, values in more.items():
         beside = np.abs(np.ravel(seen.values) - at[:, k])  # where differences are taken
-        if np.max(beside) <= TOLERANCES.may_be_step:
-            new = ast.BinOp(node, ast.Add(), typed(offset))
-            edit = here.instead(new, "missing term", _OFFSET)
-            yield replace(edit, of_the_arm=True)
+        for value in values if np.max(beside) <= TOLERANCES.may_be_step else ():
+            new = ast.BinOp(node, ast.Add() if value > 0 else ast.Sub(), typed(abs(value)))
+            yield replace(here.instead(new, "missing term", _CONSTANT), of_the_arm=True)
 
 
 def _without_gravity(trial: Trial, observed: Observed, down: Array) -> Iterator[ProgramEdit]:
