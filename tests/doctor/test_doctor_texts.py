@@ -42,6 +42,7 @@ def test_a_reading_that_holds_for_every_arm_is_told(robot, entry, typed, told) -
         ("planar2r", "jacobian_dot[0,0]", "-l1*c1*qd1 - l2*s12*(qd1 + qd2)", "s12 should be c12"),
         ("planar2r", "lagrange_torques[1]", "m2*l2**2*(qdd1 + qdd2) + m2*l1*l2*c2*qdd1 - m2*l1*l2*s2*qd1**2 + m2*l2*g*c12", "(sign)"),
         ("scara", "T21", r"\sin(q_1+q_2+q_4)", r"should be \sin(q_1+q_2-q_4)"),
+        ("planar2r_rods", "M22", "1/12*m2*l2**2", "12 should be 3"),
         ("puma560", "g5", "-m6*g*cz6*sin(q2+q3)*cos(q5) - m6*g*cz6*cos(q2+q3)*sin(q5)", "the factor cos(q4) is missing"),
         ("planar2r", "statics", "tau = [(-l1*s1 - l2*s12)*fx + (l1*c1 + l2*c12)*fy; -l2*s12*fx + l2*c12*fy + nz]", "the term nz is missing"),
     ],

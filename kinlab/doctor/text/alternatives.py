@@ -38,6 +38,8 @@ _OF_LINKS = set().union(*_LENGTHS)
 _MOTION = re.compile(r"(qdd|qd|q)(\d+)")
 _ANGLE, _NEAR_ANGLE = math.pi / 12, 0.1
 """Angles that a decimal in a sine may be meant for, and how near, relative."""
+_REDUCED = 0.05
+"""What a fraction costs more that nobody would leave as it is."""
 _FACTOR_MORE = 0.035
 """What each factor of a missing term costs: of five it is no likelier than qd2 for qd1 + qd2."""
 
@@ -137,7 +139,8 @@ def _number(line: Line, place: Place) -> None:
     for shown, size in NUMBERS.items():
         shown = "0.25" if decimal and size == 0.25 else shown
         if size != float(line.segment(place)) and not (size == 1.0 and idle):
-            line.instead(place, shown, np.full(line.count, size), "factor", 1.25)
+            cost = 1.25 + _REDUCED * _may_be_reduced(place, size)
+            line.instead(place, shown, np.full(line.count, size), "factor", cost)
     if not decimal and not line.only_numbers:
         return
     for word, value in line.atoms.items():  # a length's number, mistaken: 0.41 for l2 = 0.4
@@ -162,6 +165,17 @@ def _number(line: Line, place: Place) -> None:
                 cost = 1.2 if gap <= CLOSE * size else 1.5
                 shown = np.format_float_positional(size, 12, fractional=False, trim="-")
                 line.instead(place, shown, np.full(line.count, size), "coefficient", cost)
+
+
+def _may_be_reduced(place: Place, size: float) -> bool:
+    """Whether a number would stand above one that it has a divisor in common with: 4/12."""
+    above = None if place.above is None else place.above.node
+    if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Div):
+        return False
+    below = above.right.value if isinstance(above.right, ast.Constant) else None
+    if not isinstance(below, int) or size != int(size) or above.left is not place.node:
+        return False
+    return math.gcd(int(size), below) > 1
 
 
 def _angle(line: Line, place: Place) -> None:
