@@ -152,6 +152,19 @@ def test_all_slips_are_told(text, slips) -> None:
     assert len(found.causes[0].kinds) == len(slips)
 
 
+@pytest.mark.parametrize(
+    ("right", "wrong", "where"),
+    [
+        ("return -crm(v).T", "return crm(v).T", "(in crf), the sign is wrong"),
+        ("I + m*C @ C.T", "I", "(in inertia), a term is missing"),
+    ],
+)
+def test_a_slip_in_a_function_of_the_textbooks_is_told_there(right, wrong, where) -> None:
+    found, good = asked(with_slips(TWISTS, [(right, wrong)]), ARM, "inverse_dynamics")
+    assert good, str(found)
+    assert where in found.causes[0].sentence
+
+
 def test_a_rotation_too_many_is_not_undone_by_another() -> None:
     slips = [("np.cross(arms[i + 1], turns[i + 1] @ force)",
               "np.cross(arms[i + 1], turns[i + 1].T @ (turns[i + 1] @ force))")]  # fmt: skip
