@@ -72,9 +72,14 @@ def f(q):
 """
 WRIST = """
 import numpy as np
-LINKS = [(0.2, -np.pi/2, 1.5, (0, 0.06, 0.01), (0.008, 0.004, 0.007)),
-         (0.0, np.pi/2, 1.0, (0.01, 0, 0.05), (0.005, 0.006, 0.002)),
-         (0.12, 0.0, 0.8, (0.03, 0.02, -0.04), (0.003, 0.0045, 0.0025))]
+
+class Link:
+    def __init__(self, d, alpha, m, c, inertia):
+        self.d, self.alpha, self.m, self.c, self.inertia = d, alpha, m, c, inertia
+
+LINKS = [Link(0.2, -np.pi/2, 1.5, (0, 0.06, 0.01), (0.008, 0.004, 0.007)),
+         Link(0.0, np.pi/2, 1.0, (0.01, 0, 0.05), (0.005, 0.006, 0.002)),
+         Link(0.12, 0.0, 0.8, (0.03, 0.02, -0.04), (0.003, 0.0045, 0.0025))]
 
 def turn(theta, alpha):
     ct, st, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
@@ -82,15 +87,15 @@ def turn(theta, alpha):
 
 def f(q, v):
     R, omega, speed, T = np.eye(3), np.zeros(3), np.zeros(3), 0.0
-    for (d, alpha, m, c, inertia), th, rate in zip(LINKS, q, v):
+    for link, th, rate in zip(LINKS, q, v):
         z = R[:, 2]
         omega = omega + rate*z
-        speed = speed + np.cross(omega, d*z)
-        R = R @ turn(th, alpha)
-        own = speed + np.cross(omega, R @ np.array(c))
+        speed = speed + np.cross(omega, link.d*z)
+        R = R @ turn(th, link.alpha)
+        own = speed + np.cross(omega, R @ np.array(link.c))
         body = R.T @ omega
-        T += 0.5*m*own @ own
-        T += 0.5*body @ (np.array(inertia)*body)
+        T += 0.5*link.m*own @ own
+        T += 0.5*body @ (np.array(link.inertia)*body)
     return T
 """
 FLAT = """
@@ -114,25 +119,31 @@ import numpy as np
 m1, m2, r, inertia = 6.0, 2.0, 0.3, 0.1
 
 def f(q, v, a):
-    frame = m1*(a[0] + 9.81)
-    arm = m2*(a[0] + 9.81)
-    return [frame + arm, (inertia + m2*r**2)*a[1]]
+    lifted = m1 + m2
+    return [lifted*(a[0] + 9.81), (inertia + m2*r**2)*a[1]]
 """
 CHAIN = """
 import numpy as np
 
-def step(theta, d, a, alpha):
-    c, s, ca, sa = np.cos(theta), np.sin(theta), np.cos(alpha), np.sin(alpha)
-    return np.array([[c, -s*ca, s*sa, a*c], [s, c*ca, -c*sa, a*s], [0, sa, ca, d], [0, 0, 0, 1]])
+def rx(al, a):
+    c, s = np.cos(al), np.sin(al)
+    return np.array([[1, 0, 0, a], [0, c, -s, 0], [0, s, c, 0], [0, 0, 0, 1]])
+
+def rz(th, d):
+    c, s = np.cos(th), np.sin(th)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
 
 def f(q):
-    T01 = step(q[0], 0.2, 0, -np.pi/2)
-    T12 = step(q[1], 0, 0, np.pi/2)
-    T23 = step(q[2], 0.12, 0, 0)
+    T01 = rx(0, 0) @ rz(q[0], 0.25)
+    T12 = rx(np.pi/2, 0.06) @ rz(q[1], 0)
+    T23 = rx(0, 0.4) @ rz(q[2], 0)
+    T34 = rx(np.pi/2, 0.07) @ rz(0, 0.15 + q[3])
     T02 = T01 @ T12
     T03 = T02 @ T23
-    height = 1.5*(T01 @ [0, 0.06, 0.01, 1])[2] + 1.0*(T02 @ [0.01, 0, 0.05, 1])[2]
-    return 9.81*(height + 0.8*(T03 @ [0.03, 0.02, -0.04, 1])[2])
+    T04 = T03 @ T34
+    weights = [(T01, 4.0, [0.01, 0, 0.09]), (T02, 3.0, [0.18, 0, 0.02]), (T03, 2.0, [0.14, 0.03, 0]),
+               (T04, 0.8, [0, 0, -0.05])]
+    return sum(m*9.81*(T @ [*c, 1.0])[2] for T, m, c in weights)
 """
 YIELDED = """
 import numpy as np
@@ -196,6 +207,16 @@ FLAT_ARM = kl.DHTable(
         for mass, length, centre in SIZES
     ],
 )
+PICKER = kl.DHTable(
+    name="picker", convention="modified",
+    links=[
+        kl.DHLink("revolute", d=0.25, mass=4.0, com=[0.01, 0, 0.09]),
+        kl.DHLink("revolute", alpha=np.pi / 2, a=0.06, mass=3.0, com=[0.18, 0, 0.02]),
+        kl.DHLink("revolute", a=0.4, mass=2.0, com=[0.14, 0.03, 0]),
+        kl.DHLink("prismatic", alpha=np.pi / 2, a=0.07, d=0.15, lower=0.0, upper=0.4, mass=0.8,
+                  com=[0, 0, -0.05]),
+    ],
+)  # fmt: skip
 LIFT_ARM = kl.DHTable(
     name="lift", convention="standard",
     links=[
@@ -222,16 +243,16 @@ CASES = {
     ),
     "two that turn vectors, of which an energy tells one only": (
         WRIST, WRIST_ARM, "kinetic_energy",
-        [("omega = omega + rate*z", "omega = rate*z"), ("R @ np.array(c)", "np.array(c)")],
-        "`own = speed + np.cross(omega, np.array(c))` should be "
-        "`own = speed + np.cross(omega, R @ np.array(c))`",
+        [("omega = omega + rate*z", "omega = rate*z"), ("R @ np.array(link.c)", "np.array(link.c)")],
+        "`own = speed + np.cross(omega, np.array(link.c))` should be "
+        "`own = speed + np.cross(omega, R @ np.array(link.c))`",
     ),
     "gravity beside a slide's acceleration": (
-        LIFT, LIFT_ARM, "inverse_dynamics", [("m1*(a[0] + 9.81)", "m1*a[0]")],
-        "should be `frame = m1*(a[0] + 9.81)`",
+        LIFT, LIFT_ARM, "inverse_dynamics", [("lifted*(a[0] + 9.81)", "lifted*a[0]")],
+        "should be `return [lifted*(a[0] + 9.81), ",
     ),
     "transforms that do not follow on one another": (
-        CHAIN, WRIST_ARM, "potential_energy", [("T03 = T02 @", "T03 = T01 @")],
+        CHAIN, PICKER, "potential_energy", [("T03 = T02 @", "T03 = T01 @")],
         "`T03 = T01 @ T23` should be `T03 = T02 @ T23`",
     ),
     "what a function yields": (
