@@ -381,7 +381,7 @@ class LineSearch:
         every += missing_products(self.trial, self.observed, scopes, self.dimensions)
         every += missing_terms(self.trial, self.observed, scopes, self.dimensions)
         sure = as_it_is(self.trial, self.observed, self.case.robot)
-        every = [edit for edit in every if edit.part != DATA or not sure(edit)]
+        every = [edit for edit in every if not sure(edit)]
         named, rows = _named_numbers(self.trial), own_rows(self.case.robot)
         every = [
             edit
@@ -618,7 +618,7 @@ class LineSearch:
         against = self.evidence.against
         sure = as_it_is(self.trial, self.observed, self.case.robot)
         every = [*numbers(self.trial, self.observed)]
-        every = [p for p in every if p.part != DATA or not sure(p.edit(p.value))]
+        every = [p for p in every if not sure(p.edit(p.value))]
         if strange:
             own = len(own_numbers(self.case.robot)) > 0
             every = [p for p in every if own and p.part == DATA and self._is_strange(p)][:_STRANGE]

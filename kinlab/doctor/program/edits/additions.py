@@ -22,6 +22,8 @@ _TURNING = 0.1
 """The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
+_NEXT_ANGLE = 1.08
+"""Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _DIVIDED = 1.07
 """Cost of a divisor that is lost."""
 _THRICE = 3
@@ -183,6 +185,15 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
                 cost += 0.02
 
 
+def _follow(one: ast.expr, other: ast.expr) -> bool:
+    """Whether two are entries of one thing that follow on one another: ``q[0]`` and ``q[1]``."""
+    if not isinstance(one, ast.Subscript) or not isinstance(other, ast.Subscript):
+        return False
+    at = [getattr(x.slice, "value", None) for x in (one, other)]
+    whole = isinstance(at[0], int) and isinstance(at[1], int) and abs(at[0] - at[1]) == 1
+    return whole and ast.dump(one.value) == ast.dump(other.value)
+
+
 def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
@@ -191,6 +202,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
+            cost = min(cost, _NEXT_ANGLE) if _follow(angle, node) else cost
             first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 

@@ -45,10 +45,12 @@ from kinlab.doctor.program.edits.operators import (
 from kinlab.doctor.program.edits.scope import Scope, statement_of, summands
 from kinlab.doctor.program.edits.subscripts import of_subscripts
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import Here, ProgramEdit, number, places
+from kinlab.doctor.program.places import Here, ProgramEdit, called, number, places
 from kinlab.doctor.program.trial import Trial
 from kinlab.tolerances import TOLERANCES
 
+_ALONG = ("transpose", "moveaxis")
+"""What is given numbers of axes."""
 _WRITTEN = 1.15
 """Cost of another index of where a value is written: slips are made rather where it is read."""
 _SUMMED = 0.06
@@ -100,7 +102,11 @@ def _sums_names(here: Here, scope: Scope) -> bool:
 
 
 def _says_where(here: Here) -> bool:
-    """Whether an expression is in the index of where a value is written."""
+    """Whether an expression is in the index of where a value is written, or says along what."""
+    for one, below in zip(here.above, (*here.above[1:], here.node), strict=True):
+        along = isinstance(one, ast.Call) and called(one) in _ALONG and isinstance(below, ast.Tuple)
+        if along or (isinstance(one, ast.keyword) and one.arg == "axis"):
+            return True
     targets = (one for one in here.above if isinstance(one, ast.Subscript))
     return any(isinstance(one.ctx, ast.Store) for one in targets)
 

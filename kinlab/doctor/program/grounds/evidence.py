@@ -172,6 +172,8 @@ class Grounds:
         node, holder = edit.node, edit.changes[0].holder
         if edit.kind not in _OF_THE_WHOLE:
             return False
+        while isinstance(node, ast.Call) and len(node.args) == 1:  # ``wrap(t4)``
+            node, holder = node.args[0], node
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
             term = isinstance(holder, ast.BinOp) and isinstance(holder.op, ast.Add | ast.Sub)
             known = {one.what for one in self._of(node, self.observed) or ()}
@@ -181,13 +183,12 @@ class Grounds:
 
     def _agreed(self, tree: ast.AST) -> Iterator[ast.Name]:
         """Names that are given to a function whose arguments are called so."""
-        for call in nodes(tree):
-            if not isinstance(call, ast.Call) or not isinstance(call.func, ast.Name):
-                continue
+        for call in (node for node in nodes(tree) if isinstance(node, ast.Call)):
             for part, other in zip(self.trial.program.parts, self.trial.trees, strict=True):
-                if part.name == call.func.id and isinstance(other, ast.FunctionDef):
-                    for given, taken in zip(call.args, other.args.args, strict=False):
-                        if isinstance(given, ast.Name) and given.id == taken.arg:
+                if part.name == called(call):
+                    taken = other.args.args[part.owner is not None :]
+                    for given, one in zip(call.args, taken, strict=False):
+                        if isinstance(given, ast.Name) and given.id == one.arg:
                             yield given
 
     def _adds_unlike(self, new: Any) -> bool:

@@ -87,7 +87,7 @@ def _matrix(value: Array) -> str:
 
 
 def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramEdit], bool]:
-    """Whether an edit of the data is of what the arm's table has as it is."""
+    """Whether an edit is of a number that the arm's table has as it is."""
     table = table_of(robot)
     if table is None:
         return lambda _edit: False
@@ -101,7 +101,14 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
         told = len(values) == table.n and len({*map(abs, values)}) > 1
         if told and any(all(map(_same, column, values)) for column in _columns(table)):
             same.add(name)
-    return lambda edit: _column(edit.node, edit.place)[0] in same
+            same |= {id(cell.node) for cell in found.values() if cell.node is not None}
+
+    def sure(edit: ProgramEdit) -> bool:
+        if edit.part == DATA:
+            return _column(edit.node, edit.place)[0] in same
+        return edit.kind in ("sign", "number") and id(edit.node) in same
+
+    return sure
 
 
 @dataclass(frozen=True, eq=False)
