@@ -6,8 +6,6 @@ import ast
 from collections.abc import Iterator
 from functools import reduce
 
-import numpy as np
-
 from kinlab.doctor.bytecode.syntax import factors, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, statement_of
 from kinlab.doctor.program.observed import Observed, Shape
@@ -52,8 +50,6 @@ def of_composites(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdi
         yield from _squares(here, scope)
         return
     factor = isinstance(op, ast.MatMult)
-    if isinstance(node, ast.Name) and term and len(shape) == 2 and shape[0] == shape[1]:
-        yield from _and_its_transpose(here, scope)
     if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Name) and len(shape) == 1:
         yield from _of_list_from_there_on(here, scope)
     if shape == _TENSOR and (term or isinstance(parent, ast.List | ast.Tuple)):
@@ -131,15 +127,6 @@ def _parallel_axes_of_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]
             beside = {*names(times)} <= scope.names_in(statement_of(here.above))  # m*S stands there
             cost = _BESIDE if beside else 1.14
             yield here.instead(ast.BinOp(node, ast.Add(), times), "missing term", cost)
-
-
-def _and_its_transpose(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
-    """A matrix and its transpose, for a matrix that is half of what is symmetric."""
-    seen = scope.observed.of(here.node)
-    values = [] if seen is None else [np.asarray(x) for x in seen.values[:_FEW]]
-    if any(not np.allclose(x, x.T) and not np.allclose(x, -x.T) for x in values):
-        both = ast.BinOp(here.node, ast.Add(), ast.Attribute(here.node, "T", ast.Load()))
-        yield here.instead(both, "missing term", 1.1)
 
 
 def _turned_tensors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
