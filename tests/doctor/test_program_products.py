@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import ast
 import sys
 from typing import Any
 
 import numpy as np
 import pytest
+from hand_programs import PROGRAMS, searched
 
-from kinlab.doctor.program.own.calls import multiplied, product
+from kinlab.doctor.program.own.calls import PRODUCTS, multiplied, product
 
 
 class _Number:
@@ -68,3 +70,20 @@ def test_a_product_in_place_is_seen_by_all_who_have_the_matrix() -> None:
     wanted = first @ last
     assert multiplied(first, last) is also
     np.testing.assert_allclose(also, wanted)
+
+
+def test_no_edit_writes_the_doctors_own_names() -> None:
+    program = PROGRAMS["dh fk"]
+    search = searched(program.robot, program.quantity, program.text)
+    search.singles()
+    assert len(search.tried) > 100
+    written = {
+        node.id
+        for edit, _values in search.tried
+        for change in edit.changes
+        for new in (change.new if isinstance(change.new, list) else [change.new])
+        if isinstance(new, ast.AST)
+        for node in ast.walk(new)
+        if isinstance(node, ast.Name)
+    }
+    assert written.isdisjoint(PRODUCTS)

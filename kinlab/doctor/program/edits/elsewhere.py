@@ -243,8 +243,9 @@ def _products(trial: Trial, observed: Observed) -> list[str]:
         sizes = {observed.shape(x) for call in own for x in (call, *call.args)}
         alike = len(sizes) == 1 and len(next(iter(sizes)) or ()) == _MATRIX
         found += [part.name] if alike else []
-    uncalled = {*trial.space} - {called(x) for x in calls}
-    found += sorted(name for name in uncalled if _is_product(trial.space[name]))
+    own_names = trial.program.space
+    uncalled = {*own_names} - {called(x) for x in calls}
+    found += sorted(name for name in uncalled if _is_product(own_names[name]))
     return found
 
 
