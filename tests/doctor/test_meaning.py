@@ -423,3 +423,21 @@ def test_every_phrase_is_of_something_that_is_known():
             assert len(rows) == len(values)
             found |= {sense.what for _, sense in rows}
     assert found == set(PHRASES)
+
+
+def test_angles_and_rates_of_a_plane_arm_are_about_the_bases_axis() -> None:
+    arm = kl.DHTable(
+        name="turned over", convention="standard",
+        links=[kl.DHLink("revolute", a=0.5, alpha=np.pi, mass=1.0),
+               kl.DHLink("revolute", a=0.4, theta=0.3, flip=True, mass=1.0),
+               kl.DHLink("revolute", a=0.3, mass=1.0)],
+    )  # fmt: skip
+    robot, q, v = kl.Robot.from_dh(arm), np.array([0.3, -0.8, 1.1]), np.array([0.7, 0.4, -0.9])
+    known = meanings(robot, {"q": q, "v": v})
+    turned, rate = kl.fk(robot, q)[:3, :3], (kl.jacobian(robot, q) @ v)[5]
+    rows, values = known.things[(3,)]
+    told = {sense.what: value for (_rank, sense), value in zip(rows, values, strict=True)}
+    # the second link's frame lies upside down: its x axis tells how far it is turned
+    assert np.isclose(np.cos(told["angles"][-1]), turned[0, 0])
+    assert np.isclose(np.sin(told["angles"][-1]), turned[1, 0])
+    assert np.isclose(told["rates"][-1], rate)

@@ -96,8 +96,8 @@ class _Gathered:
         self.R, self.o = self.frames[1:, :3, :3], self.frames[1:, :3, 3]
         self.standard = table.convention is Convention.STANDARD
         at = self.frames[:-1] if self.standard else self.frames[1:]
-        signs = np.array([-1.0 if link.flip else 1.0 for link in table.links])
-        self.z, self.joint = at[:, :3, 2] * signs[:, None], at[:, :3, 3]
+        self.flips = np.array([-1.0 if link.flip else 1.0 for link in table.links])
+        self.z, self.joint = at[:, :3, 2] * self.flips[:, None], at[:, :3, 3]
         self.hinge = np.array([kind == "revolute" for kind in robot.joint_kinds])
         self.plane = bool(np.all(np.abs(self.z[:, :2]) <= TOLERANCES.structure_holds))
         self.mass = np.array([link.mass for link in table.links])
@@ -254,12 +254,11 @@ class _Gathered:
 
     def angles(self) -> None:
         q = self.given["q"]
-        flips = np.array([-1.0 if link.flip else 1.0 for link in self.table.links])
-        theta = flips * q + [link.theta for link in self.table.links]
+        theta = self.flips * q + [link.theta for link in self.table.links]
         self.put("positions", q)
         self.each("q", q)
         if self.plane and self.hinge.all():
-            self.put("angles", np.cumsum(theta), rank=1)
+            self.put("angles", np.cumsum(self.z[:, 2] * self.flips * theta), rank=1)
         turning = [int(k) for k in np.flatnonzero(self.hinge)]
         for name, values, rank in (("q", q, 0), ("theta", theta, 1)):
             for first in range(len(turning)):
@@ -293,7 +292,7 @@ class _Gathered:
         bearer = w if self.standard else np.concatenate([np.zeros((1, 3)), w[:-1]])
         self.put("velocities", v)
         if self.plane and self.hinge.all():
-            self.put("rates", np.cumsum(v), rank=1)
+            self.put("rates", np.cumsum(self.z[:, 2] * v), rank=1)
         self.each("qd", v)
         twist = kinematics.jacobian(robot, q) @ v
         self.put("twist", twist)

@@ -22,7 +22,7 @@ from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
 from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
-from kinlab.doctor.program.places import DATA, ProgramEdit, called
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, paired
 from kinlab.doctor.program.trial import Trial, named_in
 from kinlab.tolerances import TOLERANCES
 
@@ -140,17 +140,12 @@ class Grounds:
         holder, side = edit.changes[0].holder, edit.changes[0].field
         if id(holder) not in self.chains or side not in ("left", "right"):
             return False
-        before, after = _step(edit.node), _step(edit.changes[0].new)
-        beside = _step(holder.right if side == "left" else holder.left)
-        whole = self.chains[id(holder)]
-        if before is None or after is None or beside is None:
+        steps = [_step(edit.changes[0].new), _step(holder.right if side == "left" else holder.left)]
+        first, last = steps if side == "left" else steps[::-1]
+        kind, start, end = self.chains[id(holder)]
+        if first is None or last is None:
             return False
-        ends = (after, beside) if side == "left" else (beside, after)
-        one_kind = {step[0] for step in (before, *ends, whole)} == {whole[0]}
-        return one_kind and [one[1:] for one in ends] == [
-            (whole[1], ends[1][1]),
-            (ends[0][2], whole[2]),
-        ]
+        return first == (kind, start, last[1]) and last == (kind, first[2], end)
 
     def _is_typed(self, node: Any) -> bool:
         """Whether it is an array of several numbers that are typed, whose signs are their own."""
@@ -369,18 +364,13 @@ def _worked_out(tree: ast.AST) -> set[str]:
         for node in nodes(tree)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
     )
-    found: set[str] = set()
-    for node in nodes(tree):
-        if isinstance(node, ast.Assign):
-            pairs = [(node.targets[0], node.value)]
-            if isinstance(node.targets[0], ast.Tuple) and isinstance(node.value, ast.Tuple):
-                pairs = [*zip(node.targets[0].elts, node.value.elts, strict=False)]
-            found |= {
-                one.id
-                for one, what in pairs
-                if isinstance(one, ast.Name) and not isinstance(what, ast.Constant)
-            }
-    return {name for name in found if given[name] == 1}
+    lines = (node for node in nodes(tree) if isinstance(node, ast.Assign))
+    pairs = (pair for line in lines for pair in paired(line.targets[0], line.value))
+    return {
+        one.id
+        for one, what in pairs
+        if isinstance(one, ast.Name) and not isinstance(what, ast.Constant) and given[one.id] == 1
+    }
 
 
 def _are_flags(seen: Seen | None) -> bool:

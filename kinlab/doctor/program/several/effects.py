@@ -253,7 +253,7 @@ def effects_of(search: LineSearch, tried: Tried) -> Effects | None:
         if not np.isfinite(effect).all():
             continue
         key: Any = (np.round(effect, 7) + 0.0).tobytes()
-        key = (key, id(edit.node)) if norm else key
+        key = (key, edit.node) if norm else key
         if np.max(np.abs(effect)) < TOLERANCES.effects_add_up:
             if not lost.any():
                 continue

@@ -58,8 +58,8 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
             for at, right in dict.fromkeys(_wrong([found[i].value for i in rows], told)):
                 k = rows[at]
                 off.setdefault((name[0], k), {}).setdefault(name, []).append((found[k], right))
-    for (table_, k), cells in off.items():
-        whole = [found[k] for key, found in columns.items() if key[0] == table_ and k in found]
+    for (whose, k), cells in off.items():
+        whole = [found[k] for key, found in columns.items() if key[0] == whose and k in found]
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
         yield from (cell.edit(right) for some in cells.values() for cell, right in some)

@@ -66,7 +66,7 @@ def of_own_numbers(
             yield replace(place.edit(value, "number", cost), of_the_arm=True)
     yield from _of_points(table, every, kinds["length"])
     lengths = kinds["length"][:_MOST]
-    typed = {abs(float(place.value)) for place in every if place.part != DATA}
+    in_text = {abs(float(place.value)) for place in every if place.part != DATA}
     left_out = [x for x in lengths if not among(x, given)]
     slides = [kind == "prismatic" for kind in robot.joint_kinds]
     cells = [one.d if slide else one.theta for one, slide in zip(table.links, slides, strict=True)]
@@ -81,7 +81,7 @@ def of_own_numbers(
                 yield from _without_what_is_constant(here, observed, stack, more)
     if weight and not any(map(may_be_gravity, given)):
         yield from _without_gravity(trial, observed, np.asarray(table.gravity, dtype=float))
-    if any(among(x, some) for x in typed for some in kinds.values()):  # where they are used
+    if any(among(x, some) for x in in_text for some in kinds.values()):  # where they are used
         for part, tree in enumerate(trial.trees):
             for here in places(part, tree):
                 yield from _missing(here, observed, lengths)
