@@ -123,7 +123,7 @@ class _Several:
             found = found or tried.likeliest(known, together.any_three())
         if found:
             return self._settled(search, found)
-        most = 1 if together.usable else _STEPS - 1
+        most = 1 if together.thorough else _STEPS - 1
         firsts = in_order.reached[:most]
         if not firsts:
             edits = [edits[0] for edits in known.alike]
@@ -133,12 +133,12 @@ class _Several:
         if found:
             return found
         joined = known
-        if not together.usable:
+        if not together.thorough:
             wider = None if search.stand else AtRest(search).effects(known, search.most // _RESTING)
             joined = known if wider is None else known.beside(wider)
             found = self._settled(search, tried.likeliest(joined, joined.pairs()))
         if not found:
-            most = 1 if together.usable else _STEPS
+            most = 1 if together.thorough else _STEPS
             gaining = _apart([joined.alike[k][0] for k in joined.gaining])[:most]
             found = self._after(search, [(x,) for x in gaining if (x,) not in firsts])
         if not found and not search.stand:

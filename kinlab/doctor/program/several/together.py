@@ -80,6 +80,7 @@ class TriedTogether:
         left: work that may still be done.
         each: how many operations a run takes.
         usable: whether lanes can follow the program.
+        thorough: whether a run is so cheap that any two of the likeliest edits are run together.
     """
 
     def __init__(self, search: LineSearch, known: Effects) -> None:
@@ -87,7 +88,7 @@ class TriedTogether:
         self.left = search.most if search.stand else max(_LEAST, _ALL - search.work)
         self.count = 1 + (search.case.quantity.name in ANY_ZERO)
         self.sound = np.empty(0, dtype=int)
-        self.usable, self.each = False, 0.0
+        self.usable, self.thorough, self.each = False, False, 0.0
         states = search.states_at(search.first)
         edits = known.alike[:_EDITS]
         for counts in (True, False):  # whole numbers may be what something is counted by
@@ -98,6 +99,8 @@ class TriedTogether:
             self.usable = self._follows(len(edits)) and self.left > 0
             if self.usable or not self.lanes.counts or self.left <= 0:
                 break
+        likeliest = min(_BLOCK, len(self.sound)) ** 2 // 2
+        self.thorough = self.usable and self._within(_SPARED * self.left) >= likeliest
         size = known.rows.shape[1] * self.count // len(search.first)
         self.weights = np.random.default_rng(5).uniform(0.5, 1.5, size)
         self.three = min(_THREE, math.isqrt(_KEPT // max(size, 1)))
@@ -179,8 +182,8 @@ class TriedTogether:
 
     def _in_turn(self) -> Iterator[tuple[int, Any]]:
         """Pairs with their rank: of the likeliest all, then what is possible, then all others."""
-        likely, most = True, self._within(_SPARED * self.left)
-        if most < min(_BLOCK, len(self.sound)) ** 2 // 2:
+        likely = True
+        if not self.thorough:
             yield from enumerate(self._lots(self._few()), 1)
             return
         for rank, one, other in self._blocks():
