@@ -19,6 +19,7 @@ from kinlab.symbolic import dynamics, fourier, kinematics
 from kinlab.symbolic.arm import SymbolicArm, arm
 from kinlab.symbolic.kinematics import Grid
 from kinlab.symbolic.trig import Poly, TrigRing
+from kinlab.symbolic.vocabulary import is_planar
 
 # -------- What stands between the energies and the torques, derived: momentum, its rate,
 #          gradients
@@ -321,6 +322,8 @@ class Derivation:
 @lru_cache(maxsize=64)
 def derivation(table: DHTable, quantity: str) -> Derivation | None:
     """The quantity (without index) derived for the table, or None where none is offered."""
+    if quantity == "planar_angle":
+        return _planar_angle(table)
     if quantity in _KINEMATIC and table.n <= _KINEMATIC_JOINTS:
         make = _KINEMATIC[quantity]
     elif quantity in _AT_REST and table.n <= _KINEMATIC_JOINTS:
@@ -350,6 +353,16 @@ def derivation_of(case: Case) -> Derivation | None:
 def _with_wrench(a: SymbolicArm) -> SymbolicArm:
     trig = TrigRing((*a.trig.parameters, *WRENCH), a.trig.angles, a.n)
     return replace(a, trig=trig)
+
+
+def _planar_angle(table: DHTable) -> Derivation | None:
+    """The sum of the joint positions, which stand in it themselves; None where it is no such sum."""
+    turned = any(link.theta for link in table.links) or not np.array_equal(table.base, np.eye(4))
+    if turned or not is_planar(table):
+        return None
+    plain = arm(table)
+    named = replace(plain, trig=TrigRing(plain.trig.parameters, (), plain.n), groups=())
+    return Derivation(named, _objects(sum(named.trig.gens[s.name] for s in named.q)))
 
 
 def searchable(poly: Poly) -> bool:

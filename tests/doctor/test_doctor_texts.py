@@ -146,6 +146,9 @@ _JV = "r = a2 + xt*c3; Jv = [[-a1*s1 - r*s12, {0}r*s12, -xt*c12*s3], [a1*c1 + r*
         ("planar2r", "det J", "det J = l1*l2*sin(q2)", "planar_position_determinant"),
         ("planar2r", "det", "det(J) = l1*l2*sin(q2)", "planar_position_determinant"),
         ("planar2r", "|J|", "l1*l2*sin(q2)", "planar_position_determinant"),
+        ("planar3r", "det J", "det J = l1*l2*sin(q2)", "planar_determinant"),
+        ("planar3r", "phi", r"\phi = \theta_1 + \theta_2 + \theta_3", "planar_angle"),
+        ("planar3r", r"\phi_e", "atan2(s123, c123)", "planar_angle"),
         ("planar2r", "p_y", "p_y = l1*s1 + l2*s12", "fk[1,3]"),
         ("planar2r", "p2", "m2*l2*(l2*(qd1 + qd2) + l1*qd1*cos(q2))", "momentum[1]"),
         ("planar2r", "cv", "[-m2*l1*l2*sin(q2)*qd2*(2*qd1 + qd2); m2*l1*l2*sin(q2)*qd1^2]", "coriolis_torques"),
@@ -162,6 +165,20 @@ def test_names_of_quantities_as_people_type_them(robot, entry, typed, quantity) 
 def test_half_of_a_jacobian_is_judged_as_a_whole() -> None:
     found = kl.diagnose("spatial3r", "Jv", _JV.format("").replace("xt*c3]", "xt*s3]"))
     assert sorted(found.causes[0].places) == ["Jv12", "Jv33"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "told", "right"),
+    [
+        ("q1 + q2", "the term q3 is missing", "q1 + q2 + q3"),
+        ("q1 + q2 - q3", "- q3 should be + q3", "q1 + q2 + q3"),
+        ("th1+th3", "the term th2 is missing", "th1+th3+th2"),
+    ],
+)
+def test_the_angle_of_a_planar_tool_is_a_sum_of_joint_positions(typed, told, right) -> None:
+    cause = kl.diagnose("planar3r", "phi", typed).causes[0]
+    assert told in cause.sentence
+    assert cause.shown["phi"] == right
 
 
 def test_a_determinant_of_what_has_none_is_refused() -> None:

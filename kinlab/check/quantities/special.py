@@ -17,6 +17,9 @@ from kinlab.engine import kinematics, links
 from kinlab.model.link import Convention
 from kinlab.model.robot import Robot, frame_id, scratch
 
+_LESS_THAN_HALF = 3.0
+"""Less than half a turn, rad."""
+
 
 def dh_poses(robot: Robot, q: Any) -> Array:
     """Poses of the DH frames of the robot's table, as Pinocchio places them."""
@@ -68,6 +71,12 @@ def planar_determinant(robot: Robot, q: Any) -> Any:
 def planar_position_determinant(robot: Robot, q: Any) -> Any:
     """det of the rows vx, vy."""
     return np.linalg.det(kinematics.jacobian(robot, q)[:, :2])
+
+
+def planar_angle(robot: Robot, q: Any) -> Any:
+    """phi of a planar arm's tool, in (-pi, pi]."""
+    pose = planar_pose(robot, q)
+    return np.arctan2(pose[..., 3], pose[..., 2])
 
 
 def isotropy_defect(robot: Robot, q: Any) -> Any:
@@ -172,6 +181,17 @@ def _with_second_joint(*choices: float) -> Any:
     return draw
 
 
+def _within_a_turn(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
+    """Draws states at which the joints of a planar arm turn its tool by less than half a turn.
+
+    A sum of joint positions and an atan2 are the same there.
+    """
+    del arguments
+    q = rng.uniform(-_LESS_THAN_HALF, _LESS_THAN_HALF, (count, robot.n)) / robot.n
+    q[:, 0] -= planar_angle(robot, np.zeros((1, robot.n)))
+    return (q,)
+
+
 def _with_target(robot: Robot, arguments: Any, count: int, rng: np.random.Generator) -> Any:
     """Draws states away from the stretched and folded poses, and random targets."""
     del arguments
@@ -224,6 +244,13 @@ QUANTITIES = (
     _planar_3r("planar_determinant", "q", planar_determinant, "det of rows vx, vy, wz"),
     _planar_2r(
         "planar_position_determinant", "q", planar_position_determinant, "det of rows vx, vy"
+    ),
+    SERIAL.quantity(
+        "planar_angle",
+        "q",
+        planar_angle,
+        "phi of a planar arm's tool, rad, at |phi| < 3",
+        sample=_within_a_turn,
     ),
     SERIAL.quantity(
         "isotropy_defect", "q", isotropy_defect, "sum of (sigma_i^2 / mean - 1)^2 of rows vx, vy"

@@ -159,7 +159,9 @@ def _calls(trial: Trial, states: Sequence[tuple[Any, ...]]) -> list[int]:
                 trial.load()
                 trial.function(*state)
     finally:
-        sys.setprofile(before)
+        sys.setprofile(before if callable(before) else None)
+        if before is not None and not callable(before):
+            before.enable()  # cProfile's own object
     return found
 
 

@@ -83,8 +83,10 @@ def _name(line: Line, place: Place, name: str) -> None:
     if joint:
         head, index = joint.group(1), int(joint.group(2))
         for i in range(1, line.names.n + 1):
-            if i != index:
-                _node(line, place, tree.sym(f"{head}{i}"), "index", 1.2)
+            if i == index:
+                continue
+            _node(line, place, tree.sym(f"{head}{i}"), "index", 1.2)
+            if not _is_whole_term(place):
                 pair = [tree.sym(f"{head}{k}") for k in sorted((i, index))]
                 _node(line, place, tree.add(*pair), "missing term", 1.25)
         for word, value in line.atoms.items() if head == "q" else ():
@@ -494,6 +496,13 @@ def _whole_terms(line: Line) -> None:
         span = (end, end, f"{line.gap}{sign}{line.gap}{body}")
         told = N_("the term {term} is missing")
         line.edit(line.root, value, span, "missing term", 1.3, told, {"term": shown})
+
+
+def _is_whole_term(place: Place) -> bool:
+    """Whether a piece is a term of the whole formula, beside which another would be one too."""
+    while place.above is not None and is_sum(place.above.node):
+        place = place.above
+    return place.above is None
 
 
 def _is_exponent(place: Place) -> bool:

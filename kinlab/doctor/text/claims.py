@@ -53,8 +53,10 @@ def _by_letter(table: dict[str, str]) -> dict[str, str]:
 
 
 _VECTOR_OF, _MATRIX_OF, _NUMBER_OF = map(_by_letter, (_VECTORS, _MATRICES, _NUMBERS))
-_TWO = 2
-"""Joints of a planar arm whose position's Jacobian has a determinant."""
+_DETERMINANTS = {2: "planar_position_determinant", 3: "planar_determinant"}
+"""What det J is of a planar arm with so many joints: of the rows vx, vy, or of vx, vy, wz."""
+_ANGLES = ("phi", "phie")
+"""What the angle of a planar arm's tool is called."""
 _PARTS = ("R", "r")
 """Letters of a part of a matrix."""
 _VECTOR = re.compile(r"([A-Za-z]+)_?(\d)")
@@ -101,8 +103,10 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
     planar = table is not None and is_planar(table)
     if _PLACE.fullmatch(entry):
         return _NUMBER_OF[entry.replace("_", "")]
-    if planar and table is not None and len(table.links) == _TWO and _DETERMINANT.fullmatch(entry):
-        return "planar_position_determinant"
+    if planar and entry in _ANGLES:
+        return "planar_angle"
+    if planar and len(table.links) in _DETERMINANTS and _DETERMINANT.fullmatch(entry):
+        return _DETERMINANTS[len(table.links)]
     turning = _TURNING.fullmatch(entry)
     if turning:
         return f"jacobian[{int(turning.group(1)) + 2},{int(turning.group(2)) - 1}]"
