@@ -56,6 +56,13 @@ RIGHT = [
     ("tau2", "I_A*thetadd2 + tauAg2 + m*(J11*(ay + g) - J12*ax)/(J11*J22 - J12*J21)"),
     ("G12", GAIN), ("G12", "I_A*(J12 - eta*J21/detJ)"), ("P1", "tau1*thetad1"),
     ("I_L1", "I_A + m*(J21**2 + J22**2)/(J11*J22 - J12*J21)**2"),
+    (r"\dot\Theta_1", r"$\sqrt{J_{11}^2 + J_{12}^2} v_{\max}$"),
+    (r"T_{\max,2}", r"\sqrt{G_{21}^2 + G_{22}^2}\,a_{\max}"),
+    ("T_max1", "a_max*sqrt((I_A*J11 + m*J22/detJ)**2 + (I_A*J12 - m*J21/detJ)**2)"),
+    ("fivebar_rate_per_speed[1]", "sqrt(J21^2 + J22^2)"),
+    ("j", r"\frac{\pi N_{\max}}{30\dot\Theta_{\max}}"), ("j", "2*pi*N_max/(60*Thetad_max)"),
+    ("I_Mmin", "I_L/(3*j**2)"), (r"I_{M\max}", r"\frac{I_L}{j^2}"),
+    (r"\tau_{M\max}", r"T_{\max}/j"), ("tau_M", "T_max/j"),
 ]  # fmt: skip
 
 
@@ -108,6 +115,15 @@ SLIPS = [
      "term"),
     ("loop1", _same("- x", "+ x", LOOP), "+ x should be - x"),
     ("loop1", _same("sin", "cos", LOOP), "cos(theta1) should be sin(theta1)"),
+    (r"\dot\Theta_1", r"\sqrt{J_{11}^2 + J_{21}^2} v_{\max}", r"J_{21} should be J_{12}"),
+    ("Thetad2", "(J21**2 + J22**2)*v_max", "sqrt(J21**2 + J22**2)"),
+    ("T_max1", "sqrt(G11**2 - G12**2)*a_max", "- G12**2 should be + G12**2"),
+    ("T_max1", "sqrt(G11**2 + G12**2)", "the factor amax is missing"),
+    ("j", "30*N_max/(pi*Thetad_max)", "pi*N_max/(30*Thetad_max)"),
+    ("j", "pi*N_max/(60*Thetad_max)", "2*pi*N_max"),
+    ("j", "N_max/(30*Thetad_max)", "pi*N_max"),
+    ("tau_M", "T_max*j", "T_max/j"), ("tau_M", "j/T_max", "T_max/j"),
+    ("I_Mmax", "I_L/j", "j should be j**2"), ("I_Mmin", "I_L/(2*j**2)", "2 should be 3"),
     ("loop1", _same("- l2**2", "- l1**2", LOOP), "l1 should be l2"),
     ("loop", "(s*e + l1*cos(theta) - y)**2 + (l1*sin(theta) - y)**2 = l2**2", "y should be x"),
     ("loop2", r"$(e + l_1\cos\theta_2 - x)^2 + (l_1\sin\theta_2 - y)^2 = l_2^2$", "should be -e"),
@@ -211,7 +227,9 @@ def test_one_formula_of_a_leg_says_the_factor_of_the_others(tmp_path) -> None:
     ("robot", "entry", "text", "told"),
     [
         ("isotropic", "M11", "l1", "names no quantity of a five-bar; did you mean 'J11'"),
-        ("isotropic", "j", "pi*N/30", "names no quantity of a five-bar"),
+        ("isotropic", "N", "30*j/pi", "names no quantity of a five-bar"),
+        ("isotropic", "j", "pi*N/30", "'N' is unknown"),
+        ("isotropic", "T_max1", "sqrt(G11**2 + G12**2)*v_max", "did you mean 'amax'"),
         ("isotropic", "J11", "m3*l1", "'m3' is unknown"),
         (
             "isotropic",
@@ -241,3 +259,8 @@ def test_a_five_bar_of_ones_own_is_known_by_its_file(tmp_path) -> None:
 
     (found,) = examine_file(file, 40)
     assert found.sentence == "C1: the term 2*e*x is missing (missing term)"
+
+
+def test_a_formula_of_the_other_crank_is_told_as_such() -> None:
+    found = kl.diagnose("isotropic", "Thetad2", "sqrt(J11**2 + J12**2)*v_max", samples=40)
+    assert "the formula is the other crank's" in found.sentence

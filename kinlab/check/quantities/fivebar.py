@@ -131,6 +131,21 @@ def _either_leg(count: int) -> Array:
     return np.where(np.arange(count) % 2, -1.0, 1.0)
 
 
+_SERVO = {"vmax": 1.5, "amax": 20.0, "Nmax": 3000.0, "Thetadmax": 15.0, "Tmax": 4.0,
+          "IL": 0.02, "j": 20.0}  # fmt: skip
+"""What a servo is chosen by, as large as it may be: m/s, m/s², rpm, rad/s, N m, kg m², a ratio."""
+
+
+def sample_servo(
+    fivebar: FiveBar, arguments: tuple[str, ...], count: int, rng: np.random.Generator
+) -> tuple[Array, ...]:
+    """As :func:`sample`, with what a servo is chosen by."""
+    posed = tuple(name for name in arguments if name in DRAWS)
+    stacks = dict(zip(posed, sample(fivebar, posed, count, rng), strict=True)) if posed else {}
+    stacks |= {name: size * rng.uniform(0.3, 1.0, count) for name, size in _SERVO.items()}
+    return tuple(stacks[name] for name in arguments)
+
+
 def leg_of(s: Array) -> Any:
     """The place of each state's leg in a pair: 0 where s is 1, 1 where it is -1."""
     return (np.asarray(s) < 0).astype(int)
@@ -297,6 +312,41 @@ def _of_leg(both: Quantity) -> Quantity:
     return replace(both, name=name, arguments=arguments, engine=engine, sample=draw)
 
 
+def _servo(name: str, arguments: str, answer: EngineCall, about: str) -> Quantity:
+    """A quantity of a servo alone, whichever five-bar it moves."""
+
+    def engine(_fivebar: FiveBar, *stacks: Any) -> Any:
+        return answer(*stacks)
+
+    return FIVEBAR.quantity(name, arguments, engine, about, sample=sample_servo)
+
+
+def _worst(one: Quantity, argument: str, name: str, about: str) -> Quantity:
+    """What is worst over all directions, at the largest speed or acceleration of the tool."""
+
+    def engine(fivebar: FiveBar, xy: Any, mode: Any, largest: Array) -> Array:
+        return np.asarray(one.engine(fivebar, xy, mode) * largest[:, None])
+
+    arguments = (*one.arguments, argument)
+    return replace(
+        one, name=name, arguments=arguments, engine=engine, about=about, sample=sample_servo
+    )
+
+
+_RATE_PER_SPEED = _quantity(
+    "fivebar_rate_per_speed",
+    "xy mode",
+    lambda c, q: np.linalg.norm(c.jacobian(q), axis=1),
+    "worst theta_dot per |v|, rad/m, (2,)",
+)
+_TORQUE_PER_ACCELERATION = _quantity(
+    "fivebar_torque_per_acceleration_worst",
+    "xy mode",
+    lambda c, q: np.linalg.norm(_per_acceleration(c, q), axis=1),
+    "worst torque per |a| with massless rods, kg m, (2,)",
+    rods=False,
+)
+
 QUANTITIES = (
     _quantity("fivebar_rod_length", "theta xy", _rod_length, "elbow to tool, m, (2,)"),
     _quantity(
@@ -351,12 +401,7 @@ QUANTITIES = (
         "power of each crank with massless rods, W, (2,)",
         rods=False,
     ),
-    _quantity(
-        "fivebar_rate_per_speed",
-        "xy mode",
-        lambda c, q: np.linalg.norm(c.jacobian(q), axis=1),
-        "worst theta_dot per |v|, rad/m, (2,)",
-    ),
+    _RATE_PER_SPEED,
     _quantity(
         "fivebar_load_inertia_massless",
         "xy mode",
@@ -364,11 +409,32 @@ QUANTITIES = (
         "diagonal of the crank-side mass matrix with massless rods, kg m², (2,)",
         rods=False,
     ),
-    _quantity(
-        "fivebar_torque_per_acceleration_worst",
-        "xy mode",
-        lambda c, q: np.linalg.norm(_per_acceleration(c, q), axis=1),
-        "worst torque per |a| with massless rods, kg m, (2,)",
-        rods=False,
+    _TORQUE_PER_ACCELERATION,
+    _worst(
+        _RATE_PER_SPEED, "vmax", "fivebar_worst_rate", "worst theta_dot at vmax (m/s), rad/s, (2,)"
+    ),
+    _worst(
+        _TORQUE_PER_ACCELERATION,
+        "amax",
+        "fivebar_worst_torque",
+        "worst torque at amax (m/s²) with massless rods, N m, (2,)",
+    ),
+    _servo(
+        "servo_ratio",
+        "Nmax Thetadmax",
+        lambda rpm, rate: rpm / 60 * 2 * np.pi / rate,
+        "largest reduction j of a motor of Nmax rpm for Thetadmax rad/s, a number",
+    ),
+    _servo(
+        "servo_inertias",
+        "IL j",
+        lambda load, j: np.stack([load / j**2 / 3, load / j**2], axis=-1),
+        "least and largest I_M for a load's I_L, kg m², behind a reduction j, (2,)",
+    ),
+    _servo(
+        "servo_torque",
+        "Tmax j",
+        lambda torque, j: torque / j,
+        "motor torque tau_M for Tmax, N m, behind a reduction j",
     ),
 )

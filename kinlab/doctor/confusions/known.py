@@ -14,6 +14,7 @@ from kinlab.doctor.changes import Arguments, Case, Confusion
 from kinlab.doctor.confusions import otherwise
 from kinlab.doctor.confusions.robots import gravity_readings, inertia_readings, table_readings
 from kinlab.doctor.derivations.words import together
+from kinlab.fivebar import FiveBar
 from kinlab.host.language import N_, _
 from kinlab.model.robot import Robot
 from kinlab.tolerances import TOLERANCES
@@ -172,7 +173,9 @@ def _answers(case: Case) -> Iterator[Confusion]:
         yield _answer("sum", _("is the share of each link alone, not the sum"), _relative)
         yield _answer("sum", _("is the share of each link alone, not the sum"), _relative_behind)
     yield from _of_entries(case)
-    yield _answer("joint order", _("answers from tool to base"), lambda x: x[:, ::-1], 1.2)
+    of_legs = isinstance(case.robot, FiveBar)
+    said = _("is the other crank's") if of_legs else _("answers from tool to base")
+    yield _answer("joint order", said, lambda x: x[:, ::-1], 1.2)
     if len(shape) == 2:
         said = _("has the columns from tool to base")
         yield _answer("joint order", said, lambda x: x[:, :, ::-1], 1.2)

@@ -40,15 +40,24 @@ _OF_CRANKS = {
     "tau": "fivebar_torque_massless",
     "P": "fivebar_power_massless",
     "IL": "fivebar_load_inertia_massless",
+    "Thetad": "fivebar_worst_rate",
+    "Tmax": "fivebar_worst_torque",
+}
+_OF_SERVOS = {
+    "j": "servo_ratio",
+    "IMmin": "servo_inertias[0]",
+    "IMmax": "servo_inertias[1]",
+    "tauMmax": "servo_torque",
+    "tauM": "servo_torque",
 }
 _MATRICES = {"J": "fivebar_jacobian", "G": "fivebar_torque_per_acceleration"}
 _BARS = {"u": "fivebar_cranks", "w": "fivebar_rods"}
 ENTRY_NAMES = (
     "loop1", "A1", "B1", "C1", "C", "theta1", "u1x", "w1x", "w_x", "J11", "thetad1", "thetadd1",
-    "tau1", "G11", "P1", "I_L1",
+    "tau1", "G11", "P1", "I_L1", "Thetad1", "Tmax1", "j", "tau_M", "I_Mmin",
 )  # fmt: skip
 """Names of entries, one of each kind."""
-_ENTRY = re.compile(r"(loop|theta|[ABC])([12]?)|(q|qd|qdd|tau|P|IL)([12])")
+_ENTRY = re.compile(r"(loop|theta|[ABC])([12]?)|(q|qd|qdd|tau|P|IL|Thetad|Tmax)([12])")
 _MATRIX = re.compile(r"([JG])([12])([12])")
 _BAR = re.compile(r"([uw])([12]?)([xy])([12]?)")
 
@@ -68,6 +77,8 @@ def claimed(entry: str) -> str:
         if meant.op == "sym" and re.fullmatch(r"qd{0,2}\d", str(meant.value))
         else plain
     )
+    if plain in _OF_SERVOS:
+        return _OF_SERVOS[plain]
     if matrix := _MATRIX.fullmatch(plain):
         return f"{_MATRICES[matrix[1]]}[{int(matrix[2]) - 1},{int(matrix[3]) - 1}]"
     if (bar := _BAR.fullmatch(plain)) and not (bar[2] and bar[4]):
@@ -103,6 +114,8 @@ def entry_count(quantity: str) -> int:
         return {"fivebar_leg_equation": 3, "fivebar_leg_rods": 2}.get(quantity, 1)
     if quantity == "fivebar_equation":
         return 6
+    if quantity in ("servo_ratio", "servo_torque"):
+        return 1
     square = (*_MATRICES.values(), *_BARS.values())
     return 4 if quantity in square else 2
 
@@ -114,7 +127,10 @@ def refuse_massless(quantity: str, fivebar: FiveBar) -> None:
         ExpressionError: the quantity has masses in it, and the five-bar has none.
     """
     pairs = _pairs(fivebar)
-    if READ[split_name(quantity)[0]][0] > 0 and not np.any(pairs["IA"]) and not np.any(pairs["m"]):
+    plain = split_name(quantity)[0]
+    if is_of_servo(plain):
+        return
+    if READ[plain][0] > 0 and not np.any(pairs["IA"]) and not np.any(pairs["m"]):
         said = _("{name} has no masses: its torques are zero; give it a payload, or cranks of mass")
         raise ExpressionError(said.format(name=fivebar.name))
 
@@ -143,6 +159,13 @@ READ = {
     "fivebar_torque_per_acceleration": (1, 1, 0),
     "fivebar_power_massless": (1, 2, -3),
     "fivebar_load_inertia_massless": (1, 2, 0),
+    "fivebar_rate_per_speed": (0, -1, 0),
+    "fivebar_torque_per_acceleration_worst": (1, 1, 0),
+    "fivebar_worst_rate": (0, 0, -1),
+    "fivebar_worst_torque": (1, 2, -2),
+    "servo_ratio": (0, 0, 0),
+    "servo_inertias": (1, 2, 0),
+    "servo_torque": (1, 2, -2),
 }
 """The quantities whose formulas are read as text."""
 _NUMBERS = {
@@ -172,6 +195,7 @@ _BEFORE = {
     "fivebar_jacobian": ("fivebar_cranks", "fivebar_rods"),
     "fivebar_rates": ("fivebar_cranks", "fivebar_rods", "fivebar_jacobian"),
 }
+_BEFORE["fivebar_rate_per_speed"] = _BEFORE["fivebar_worst_rate"] = _BEFORE["fivebar_rates"]
 _BEFORE["fivebar_turn"] = (*_BEFORE["fivebar_rates"], "fivebar_rates")
 _BEFORE["fivebar_torque_per_acceleration"] = _BEFORE["fivebar_rates"]
 _BEFORE["fivebar_load_inertia_massless"] = _BEFORE["fivebar_rates"]
@@ -179,6 +203,19 @@ _BEFORE["fivebar_torque_massless"] = (
     *_BEFORE["fivebar_turn"], "fivebar_turn", "fivebar_torque_per_acceleration",
 )  # fmt: skip
 _BEFORE["fivebar_power_massless"] = (*_BEFORE["fivebar_torque_massless"], "fivebar_torque_massless")
+_BEFORE["fivebar_worst_torque"] = _BEFORE["fivebar_torque_per_acceleration_worst"] = (
+    *_BEFORE["fivebar_rates"], "fivebar_torque_per_acceleration",
+)  # fmt: skip
+_CHOSEN_BY = {
+    "vmax": (0, 1, -1),
+    "amax": (0, 1, -2),
+    "Nmax": (0, 0, -1),
+    "Thetadmax": (0, 0, -1),
+    "Tmax": (1, 2, -2),
+    "IL": (1, 2, 0),
+    "j": (0, 0, 0),
+}
+"""What a servo is chosen by, among the arguments of a quantity."""
 _WITHOUT_ANGLES = ("equation", "angles")
 """Ends of the names of quantities that stand on the tool's place alone."""
 
@@ -186,6 +223,11 @@ _WITHOUT_ANGLES = ("equation", "angles")
 def is_either(quantity: str) -> bool:
     """Whether a quantity is that of either leg, by s."""
     return quantity.startswith("fivebar_leg_")
+
+
+def is_of_servo(quantity: str) -> bool:
+    """Whether a quantity is a servo's, whichever five-bar it moves."""
+    return quantity.startswith("servo_")
 
 
 def numbers_of(fivebar: FiveBar, leg: int = 0) -> dict[str, float]:
@@ -225,15 +267,17 @@ def with_numbers(fivebar: FiveBar, values: dict[str, Array]) -> FiveBar:
 
 def parameters(quantity: str, fivebar: FiveBar) -> tuple[str, ...]:
     """The names of numbers that a quantity's formula may have, but those that are zero."""
-    moving = READ[quantity][0] > 0
     pairs = _pairs(fivebar)
-    return tuple(n for n in _NUMBERS if np.any(pairs[n]) and (moving or n not in _DYNAMIC))
+    return tuple(n for n in parameters_or_zero(quantity) if np.any(pairs[n]))
 
 
 def state_names(quantity: Quantity) -> dict[str, tuple[int, int, int]]:
     """The names of what moves in a quantity's formula, but the cranks' angles, and their units."""
     given = quantity.arguments
-    found = {"x": (0, 1, 0), "y": (0, 1, 0)}
+    found = {name: unit for name, unit in _CHOSEN_BY.items() if name in given}
+    if is_of_servo(quantity.name):
+        return found
+    found |= {"x": (0, 1, 0), "y": (0, 1, 0)}
     if is_either(quantity.name):
         found["s"] = (0, 0, 0)
     if "v" in given:
@@ -260,7 +304,8 @@ def state_names(quantity: Quantity) -> dict[str, tuple[int, int, int]]:
 
 def letters(quantity: Quantity) -> tuple[str, ...]:
     """Which of q, qd and qdd a quantity's formula may have."""
-    if quantity.name.endswith(_WITHOUT_ANGLES) or is_either(quantity.name):
+    name = quantity.name
+    if name.endswith(_WITHOUT_ANGLES) or is_either(name) or is_of_servo(name):
         return ()
     before = _BEFORE.get(quantity.name, ())
     rates = ("qd",) * ("fivebar_rates" in before) + ("qdd",) * ("fivebar_turn" in before)
@@ -278,12 +323,15 @@ def values_at(
         arguments: the states.
         index: the entry's; its leg is the first of it.
     """
+    if is_of_servo(quantity.name):
+        return arguments
     count = len(arguments["xy"])
     leg = np.full(count, index[0] if index else 0)
     if "s" in arguments:
         leg = leg_of(arguments["s"])
     every = np.arange(count)
-    at = {n: pair[leg] for n, pair in _pairs(fivebar).items() if n in parameters_or_zero(quantity)}
+    named = parameters_or_zero(quantity.name)
+    at = {n: pair[leg] for n, pair in _pairs(fivebar).items() if n in named}
     moving = _moving(fivebar, quantity, arguments)
     at |= {n: moving[n] for n in moving if n in state_names(quantity) or n[0] == "q"}
     at["s"] = np.where(leg, -1.0, 1.0)
@@ -298,15 +346,17 @@ def values_at(
     return at
 
 
-def parameters_or_zero(quantity: Quantity) -> tuple[str, ...]:
+def parameters_or_zero(quantity: str) -> tuple[str, ...]:
     """The names of numbers that a quantity's formula may have."""
-    moving = READ[quantity.name][0] > 0
+    if is_of_servo(quantity):
+        return ()
+    moving = READ[quantity][0] > 0
     return tuple(n for n in _NUMBERS if moving or n not in _DYNAMIC)
 
 
 def _moving(fivebar: FiveBar, quantity: Quantity, arguments: dict[str, Array]) -> dict[str, Array]:
     x, y = arguments["xy"].T
-    found = {"x": x, "y": y}
+    found = {"x": x, "y": y} | {n: arguments[n] for n in _CHOSEN_BY if n in arguments}
     for letter in ("v", "a"):
         if letter in arguments:
             found |= {f"{letter}{k}": arguments[letter][:, j] for j, k in enumerate("xy")}
@@ -432,7 +482,7 @@ def known_names(entry: str) -> set[str]:
     quantity = quantities()[split_name(claimed(entry))[0]]
     own = {"s", "theta", "ux", "uy", "wx", "wy", "uHw", "A", "B", "C"}
     moving = {f"{letter}{i}" for letter in ("q", "qd", "qdd") for i in "12"}
-    return {*parameters_or_zero(quantity), *state_names(quantity), *own, *moving}
+    return {*parameters_or_zero(quantity.name), *state_names(quantity), *own, *moving}
 
 
 # -------- Terms that may be missing
@@ -444,6 +494,8 @@ _FACTORS = 3
 @lru_cache(maxsize=64)
 def terms_of(quantity: Quantity, names: tuple[str, ...]) -> tuple[Node, ...]:
     """Products of names that have the unit of a quantity, as terms that may be missing in it."""
+    if is_of_servo(quantity.name):
+        return ()  # a ratio has no unit: anything could be added
     units = {**_NUMBERS, **state_names(quantity)}
     units |= {"qd1": (0, 0, -1), "qd2": (0, 0, -1), "qdd1": (0, 0, -2), "qdd2": (0, 0, -2)}
     usable = [n for n in names if n in units and n != "s"]

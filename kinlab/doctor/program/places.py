@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
@@ -126,6 +127,24 @@ def paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.ex
             yield from paired(one, part)
     else:
         yield target, value
+
+
+_NUMBERED = re.compile(r"([^\W\d]+)(\d+)")
+
+
+def follow(one: ast.expr, other: ast.expr) -> bool:
+    """Whether two are one thing's that follow on one another: ``q[0]`` and ``q[1]``, th1 and th2."""
+    at: list[Any] = []
+    if isinstance(one, ast.Name) and isinstance(other, ast.Name):
+        found = [_NUMBERED.fullmatch(x.id) for x in (one, other)]
+        at = [int(x[2]) for x in found if x]
+        same = len({x[1] for x in found if x}) == 1
+    elif isinstance(one, ast.Subscript) and isinstance(other, ast.Subscript):
+        at = [getattr(x.slice, "value", None) for x in (one, other)]
+        same = ast.dump(one.value) == ast.dump(other.value)
+    if len(at) < 2 or not all(type(x) is int for x in at):
+        return False
+    return same and abs(at[0] - at[1]) == 1
 
 
 def root(piece: ast.AST) -> str:

@@ -62,6 +62,7 @@ _WHAT = {
     "order": N_("the order is exchanged"),
     "order of lines": N_("what the line uses is updated too early, or too late"),
     "loop": N_("the loop leaves one out, or takes one too many"),
+    "direction": N_("the loop runs the other way"),
     "condition": N_("the condition is wrong"),
     "entries swapped": N_("two entries are exchanged"),
     "rows": N_("the rows are others: the linear ones, or the angular"),

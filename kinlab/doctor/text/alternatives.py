@@ -31,7 +31,7 @@ from kinlab.formulas.text import canonical, parse
 from kinlab.formulas.tree import Node
 from kinlab.host.language import N_
 
-_FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25}
+_FACTORS = {"2": 2.0, "3": 3.0, "4": 4.0, "/2": 0.5, "/3": 1 / 3, "/4": 0.25, "pi": math.pi}
 _LENGTHS = ({"l", "lc"}, {"L", "lc"}, {"a", "lc"}, {"L", "Lc"}, {"l", "r"})
 """A link's length, and how far its centre of mass is: the one is taken for the other."""
 _OF_LINKS = set().union(*_LENGTHS)
@@ -218,6 +218,9 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
         inside = parse(ast.unparse(node.args[0]))
         mapped = {w: _meaning(line, w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
+    elif name == "sqrt":
+        inside = line.siblings[id(place)][0]
+        line.instead(place, f"({line.segment(inside)})", inside.value, "power", 1.3)
     elif tree.SYNONYMS.get(name, name) == "atan2":
         y, x = line.siblings[id(place)]
         turned = f"{name}({line.segment(x)}, {line.segment(y)})"
@@ -297,7 +300,12 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
         span = (at, end, "")
         line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
         _as_fraction(line, place, left, right)
+        _upside_down(line, place, left, right)
+        line.instead(place, f"{first}*{second}", left.value * right.value, "factor", 1.4)
         return
+    if not any(isinstance(one.node, ast.Constant) for one in (left, right)):
+        with np.errstate(all="ignore"):
+            line.instead(place, f"{first}/{second}", left.value / right.value, "factor", 1.45)
     told, pieces = line.told(
         place,
         N_("the factor {factor} does not belong"),
@@ -309,6 +317,27 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     ):
         kind = "factor" if isinstance(gone.node, ast.Constant) else "extra factor"
         line.edit(place, kept.value, span, kind, 1.3, told, pieces | {"factor": factor})
+
+
+def _upside_down(line: Line, place: Place, left: Place, right: Place) -> None:
+    """A quotient turned over, whole or in one factor above and one below."""
+    start, end = place.span
+    above, below = _multiplied(line, left), _multiplied(line, right)
+    for one in above:
+        for other in below:
+            names = [line.source[slice(*x.span)] for x in (one, other)]
+            if all(isinstance(x.node, ast.Constant) for x in (one, other)):
+                continue
+            middle = line.source[one.span[1] : other.span[0]]
+            front, behind = line.source[start : one.span[0]], line.source[other.span[1] : end]
+            new = f"{front}{names[1]}{middle}{names[0]}{behind}"
+            with np.errstate(all="ignore"):
+                value = place.value * (other.value / one.value) ** 2
+            line.instead(place, new, value, "factor", 1.4)
+    if len(above) * len(below) > 1:
+        top, bottom = (line.source[slice(*x.span)] for x in (left, right))
+        with np.errstate(all="ignore"):
+            line.instead(place, f"({bottom})/({top})", 1.0 / place.value, "factor", 1.4)
 
 
 def _as_fraction(line: Line, place: Place, left: Place, right: Place) -> None:
@@ -349,6 +378,9 @@ def _as_factor(line: Line, place: Place) -> None:
                 word = name if power == 1 else f"{name}**{power}"
                 new = f"{word}*{wrapped}" if alone else f"({word}*{wrapped})"
                 line.instead(place, new, place.value * value**power, "missing factor", 1.5 + more)
+    if whole and not (place.above is not None and isinstance(place.above.node, ast.Call)):
+        with np.errstate(all="ignore"):
+            line.instead(place, f"sqrt({piece})", np.sqrt(place.value), "power", 1.35)
     if not is_term(place):
         return
     start, end = place.span

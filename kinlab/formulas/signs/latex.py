@@ -36,10 +36,11 @@ _FRACTIONS = {r"\frac", r"\dfrac", r"\tfrac"}
 _NAMED = "sin cos tan atan2 arcsin arccos arctan ln exp"
 _FUNCTIONS = {rf"\{name}": name for name in _NAMED.split()}
 _RAISED = {"sin", "cos", "tan"}
+_EXTREMES = (r"\max", r"\min")
 _ANGLE = re.compile(r"(?:q|theta)[1-9]\d?")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9]*")
 _PLAIN = re.compile(r"\d+(?:\.\d+)?|pi")
-_LETTERS = "alpha beta gamma delta theta lambda mu phi psi omega rho tau"
+_LETTERS = "alpha beta gamma delta theta Theta lambda mu phi psi omega rho tau"
 _GREEK = {rf"\{name}": name for name in _LETTERS.split()}
 _GREEK |= {rf"\var{name}": name for name in ("theta", "phi", "rho")}
 _OF_TOOL = ("x", "y")
@@ -370,7 +371,7 @@ class _Reader:
             below = below or self.subscript()
         else:
             head, below = self.letter(), self.subscript()
-        if dots and head not in ("q", "theta", "d", *_OF_TOOL):
+        if dots and head not in ("q", "theta", "Theta", "d", *_OF_TOOL):
             raise refused(
                 self.place,
                 N_("LaTeX: a dot over {head}; only over q, theta and a slide's d"),
@@ -452,7 +453,9 @@ class _Reader:
         return text
 
     def plain(self, token: str) -> str:
-        token = _word(token) or token
+        if token == ",":  # T_{max,1}
+            return ""
+        token = token[1:] if token in _EXTREMES else _word(token) or token
         if token.isalnum():
             return token
         raise refused(

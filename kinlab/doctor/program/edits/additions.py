@@ -9,7 +9,7 @@ from math import pi
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, follow, number, root
 
 ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 _ODD = 0.04
@@ -160,7 +160,9 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
     node = here.node
     transposed = isinstance(node, ast.Attribute) and node.attr == "T"
     if len(shape) == 2 and not transposed and not scope.is_pose(node):
-        given = isinstance(here.parent, ast.Return) and isinstance(node, ast.Name)
+        passed = isinstance(node, ast.Call) and root(node.func) not in ("np", "numpy")
+        passed = passed or isinstance(node, ast.Name)
+        given = isinstance(here.parent, ast.Return) and passed
         cost = 1.04 + _GIVEN * given
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
@@ -185,15 +187,6 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
                 cost += 0.02
 
 
-def _follow(one: ast.expr, other: ast.expr) -> bool:
-    """Whether two are entries of one thing that follow on one another: ``q[0]`` and ``q[1]``."""
-    if not isinstance(one, ast.Subscript) or not isinstance(other, ast.Subscript):
-        return False
-    at = [getattr(x.slice, "value", None) for x in (one, other)]
-    whole = isinstance(at[0], int) and isinstance(at[1], int) and abs(at[0] - at[1]) == 1
-    return whole and ast.dump(one.value) == ast.dump(other.value)
-
-
 def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     node = here.node
     radians = ast.BinOp(node, ast.Mult(), number(pi / 180))
@@ -202,7 +195,7 @@ def _angle(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     for text, angle in scope.simple(()):
         if text not in own:
             cost = 1.0 + scope.dear(angle)
-            cost = min(cost, _NEXT_ANGLE) if _follow(angle, node) else cost
+            cost = min(cost, _NEXT_ANGLE) if follow(angle, node) else cost
             first, last = (angle, node) if text < ast.unparse(node) else (node, angle)
             yield here.instead(ast.BinOp(first, ast.Add(), last), "argument", cost)
 

@@ -26,6 +26,8 @@ _ROTATIONS = ("R", "r")
 _VECTOR, _TENSOR = (3,), (3, 3)
 _BESIDE = 1.06
 """Cost of what the same statement has the parts of."""
+_OF_SUMMANDS = 1.08
+"""Cost of the cross product of a rate that is turned and of what is added to it elsewhere."""
 _FEW = 8
 """Angular velocities that are tried; twice as many arms."""
 
@@ -244,6 +246,11 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     rates = [one for one in (*names, *turned) if _begins(_last(one), _RATES)][:_FEW]
     vectors = [one for one in plain if isinstance(one, ast.BinOp) or _begins(one, _ARMS)]
     own = ast.unparse(here.node)
+    for both in scope.pieces_here(_VECTOR).values():  # of w = R.T @ w + qd*z
+        if isinstance(both, ast.BinOp) and isinstance(both.op, ast.Add) and _begins_turned(both):
+            product = ast.Call(scope.cross, [both.left, both.right], [])
+            new = ast.BinOp(here.node, ast.Add(), product)
+            yield here.instead(new, "missing term", _OF_SUMMANDS)
     for rate in rates:
         for vector in vectors[: 2 * _FEW]:
             if ast.unparse(vector) in (ast.unparse(rate), own):
@@ -254,6 +261,11 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 product = ast.Call(scope.cross, [rate, product], [])
                 new = ast.BinOp(here.node, ast.Add(), product)
                 yield here.instead(new, "missing term", cost + 0.05 * turn)
+
+
+def _begins_turned(both: ast.BinOp) -> bool:
+    """Whether a rate is turned, and another one added to it."""
+    return _is_turned(both.left) and _begins(_last(both.left), _RATES)
 
 
 def _carried_on(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -6,11 +6,13 @@ import ast
 from collections.abc import Iterator
 from itertools import combinations
 
-from kinlab.doctor.bytecode.syntax import copied, nodes
+from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Observed, Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, follow, number
 
+_ANGLES = 1.07
+"""Cost of the joint before in every angle of a statement."""
 _MOST = 6
 """Names of one statement of which any two may be exchanged."""
 
@@ -33,12 +35,21 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             both = _Renamed({one: uses[other][0], other: uses[one][0]})
             cost = 1.08 + 0.02 * (len(uses[one]) + len(uses[other]))
             yield here.within(here.node, "value", both.of(value), "names exchanged", cost)
+    calls = (node for node in nodes(value) if isinstance(node, ast.Call))
+    angles = {id(call.args[0]) for call in calls if called(call) in ANGLES and call.args}
     for text in names:
         if len(uses[text]) > 1:
             for entry in _entries_beside(uses[text][0]):
                 if ast.unparse(entry) not in uses:
                     new = _Renamed({text: entry}).of(value)
                     yield here.within(here.node, "value", new, "index", 1.1)
+            if all(id(node) in angles for node in uses[text]) and _is_given(here, uses[text][0]):
+                for _other, node in scope.simple(()):
+                    if follow(node, uses[text][0]):
+                        both = sorted((node, uses[text][0]), key=ast.unparse)
+                        angle = ast.BinOp(both[0], ast.Add(), both[1])
+                        new = _Renamed({text: angle}).of(value)
+                        yield here.within(here.node, "value", new, "argument", _ANGLES)
             for other, node in scope.simple(shapes[text] or ()):
                 if other != text and other[0] == text[0] and other not in uses:
                     new = _Renamed({text: node}).of(value)
@@ -47,6 +58,15 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     count = sum(isinstance(n, ast.Call) and called(n) in ANGLES for n in nodes(value))
     if turns and count > 1:
         yield here.within(here.node, "value", Turned().visit(copied(value)), "sin/cos", 1.1)
+
+
+def _is_given(here: Here, node: ast.expr) -> bool:
+    """Whether it is an entry, or a name to which nothing but one is given: ``t1, t2 = q``."""
+    if isinstance(node, ast.Subscript):
+        return True
+    lines = (one for one in nodes(here.above[0]) if isinstance(one, ast.Assign))
+    own = [one for one in lines for to in one.targets if ast.unparse(node) in names(to)]
+    return all(isinstance(one.value, ast.Name | ast.Subscript) for one in own)
 
 
 def _entries_beside(node: ast.expr) -> Iterator[ast.expr]:

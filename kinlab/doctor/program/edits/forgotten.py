@@ -9,7 +9,7 @@ from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.additions import OtherAxis, summed
 from kinlab.doctor.program.edits.scope import Scope, Turned
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number
+from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, number, written_into
 
 _FORCES = ("f", "F")
 """How names of forces begin."""
@@ -45,7 +45,7 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _inside_products(here, scope)
         yield from _of_another_row(here, scope)
         return
-    if isinstance(node, ast.Call) and called(node) == "zeros":
+    if isinstance(node, ast.Call) and called(node) == "zeros" and not _is_filled(here):
         for _text, vector in scope.simple(shape):
             if not isinstance(getattr(vector, "slice", None), ast.Tuple):  # a part of a matrix
                 yield here.instead(vector, "name", 1.12)
@@ -259,6 +259,13 @@ def with_slices(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             factors.append(ast.Call(function, [rest], []))
         for factor in factors:
             yield here.instead(ast.BinOp(node, ast.Mult(), factor), "missing factor", 1.1)
+
+
+def _is_filled(here: Here) -> bool:
+    """Whether what is set is filled in later, entry by entry."""
+    targets = here.parent.targets if isinstance(here.parent, ast.Assign) else []
+    filled = {one.id for one in written_into(here.above[0])}
+    return any(isinstance(one, ast.Name) and one.id in filled for one in targets)
 
 
 def _inside_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -31,6 +31,8 @@ _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
 _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
+_OF_ROD = 0.04
+"""What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
 _HALF = 1.03
 """Cost of a length for the distance of the centre, where that is half of it, or that for it."""
 _OF_RODS = {3: 12, 12: 3}
@@ -320,10 +322,18 @@ def _cut(node: ast.expr) -> str:
     return ast.unparse(node.slice) if cut and isinstance(node, ast.Subscript) else ""
 
 
+def _is_typed_in(node: ast.expr) -> bool:
+    """Whether nothing but numbers stand there."""
+    plain = ast.List | ast.Tuple | ast.Constant | ast.UnaryOp | ast.unaryop | ast.expr_context
+    return all(isinstance(one, plain) for one in nodes(node))
+
+
 def _other_function(here: Here, name: str) -> Iterator[ProgramEdit]:
     node = here.node
     for family in _FAMILIES:
         for other in family:
+            if other == "cumsum" and node.args and _is_typed_in(node.args[0]):
+                continue  # numbers are rather wrong themselves
             if name in family and other != name and isinstance(node.func, ast.Attribute):
                 yield here.within(node.func, "attr", other, "function", 1.14)
     if name in ("ones", "zeros", "full") and isinstance(node.func, ast.Attribute) and node.args:
@@ -346,6 +356,8 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             new = [*args]
             new[k] = plus(argument, step)
             yield here.within(node, "args", new, "loop", 1.1)
+    if isinstance(here.parent, ast.For):
+        yield from _other_way(here)
     for others in scope.ranges:
         if ast.dump(others) != ast.dump(node):
             yield here.within(node, "args", [*others.args], "loop", 1.12)
@@ -366,6 +378,19 @@ def _range(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
             yield here.within(node, "args", [plus(load, 1), *args[1:]], "loop", 1.25)
 
 
+def _other_way(here: Here) -> Iterator[ProgramEdit]:
+    """A loop from the last to the first, or from the first to the last."""
+    args = here.node.args
+    first, last = (args[0], args[1]) if len(args) > 1 else (number(0), args[0])
+    if len(args) == 3 and ast.unparse(args[2]) == "-1":
+        forward = [plus(last, 1), plus(first, 1)]
+        forward = forward[1:] if ast.unparse(forward[0]) == "0" else forward
+        yield here.within(here.node, "args", forward, "direction", 1.1)
+    elif len(args) < 3:
+        back = [plus(last, -1), plus(first, -1), number(-1)]
+        yield here.within(here.node, "args", back, "direction", 1.1)
+
+
 def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdit]:
     node = here.node
     shape = observed.shape(node.value)
@@ -382,6 +407,9 @@ def of_subscript(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
     yield from of_keys(here, node, 1.1)
     yield from _other_slices(here)
     yield from _in_another_order(here)
+    for name in sorted(scope.unused) if isinstance(node.ctx, ast.Load) else ():
+        if scope.shapes.get(name) == observed.shape(node):
+            yield here.instead(ast.Name(name, ast.Load()), "name", 1.05)
     beside = _keys_beside(here)
     for k, (holder, field, key) in enumerate(keys):
         size = shape[k] if shape is not None and k < len(shape) else 0
@@ -487,6 +515,12 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
                 yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", cost)
             elif key.upper is None and key.lower is not None:
                 yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
+            elif whole_constant(key.lower) and whole_constant(key.upper):
+                first, behind = value_of(key.lower), value_of(key.upper)
+                other = behind if first == 0 else 2 * first - behind
+                if other >= 0:  # ``3:6`` and ``0:3``
+                    moved = ast.Slice(number(other), number(other + behind - first), None)
+                    yield here.within(holder, field, moved, "rows", cost)
             ends = (key.lower, key.upper)
             yield from _moved(here, holder, field, key)
             if ends[0] is None and ends[1] is not None and shifted(ends[1]):
@@ -528,7 +562,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if cost > _IN_LINE and other in scope.names_in(statement_of(here.above)):
                 cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):
-                cost = _HALF
+                cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
@@ -541,6 +575,13 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _in_a_rods_moment(here: Here) -> bool:
+    """Whether it stands in ``m*l**2/12`` or in ``m*l**2/3``."""
+    divided = (one for one in here.above if isinstance(one, ast.BinOp))
+    below = (one.right for one in divided if isinstance(one.op, ast.Div))
+    return any(isinstance(one, ast.Constant) and one.value in _OF_RODS for one in below)
 
 
 def _letters(name: str) -> str:
@@ -606,6 +647,8 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         and isinstance(getattr(here.parent, "op", None), ast.Div)
     ):
         yield here.within(here.node, "value", _OF_RODS[value], "number", 1.05)
+    if given is not None and called(given) == "append" and value in (0, 1):
+        yield here.within(here.node, "value", type(value)(1 - value), "number", 1.05)
     for factor in (2, 0.5, 3, 1 / 3, 4, 0.25):
         new = value * factor
         new = int(new) if new == int(new) else new
@@ -614,7 +657,10 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         for new in (value + 1, value - 1):
             power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
             kind = "power" if power else "number"
-            yield here.within(here.node, "value", new, kind, 1.08 if power else 1.18)
+            cost = 1.08 if power else 1.18
+            if power and isinstance(here.parent.left, ast.Constant):
+                cost = 1.25  # 0.25**2: nobody means another power of a number
+            yield here.within(here.node, "value", new, kind, cost)
 
 
 def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
@@ -634,6 +680,10 @@ def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:
     if len(elements) > _PAIR and all(isinstance(one, _NUMBERS) for one in elements):
         for moved in moved_on(elements):
             yield here.within(here.node, "elts", moved, "shifted", 1.13)
+    points = [one for one in elements if isinstance(one, ast.Name) and observed.shape(one) == (3,)]
+    if len(points) == len(elements) > _PAIR:  # those of the frames before, of which one is the base
+        base: ast.expr = ast.parse("np.zeros(3)", mode="eval").body
+        yield here.within(here.node, "elts", [base, *elements[:-1]], "shifted", 1.13)
 
 
 def _between(here: Here, rows: Sequence[ast.expr]) -> Iterator[ProgramEdit]:

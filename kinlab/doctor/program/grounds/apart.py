@@ -11,7 +11,7 @@ import ast
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import combinations, islice
 from typing import Any
 
 import numpy as np
@@ -115,7 +115,8 @@ def arm_apart(
     strange = (one for item in items for option in item.options for one in option)
     carried = {cells[k].which for one, k in strange if may_be_of_one_arm(one.value)}
     carried |= {cells[k].which for _one, k in ways[0]}
-    other = _apart(table, carried, reader.tied, turned)
+    back = _opposite(table, carried)
+    other = _apart(table, carried | {*back.values()}, reader.tied | back, turned)
     new = _cells(other, 0.0)
     puts = [
         [
@@ -132,6 +133,16 @@ def arm_apart(
     whole = reader.whole and not (named or holds_an_arm(trial)) and len(ways) <= _WAYS
     whole = whole and _stays(trial, puts[0])
     return OtherArm(other, changed, whole, frozenset(reader.fitting), reader.odd)
+
+
+def _opposite(table: DHTable, carried: set[Which]) -> dict[Which, Which]:
+    """Lengths there and back, which leave nothing of each other: a program need not name them."""
+    lengths = [(k, link.a) for k, link in enumerate(table.links) if link.a]
+    return {
+        ("a", j): ("a", i)
+        for (i, there), (j, back) in combinations(lengths, 2)
+        if there == -back and {("a", i), ("a", j)} & carried
+    }
 
 
 def _stays(trial: Trial, put: Sequence[tuple[NumberPlace, float]]) -> bool:
@@ -236,7 +247,8 @@ class _Reader:
         for (*_key, own), group in unknown.items():
             kinds = [*self._kinds(group)]
             stays: list[_Option] = [] if own else [()]
-            self.items.append(_Item((*kinds, *stays), True))
+            once = not any(one.given for one, _some in group)
+            self.items.append(_Item((*kinds, *stays), once))
             unsure += own and len(kinds) > 1
         self.whole = self.whole and unsure < 2
         held = np.array([one.value for one in found if one.alone])
@@ -397,13 +409,17 @@ class _Reader:
 
 
 def _summed(trial: Trial) -> set[int]:
-    """The numbers in sums of nothing but numbers, such as two moments of inertia, by identity."""
+    """The numbers in sums and products of nothing but numbers, by identity.
+
+    Such are two moments of inertia, or one from a mass and a length: ``2*0.4**2/12``.
+    """
     found: set[int] = set()
+    plain = ast.Constant | ast.BinOp | ast.operator
     for tree in trial.trees:
         for node in nodes(tree):
-            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+            if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub | ast.Mult):
                 sides = (node.left, node.right)
-                if all(isinstance(x, ast.Constant) or id(x) in found for x in sides):
+                if all(isinstance(x, plain) for x in nodes(node)):
                     found |= {id(node), *map(id, sides)}
     return found
 

@@ -16,9 +16,10 @@ from typing import Any
 import numpy as np
 
 from kinlab.arrays import Array
-from kinlab.doctor.bytecode.syntax import names, nodes
+from kinlab.doctor.bytecode.syntax import factors, names, nodes
 from kinlab.doctor.glossary.meaning import as_vector
 from kinlab.doctor.glossary.textbook import Glossary, Row, Sense
+from kinlab.doctor.program.edits.scope import summands
 from kinlab.doctor.program.grounds.called import unlike
 from kinlab.doctor.program.grounds.helpers import true_helpers
 from kinlab.doctor.program.observed import Observed, Seen
@@ -36,7 +37,7 @@ _UNLIKE = 0.15
 """What it costs more to add numbers whose names are those of a mass and of a length."""
 _SPOILED = 0.15
 """What an edit costs more that spoils what is right."""
-_USED = 0.05
+_USED = 0.07
 """What it costs more to put right where a value is used than where it is worked out."""
 _MEANT = 0.1
 """What it costs less to make a textbook's function of one with the other sign, or a chain of
@@ -85,6 +86,9 @@ class Grounds:
         self.worked_out = {
             (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
         }
+        used = Counter(name for tree in trial.trees for name in names(tree, ast.Load))
+        self.once = {name for name, count in used.items() if count == 1}
+        self.renamed = {name for tree in trial.trees for name in _renamed(tree)} & self.once
         self.chains = {
             id(node.value): step
             for tree in trial.trees
@@ -116,7 +120,7 @@ class Grounds:
             if name not in self._of_data:
                 self._of_data[name] = self._against_data(name)
             return self._of_data[name]
-        if edit.kind in _SPOILING and id(edit.node) in self.right:
+        if edit.kind in _SPOILING and id(edit.node) in self.right and not _about_the_other(edit):
             return _SPOILED
         whole = edit.changes[0].holder is not edit.node
         if whole and edit.kind in _WHOLLY and id(edit.node) in self.partly:
@@ -132,7 +136,7 @@ class Grounds:
             return -_MEANT
         more = _UNLIKE if self._adds_unlike(edit.changes[0].new) else 0.0
         more += _AGREED if id(edit.node) in self.agreed else 0.0
-        more += _USED if self._where_it_is_used(edit) else 0.0
+        more += _USED * self._where_it_is_used(edit)
         return more + (_TRUSTED if edit.part in self.trusted else 0.0)
 
     def _makes_a_chain(self, edit: ProgramEdit) -> bool:
@@ -167,6 +171,15 @@ class Grounds:
         node, holder = edit.node, edit.changes[0].holder
         if edit.kind not in _OF_THE_WHOLE:
             return False
+        if edit.kind == "sign" and isinstance(node, ast.BinOp):
+            if isinstance(node.op, ast.MatMult):  # ``R @ v`` of a vector that is used once
+                once = node.right.id if isinstance(node.right, ast.Name) else ""
+                return (edit.part, once) in self.worked_out and once in self.once
+            every = (x for term in summands(node) for x in factors(term))
+            return any(isinstance(x, ast.Name) and x.id in self.renamed for x in every)
+        if isinstance(holder, ast.Assign) and isinstance(node, ast.Name):
+            if any(isinstance(x, ast.Name) and x.id in self.renamed for x in holder.targets):
+                return False  # another name for it
         while isinstance(node, ast.Call) and len(node.args) == 1:  # ``wrap(t4)``
             node, holder = node.args[0], node
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:
@@ -371,6 +384,20 @@ def _worked_out(tree: ast.AST) -> set[str]:
         for one, what in pairs
         if isinstance(one, ast.Name) and not isinstance(what, ast.Constant) and given[one.id] == 1
     }
+
+
+def _renamed(tree: ast.AST) -> set[str]:
+    """Names of what has another name too: ``c112 = h``."""
+    lines = (node for node in nodes(tree) if isinstance(node, ast.Assign))
+    pairs = (pair for line in lines for pair in paired(line.targets[0], line.value))
+    every = ((one, what) for one, what in pairs if isinstance(what, ast.Name))
+    return {one.id for one, _what in every if isinstance(one, ast.Name)}
+
+
+def _about_the_other(edit: ProgramEdit) -> bool:
+    """Whether a rod's moment of inertia becomes that about its middle, or about its end."""
+    both = getattr(edit.node, "value", None), edit.changes[0].new
+    return edit.kind == "number" and both in ((3, 12), (12, 3))
 
 
 def _are_flags(seen: Seen | None) -> bool:

@@ -84,7 +84,8 @@ class ProgramNumber:
         place: where it is.
         value: what it is.
         alone: whether it stands for itself, and may be the arm's.
-        given: whether it is given on as it is, and may be a plain number as well.
+        given: whether it is given on as it is, or raised to a power: it may be a plain number as
+            well, or one that has a name, too.
         below: whether the place is what pi or a number is divided by.
         used: whether the program names it, and not the arm's table alone.
     """
@@ -234,6 +235,8 @@ def numbers_of(trial: Trial, observed: Observed) -> Iterator[ProgramNumber]:
     plain = {id(node): node for tree in trial.trees for node in _alone(tree, made)}
     calls = [node for tree in trial.trees for node in nodes(tree) if isinstance(node, ast.Call)]
     given = {id(one) for call in calls for one in call.args if called(call) not in SIZES}
+    raised = (one for tree in trial.trees for one in nodes(tree) if isinstance(one, ast.BinOp))
+    given |= {id(one.left) for one in raised if isinstance(one.op, ast.Pow)}  # 0.5**2
     below = {id(node.right): node for node in plain.values() if isinstance(node, ast.BinOp)}
     idle = [leaf for name in unused(trial) for leaf in leaves_of(trial, name)]
     alone_idle = {leaf.node for leaf in idle if not leaf.place}

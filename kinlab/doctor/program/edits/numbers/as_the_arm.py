@@ -16,7 +16,7 @@ from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
 from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves, together
 from kinlab.doctor.program.observed import Observed
-from kinlab.doctor.program.places import DATA, ProgramEdit, number
+from kinlab.doctor.program.places import DATA, ProgramEdit, called, number
 from kinlab.doctor.program.trial import FieldChange, Trial
 from kinlab.model.dh import DHTable
 from kinlab.symbolic.vocabulary import vocabulary
@@ -45,10 +45,9 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
     if table is None:
         return
     yield from _ends(trial, table)
-    known = vocabulary(table).values
-    for leaf in leaves(trial):
-        if not leaf.place and leaf.node in known and not _same(float(known[leaf.node]), leaf.value):
-            yield leaf.edit(float(known[leaf.node]), "number", _COST)
+    for cell, right in _named(trial, observed, table):
+        if not _same(cell.value, right):
+            yield cell.edit(right)
     off: dict[tuple[Any, int], dict[Any, list[tuple[_Cell, float]]]] = {}
     columns = _columns_of(trial, observed)
     for name, found in columns.items():
@@ -91,11 +90,10 @@ def as_it_is(trial: Trial, observed: Observed, robot: Any) -> Callable[[ProgramE
     table = table_of(robot)
     if table is None:
         return lambda _edit: False
-    known = vocabulary(table).values
     same: set[Any] = set()
-    for leaf in leaves(trial):
-        if not leaf.place and leaf.node in known and _same(float(known[leaf.node]), leaf.value):
-            same.add(((leaf.node,), ()))
+    for cell, right in _named(trial, observed, table):
+        if _same(cell.value, right):
+            same.add(id(cell.node) if cell.place is None else ((cell.place.node,), ()))
     for name, found in _columns_of(trial, observed).items():
         values = [found[i].value for i in sorted(found)]
         told = len(values) == table.n and len({*map(abs, values)}) > 1
@@ -173,27 +171,84 @@ def _column(node: Any, place: tuple[Any, ...]) -> tuple[Any, int | None]:
 
 
 def _columns_of(trial: Trial, observed: Observed) -> dict[Any, dict[int, _Cell]]:
-    """The columns of the tables of a program, each by the row."""
+    """The columns of the tables of a program, each by the row.
+
+    Calls of one function of its own, as many as there are links, are the rows of a table too.
+    """
     found: dict[Any, dict[int, _Cell]] = {}
     for leaf in leaves(trial):
         column, at = _column(leaf.node, leaf.place)
         if at is not None:
             found.setdefault(column, {})[at] = _Cell(float(leaf.value), leaf)
+    own = {part.name for part in trial.program.parts}
     for part, tree in enumerate(trial.trees):
+        rows: dict[str, list[ast.expr]] = {}
+        for call in sorted(_calls(tree), key=lambda one: (one.lineno, one.col_offset)):
+            if called(call) in own:
+                rows.setdefault(called(call), []).append(call)
+        for name, calls in rows.items():
+            for k, row in enumerate(calls):
+                for key, holder, field in _cells(calls, k, row):
+                    cell = _cell(observed, part, holder, field)
+                    if cell is not None:
+                        found.setdefault(((part, name), key), {})[k] = cell
         for table in nodes(tree):
             if isinstance(table, ast.List | ast.Tuple) and isinstance(table.ctx, ast.Load):
                 for k, row in enumerate(table.elts):
                     for key, holder, field in _cells(table.elts, k, row):
-                        node = FieldChange(holder, field, None).now
-                        seen = observed.of(node)
-                        names_ = {one.id for one in nodes(node) if isinstance(one, ast.Name)}
-                        typed = names_ <= {"np", "numpy", "math", "pi"}
-                        typed = typed and all(isinstance(one, _TYPED) for one in nodes(node))
-                        if typed and seen is not None and seen.shape == () and seen.values:
-                            value = float(seen.values[0])
-                            cell = _Cell(value, None, part, holder, field, node)
+                        cell = _cell(observed, part, holder, field)
+                        if cell is not None:
                             found.setdefault((id(table), key), {})[k] = cell
     return found
+
+
+def _calls(tree: ast.AST) -> list[ast.Call]:
+    return [node for node in nodes(tree) if isinstance(node, ast.Call)]
+
+
+def _named(trial: Trial, observed: Observed, table: DHTable) -> Iterator[tuple[_Cell, float]]:
+    """The numbers to which a program gives the arm's own names, each with what the arm has."""
+    words = vocabulary(table)
+    sums = {
+        name: sum(float(share) * float(words.values[part]) for share, part in parts)
+        for name, parts in words.others.items()
+        if all(part in words.values for _share, part in parts)
+    }
+    known = {name: value for name, value in sums.items() if value}  # of rods: lc1 = l1/2
+    known |= {name: float(value) for name, value in words.values.items()}
+    for leaf in leaves(trial):
+        if not leaf.place and leaf.node in known:
+            yield _Cell(float(leaf.value), leaf), known[leaf.node]
+    for part, tree in enumerate(trial.trees):
+        for line in (node for node in nodes(tree) if isinstance(node, ast.Assign)):
+            for name, holder, field in _given(line):
+                cell = _cell(observed, part, holder, field) if name in known else None
+                if cell is not None:
+                    yield cell, known[name]
+
+
+def _given(line: ast.Assign) -> Iterator[tuple[str, Any, Any]]:
+    """The names that a statement sets, each with where its value hangs."""
+    target, value = line.targets[0], line.value
+    if isinstance(target, ast.Name):
+        yield target.id, line, "value"
+    elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+        for k, one in enumerate(target.elts[: len(value.elts)]):
+            if isinstance(one, ast.Name):
+                yield one.id, value.elts, k
+
+
+def _cell(observed: Observed, part: int, holder: Any, field: Any) -> _Cell | None:
+    """What stands at a place, if it is a number as somebody types it."""
+    node = FieldChange(holder, field, None).now
+    seen = observed.of(node)
+    names_ = {one.id for one in nodes(node) if isinstance(one, ast.Name)}
+    plain = names_ <= {"np", "numpy", "math", "pi"}
+    if not plain or not all(isinstance(one, _TYPED) for one in nodes(node)):
+        return None
+    if seen is None or seen.shape != () or not seen.values:
+        return None
+    return _Cell(float(seen.values[0]), None, part, holder, field, node)
 
 
 _TYPED = (

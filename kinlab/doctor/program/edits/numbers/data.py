@@ -50,6 +50,10 @@ def of_data(trial: Trial) -> Iterator[ProgramEdit]:
         value = trial.space[name]
         for new, kind in _whole(value):
             yield ProgramEdit(DATA, (FieldChange(trial.space, name, new),), kind, 1.1, name)
+        for key, row in value.items() if isinstance(value, dict) else ():
+            for new, kind in _whole(row):
+                change = FieldChange(value, key, new)
+                yield ProgramEdit(DATA, (change,), kind, 1.1, name, (key,))
         yield from _exchanged(name, value, (), trial.space, name)
     yield from _kinds_of_joints(trial)
     for held in trial.bound:
@@ -269,7 +273,8 @@ def _is_plain(value: Any) -> bool:
 def _whole(value: Any) -> Iterator[tuple[Any, str]]:
     """All of a table otherwise."""
     if isinstance(value, np.ndarray) and value.dtype.kind in "fi" and value.size:
-        yield -value, "sign"
+        if not (value > 0).all():  # lengths and masses
+            yield -value, "sign"
         yield np.radians(value), "degrees"
         if value.ndim == 2:
             yield value.T, "transposed"
