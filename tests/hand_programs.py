@@ -462,7 +462,7 @@ _SLIPS = (_sign, _sign, _function, _digit, _index, _shifted, _power, _transpose,
 _LINE = re.compile(r"after line (?P<line>\d+)(?: \(in \w+\))?, a line is missing: `(?P<new>[^`]*)`")
 _SAID = re.compile(
     r"line (?P<line>\d+)(?: of \S+)?(?: \(in (?P<part>\w+)\))?, "
-    r"(?:[^`:]*: `(?P<old>[^`]*)` should be `(?P<new>[^`]*)`"
+    r"(?:[^`]*: `(?P<old>[^`]*)` should be `(?P<new>[^`]*)`"
     r"|`(?P<moved>[^`]*)`: [^;`]*; it should stand (?P<side>before|after) line (?P<to>\d+)"
     r"|`(?P<dropped>[^`]*)`: the line is one too many)"
 )

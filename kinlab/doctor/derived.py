@@ -356,7 +356,7 @@ def _with_wrench(a: SymbolicArm) -> SymbolicArm:
 
 
 def _planar_angle(table: DHTable) -> Derivation | None:
-    """The sum of the joint positions, which stand in it themselves; None where it is no such sum."""
+    """The sum of the joint positions, which stand in it themselves; None where it is none."""
     turned = any(link.theta for link in table.links) or not np.array_equal(table.base, np.eye(4))
     if turned or not is_planar(table):
         return None

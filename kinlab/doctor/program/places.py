@@ -133,7 +133,7 @@ _NUMBERED = re.compile(r"([^\W\d]+)(\d+)")
 
 
 def follow(one: ast.expr, other: ast.expr) -> bool:
-    """Whether two are one thing's that follow on one another: ``q[0]`` and ``q[1]``, th1 and th2."""
+    """Whether two follow on one another: ``q[0]`` and ``q[1]``, th1 and th2."""
     at: list[Any] = []
     if isinstance(one, ast.Name) and isinstance(other, ast.Name):
         found = [_NUMBERED.fullmatch(x.id) for x in (one, other)]

@@ -219,8 +219,8 @@ def _call(line: Line, place: Place, node: ast.Call) -> None:
         mapped = {w: _meaning(line, w) for w in tree.names(inside)}
         _wave(line, place, tree.call(name, tree.renamed(inside, mapped)))
     elif name == "sqrt":
-        inside = line.siblings[id(place)][0]
-        line.instead(place, f"({line.segment(inside)})", inside.value, "power", 1.3)
+        root = line.siblings[id(place)][0]
+        line.instead(place, f"({line.segment(root)})", root.value, "power", 1.3)
     elif tree.SYNONYMS.get(name, name) == "atan2":
         y, x = line.siblings[id(place)]
         turned = f"{name}({line.segment(x)}, {line.segment(y)})"

@@ -105,8 +105,9 @@ def quantity_of(entry: str, table: DHTable | None) -> str:
         return _NUMBER_OF[entry.replace("_", "")]
     if planar and entry in _ANGLES:
         return "planar_angle"
-    if planar and len(table.links) in _DETERMINANTS and _DETERMINANT.fullmatch(entry):
-        return _DETERMINANTS[len(table.links)]
+    count = len(table.links) if table is not None and planar else 0
+    if count in _DETERMINANTS and _DETERMINANT.fullmatch(entry):
+        return _DETERMINANTS[count]
     turning = _TURNING.fullmatch(entry)
     if turning:
         return f"jacobian[{int(turning.group(1)) + 2},{int(turning.group(2)) - 1}]"

@@ -248,8 +248,8 @@ def _cross_products(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
     own = ast.unparse(here.node)
     for both in scope.pieces_here(_VECTOR).values():  # of w = R.T @ w + qd*z
         if isinstance(both, ast.BinOp) and isinstance(both.op, ast.Add) and _begins_turned(both):
-            product = ast.Call(scope.cross, [both.left, both.right], [])
-            new = ast.BinOp(here.node, ast.Add(), product)
+            across = ast.Call(scope.cross, [both.left, both.right], [])
+            new = ast.BinOp(here.node, ast.Add(), across)
             yield here.instead(new, "missing term", _OF_SUMMANDS)
     for rate in rates:
         for vector in vectors[: 2 * _FEW]:

@@ -46,8 +46,8 @@ def of_statement(here: Here, scope: Scope, observed: Observed) -> Iterator[Progr
             if all(id(node) in angles for node in uses[text]) and _is_given(here, uses[text][0]):
                 for _other, node in scope.simple(()):
                     if follow(node, uses[text][0]):
-                        both = sorted((node, uses[text][0]), key=ast.unparse)
-                        angle = ast.BinOp(both[0], ast.Add(), both[1])
+                        first, last = sorted((node, uses[text][0]), key=ast.unparse)
+                        angle = ast.BinOp(first, ast.Add(), last)
                         new = _Renamed({text: angle}).of(value)
                         yield here.within(here.node, "value", new, "argument", _ANGLES)
             for other, node in scope.simple(shapes[text] or ()):

@@ -507,6 +507,17 @@ def _moved(here: Here, holder: Any, field: Any, key: ast.Slice) -> Iterator[Prog
         yield here.within(holder, field, ast.Slice(number(1), None, None), "index", 1.08)
 
 
+def _beside(key: ast.Slice) -> ast.Slice | None:
+    """As many rows above, or below the first ones: ``0:3`` for ``3:6``."""
+    if key.lower is None or key.upper is None:
+        return None
+    if not whole_constant(key.lower) or not whole_constant(key.upper):
+        return None
+    first, behind = value_of(key.lower), value_of(key.upper)
+    other = behind if first == 0 else 2 * first - behind
+    return ast.Slice(number(other), number(other + behind - first), None) if other >= 0 else None
+
+
 def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdit]:
     """Other rows, and indices in another order: of what is read, or where a value is put."""
     for holder, field, key in keys_of(node):
@@ -515,12 +526,8 @@ def of_keys(here: Here, node: ast.Subscript, cost: float) -> Iterator[ProgramEdi
                 yield here.within(holder, field, ast.Slice(key.upper, None, None), "rows", cost)
             elif key.upper is None and key.lower is not None:
                 yield here.within(holder, field, ast.Slice(None, key.lower, None), "rows", cost)
-            elif whole_constant(key.lower) and whole_constant(key.upper):
-                first, behind = value_of(key.lower), value_of(key.upper)
-                other = behind if first == 0 else 2 * first - behind
-                if other >= 0:  # ``3:6`` and ``0:3``
-                    moved = ast.Slice(number(other), number(other + behind - first), None)
-                    yield here.within(holder, field, moved, "rows", cost)
+            elif (moved := _beside(key)) is not None:
+                yield here.within(holder, field, moved, "rows", cost)
             ends = (key.lower, key.upper)
             yield from _moved(here, holder, field, key)
             if ends[0] is None and ends[1] is not None and shifted(ends[1]):
@@ -658,7 +665,7 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
             power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
             kind = "power" if power else "number"
             cost = 1.08 if power else 1.18
-            if power and isinstance(here.parent.left, ast.Constant):
+            if power and isinstance(getattr(here.parent, "left", None), ast.Constant):
                 cost = 1.25  # 0.25**2: nobody means another power of a number
             yield here.within(here.node, "value", new, kind, cost)
 

@@ -193,6 +193,7 @@ class Scope:
         self._of_idle_attributes(parts[part])
         self._of_siblings(trial)
         self._of_idle_joints(trial, part)
+        self._of_idle_rows(trial, part)
         self._of_idle_functions(trial, part)
         if self.has_numpy:
             for size in _SQUARES & self.pieces.keys():
@@ -288,6 +289,28 @@ class Scope:
                 made = ast.Call(call.func, args, call.keywords)
                 if entry in args:
                     self.idle.append((self.observed.shape(call) or (), made))
+
+    def _of_idle_rows(self, trial: Trial, part: int) -> None:
+        """Entries that nothing uses of a list whose others are used one by one: ``P[2]``."""
+        tree = trial.trees[part]
+        lines = (node for node in nodes(tree) if isinstance(node, ast.Assign))
+        rows = {
+            line.targets[0].id: [self.observed.shape(one) for one in line.value.elts]
+            for line in lines
+            if isinstance(line.targets[0], ast.Name) and isinstance(line.value, ast.List)
+        }
+        within: dict[str, Sequence[ast.AST]] = {name: [tree] for name in rows}
+        for name in trial.program.data:
+            value = trial.space[name]
+            if isinstance(value, list | tuple) and name not in rows:
+                rows[name], within[name] = [_shape(one) for one in value], trial.trees
+        for name, shapes in rows.items():
+            idle = [_idle_of(one, name, (len(shapes),)) for one in within[name]]
+            for k in set(idle[0]).intersection(*idle) if len(shapes) <= _JOINTS else ():
+                entry = ast.Subscript(ast.Name(name, ast.Load()), ast.Constant(k), ast.Load())
+                if (shape := shapes[k]) is not None:
+                    self.pieces.setdefault(shape, {}).setdefault(ast.unparse(entry), entry)
+                    self.idle_entries.add(ast.unparse(entry))
 
     def _of_idle_functions(self, trial: Trial, part: int) -> None:
         """Calls of the program's own functions that nothing calls, with what is at hand."""

@@ -177,9 +177,9 @@ class Grounds:
                 return (edit.part, once) in self.worked_out and once in self.once
             every = (x for term in summands(node) for x in factors(term))
             return any(isinstance(x, ast.Name) and x.id in self.renamed for x in every)
-        if isinstance(holder, ast.Assign) and isinstance(node, ast.Name):
-            if any(isinstance(x, ast.Name) and x.id in self.renamed for x in holder.targets):
-                return False  # another name for it
+        targets = holder.targets if isinstance(holder, ast.Assign) else []
+        if any(isinstance(one, ast.Name) and one.id in self.renamed for one in targets):
+            return False  # another name for it
         while isinstance(node, ast.Call) and len(node.args) == 1:  # ``wrap(t4)``
             node, holder = node.args[0], node
         if isinstance(node, ast.Name) and (edit.part, node.id) in self.worked_out:

@@ -25,12 +25,15 @@ from kinlab.doctor.program.places import (
     Spot,
     called,
     hanging,
+    root,
     with_other,
 )
 from kinlab.doctor.program.trial import FieldChange, Trial
 
 _SIMPLE = ast.Assign | ast.AugAssign | ast.AnnAssign | ast.Return | ast.Expr
 """Statements whose expressions are asked."""
+_NUMPY = ("np", "numpy")
+"""Names of the library whose ``append`` writes into nothing."""
 _COUNTS = ("range", "len", "isinstance", "sorted", "map", "next")
 """Calls that no number with lanes can be given."""
 _RUNS = ("enumerate", "zip", "reversed")
@@ -220,7 +223,8 @@ class Woven:
         if top is None or not isinstance(new, ast.expr):
             return None
         parts = [*nodes(new), *nodes(_at(spot))]
-        writes = any(isinstance(node, ast.Call) and called(node) in WRITES for node in parts)
+        calls = (node for node in parts if isinstance(node, ast.Call))
+        writes = any(called(one) in WRITES and root(one.func) not in _NUMPY for one in calls)
         return None if writes else (spot, new)
 
     def _outside(self, spot: Spot, new: Any) -> tuple[ast.AST, ast.AST, Spot]:
@@ -289,6 +293,8 @@ class Woven:
             runs = isinstance(parent, ast.For)
             return not runs if seen.shape else isinstance(parent, ast.List)
         numeric = seen is not None and seen.shape is not None
+        if isinstance(node, ast.Tuple | ast.List) and isinstance(parent, ast.Call):
+            numeric = numeric or called(parent) in WRITES  # put at the end of a list as it is
         return numeric or isinstance(node, _LISTS) or isinstance(parent, ast.stmt)
 
     def _of_statement(self, now: ast.stmt, new: Any) -> tuple[Spot, ast.expr] | None:
