@@ -16,6 +16,7 @@ from kinlab.doctor.confusions.robots import with_gravity
 from kinlab.doctor.numbers import rounded_robots
 from kinlab.doctor.text.meanings import CLOSE, RODS, Meanings, exact_angle, stands_for
 from kinlab.doctor.text.written import Literal, Written, literal
+from kinlab.errors import KinlabError
 from kinlab.formulas import tree
 from kinlab.formulas.tree import Node
 from kinlab.host.language import _
@@ -105,7 +106,10 @@ def gravity_rounded(case: Case, engine: Array, whole: bool = True) -> tuple[str,
     size = float(np.linalg.norm(g))
     if not size or case.hand.shape != engine.shape or not np.isfinite(case.hand).all():
         return None
-    none = replace(case, robot=weightless(case.robot)).answer(())
+    try:
+        none = replace(case, robot=weightless(case.robot)).answer(())
+    except KinlabError:  # what a URDF of the arm is asked for
+        return None
     weight, rest = engine - none, case.hand - none
     total = float(np.sum(weight * weight))
     if total <= 0:

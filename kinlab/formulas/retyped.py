@@ -71,7 +71,7 @@ class Typing:
         if self._same_text:
             return text
         goal = _values(text)
-        lines = (*self._lines(text), self._retold(text), self._anew(text))
+        lines = (*map(_rooted, self._lines(text)), self._retold(text), self._anew(text))
         return next((line for line in lines if self._reads_as(line, goal)), text)
 
     def piece(self, text: str) -> str:
@@ -218,7 +218,7 @@ class Typing:
     def _latex(self) -> bool:
         plain = re.search(r"[A-Za-z]{3,}_?\d|cos\(|sin\(", self.typed)  # theta_1, sin(q1)
         beside = re.search(r"_\w|[A-Za-z]\s+[A-Za-z]", self.typed)
-        return is_latex(self.typed) or bool(beside and not plain)
+        return is_latex(self.typed) or bool(beside and not plain and "*" not in self.typed)
 
     @cached_property
     def _times(self) -> str:
@@ -267,7 +267,7 @@ class Typing:
 
     def _retold(self, text: str) -> str:
         """A formula that the writer has not, as he would type it."""
-        shown = self._written([token for token, _, _ in _tokens(text)])
+        shown = _rooted(self._written([token for token, _, _ in _tokens(text)]))
         return _HALF.sub(r"\\frac{\1}{\2}", shown).strip() if self._latex else shown
 
     @cached_property
@@ -318,6 +318,20 @@ class Typing:
             return typeset.latex(parse(text))
         except KinlabError:
             return text
+
+
+def _rooted(text: str) -> str:
+    r"""Roots with braces, as LaTeX has them: ``\sqrt{x}`` for ``\sqrt(x)``."""
+    while (found := text.find(r"\sqrt(")) >= 0:
+        opened = found + len(r"\sqrt")
+        depth, closed = 0, len(text)
+        for k in range(opened, len(text)):
+            depth += (text[k] == "(") - (text[k] == ")")
+            if not depth:
+                closed = k
+                break
+        text = f"{text[:opened]}{{{text[opened + 1 : closed]}}}{text[closed + 1 :]}"
+    return text
 
 
 def _tokens(text: str) -> list[tuple[str, int, int]]:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import kinlab as kl
+from kinlab.check.quantities.registry import quantities
 
 ARM = kl.load("spatial3r")
 
@@ -241,3 +242,31 @@ def test_the_opposite_of_a_sum_is_written_without_a_sign_before_its_sign() -> No
 
     said = kl.diagnose("planar2r", "jacobian", jacobian).causes[0].sentence
     assert "it has l1*sin(q1) + l2*sin(q1 + q2) where the engine has -l1*sin(q1) - l2*" in said
+
+
+_ARMS = {"serial": "planar3r", "fivebar": "isotropic"}
+_OF_TWO = (
+    "planar_position_determinant", "orthogonal_columns_cosine", "equal_columns_cosine",
+    "isotropic_jacobian",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        n
+        for n, one in quantities().items()
+        if one.domain.name in _ARMS and one.read is None and not n.startswith("action")
+    ],
+)
+def test_a_wrong_function_of_any_quantity_is_no_error(name) -> None:
+    quantity = quantities()[name]
+    robot = "planar2r" if name in _OF_TWO else _ARMS[quantity.domain.name]
+    robot = "single_link" if name == "excess_action_sign" else robot
+    mechanism = quantity.domain.load(robot)
+
+    def wrong(*state):
+        right = quantity.engine(mechanism, *(np.asarray(one)[None] for one in state))[0]
+        return 0.83 * np.asarray(right) + np.cos(np.arange(np.size(right))).reshape(np.shape(right))
+
+    assert not kl.diagnose(robot, name, wrong, samples=10).agrees

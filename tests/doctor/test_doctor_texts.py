@@ -244,3 +244,42 @@ def test_of_distances_those_of_the_formula_are_told(tmp_path) -> None:
     found = {one.function: one for one in examine_file(sheet)}
     assert [told.partition(" ")[0] for told in found["G2"].remarks] == ["lc2"]
     assert not found["M11"].agrees
+
+
+@pytest.mark.parametrize(
+    ("robot", "entry", "typed", "told", "right"),
+    [
+        (
+            "planar2r",
+            "g2",
+            r"m_2 g l_1 \sin(90^\circ - \theta_1 - \theta_2)",
+            "l_1 should be l_2",
+            r"m_2 g l_2 \sin(90^\circ - \theta_1 - \theta_2)",
+        ),
+        (
+            "planar2r",
+            "M22",
+            r"\frac{1}{2} m_2 l_2^2",
+            r"the factor \frac{1}{2} does not belong",
+            "m_2 l_2^2",
+        ),
+        (
+            "isotropic",
+            "T_max1",
+            r"(G_{11}^2 + G_{12}^2) a_{\max}",
+            r"should be \sqrt{G_{11}^2 + G_{12}^2}",
+            r"\sqrt{G_{11}^2 + G_{12}^2} a_{\max}",
+        ),
+        (
+            "isotropic",
+            "T_max1",
+            "(G11^2 + G12^2)*a_max",
+            "should be sqrt(G11^2 + G12^2)",
+            "sqrt(G11^2 + G12^2)*a_max",
+        ),
+    ],
+)
+def test_a_corrected_formula_is_typed_as_its_writer_does(robot, entry, typed, told, right) -> None:
+    cause = kl.diagnose(robot, entry, typed).causes[0]
+    assert told in cause.sentence
+    assert cause.shown[entry] == right

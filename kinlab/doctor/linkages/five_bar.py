@@ -350,7 +350,7 @@ def parameters_or_zero(quantity: str) -> tuple[str, ...]:
     """The names of numbers that a quantity's formula may have."""
     if is_of_servo(quantity):
         return ()
-    moving = READ[quantity][0] > 0
+    moving = quantity not in READ or READ[quantity][0] > 0
     return tuple(n for n in _NUMBERS if moving or n not in _DYNAMIC)
 
 

@@ -298,7 +298,8 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
             place, N_("/{factor} does not belong"), N_("/{factor} does not belong in {term}")
         )
         span = (at, end, "")
-        line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
+        if not _is_share(place, left):
+            line.edit(place, left.value, span, "factor", 1.25, told, pieces | {"factor": second})
         _as_fraction(line, place, left, right)
         _upside_down(line, place, left, right)
         line.instead(place, f"{first}*{second}", left.value * right.value, "factor", 1.4)
@@ -317,6 +318,13 @@ def _operation(line: Line, place: Place, node: ast.BinOp) -> None:
     ):
         kind = "factor" if isinstance(gone.node, ast.Constant) else "extra factor"
         line.edit(place, kept.value, span, kind, 1.3, told, pieces | {"factor": factor})
+
+
+def _is_share(place: Place, left: Place) -> bool:
+    """Whether a quotient is ``1/2`` in front of something: a factor of its own."""
+    above = place.above.node if place.above is not None else None
+    product = isinstance(above, ast.BinOp) and isinstance(above.op, ast.Mult)
+    return product and isinstance(left.node, ast.Constant) and left.node.value == 1
 
 
 def _upside_down(line: Line, place: Place, left: Place, right: Place) -> None:
@@ -379,8 +387,10 @@ def _as_factor(line: Line, place: Place) -> None:
                 new = f"{word}*{wrapped}" if alone else f"({word}*{wrapped})"
                 line.instead(place, new, place.value * value**power, "missing factor", 1.5 + more)
     if whole and not (place.above is not None and isinstance(place.above.node, ast.Call)):
+        opened = line.source.rindex("(", 0, place.span[0]) if _in_brackets(line, place) else -1
         with np.errstate(all="ignore"):
-            line.instead(place, f"sqrt({piece})", np.sqrt(place.value), "power", 1.35)
+            span = None if opened < 0 else (opened, opened, "sqrt")
+            line.instead(place, f"sqrt({piece})", np.sqrt(place.value), "power", 1.35, span)
     if not is_term(place):
         return
     start, end = place.span

@@ -253,7 +253,20 @@ class _Reader:
 
     def power(self) -> str:
         text = self.atom()
-        return text + _raised(self.argument()) if self.raised() else text
+        if not self.raised():
+            return text
+        if _PLAIN.fullmatch(text) and self.degrees():
+            return f"({text}*pi/180)"
+        return text + _raised(self.argument())
+
+    def degrees(self) -> bool:
+        r"""Whether a degree sign is next, as ``^\circ`` or in braces; takes it."""
+        for signs in ([r"\circ"], ["{", r"\circ", "}"]):
+            if self.tokens[self.at : self.at + len(signs)] == signs:
+                for sign in signs:
+                    self.take(sign)
+                return True
+        return False
 
     def raised(self) -> bool:
         if self.next == "^":

@@ -97,7 +97,7 @@ for i in outward:
         _LOOP
         + """
     # the crank's inertia about its base pin
-    IA[i] = Ic[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
+    IA[i] = Iz[i] + mc[i]*cc[i]**2 + Im[i]*j[i]**2
 Jm = columns(J).T
 # the load's inertia
 E = columns(IA) + m*norm(inv(Jm).T)**2
