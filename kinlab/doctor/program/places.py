@@ -132,13 +132,19 @@ def paired(target: ast.expr, value: ast.expr) -> Iterator[tuple[ast.expr, ast.ex
 _NUMBERED = re.compile(r"([^\W\d]+)(\d+)")
 
 
+def numbered(node: ast.expr) -> tuple[str, int] | None:
+    """The letters and the number of a name: of ``m3``."""
+    found = _NUMBERED.fullmatch(node.id) if isinstance(node, ast.Name) else None
+    return None if found is None else (found[1], int(found[2]))
+
+
 def follow(one: ast.expr, other: ast.expr) -> bool:
     """Whether two follow on one another: ``q[0]`` and ``q[1]``, th1 and th2."""
     at: list[Any] = []
     if isinstance(one, ast.Name) and isinstance(other, ast.Name):
-        found = [_NUMBERED.fullmatch(x.id) for x in (one, other)]
-        at = [int(x[2]) for x in found if x]
-        same = len({x[1] for x in found if x}) == 1
+        found = [x for x in map(numbered, (one, other)) if x is not None]
+        at = [number_ for _letters, number_ in found]
+        same = len({letters for letters, _number in found}) == 1
     elif isinstance(one, ast.Subscript) and isinstance(other, ast.Subscript):
         at = [getattr(x.slice, "value", None) for x in (one, other)]
         same = ast.dump(one.value) == ast.dump(other.value)

@@ -264,7 +264,7 @@ class LineSearch:
         ending = (isinstance(one, _ENDING) for tree in self.trial.trees for one in nodes(tree))
         self.longer = _LONGER if any(ending) else 1
         self.evidence = Grounds(self.trial, self.observed, self.known)
-        self._others = self._other_arms()
+        self._others = self._other_arms(self.observed)
         self._there: dict[OtherArm, LineSearch | None] = {}
         alike = self.case.quantity.name in _TORQUES
         self.dimensions = Dimensions(
@@ -478,7 +478,7 @@ class LineSearch:
                 return [*held, *(one for one in found[_HELD:])]
         return found
 
-    def _other_arms(self) -> tuple[OtherArm | None, OtherArm | None]:
+    def _other_arms(self, observed: Observed) -> tuple[OtherArm | None, OtherArm | None]:
         """An arm whose numbers are unrelated, and one that is larger as a whole.
 
         A program that rounds need not be right for any other.
@@ -487,7 +487,7 @@ class LineSearch:
         if any(isinstance(node, ast.Call) and called(node) in ROUNDING for node in every):
             return None, None
         masses = self.case.quantity.name not in _KINEMATIC
-        asked = self.case.robot, self.trial, self.observed, masses
+        asked = self.case.robot, self.trial, observed, masses
         return arm_apart(*asked), other_arm(*asked)
 
     def _arms(self, several: tuple[ProgramEdit, ...]) -> tuple[OtherArm | None, OtherArm | None]:
@@ -497,7 +497,10 @@ class LineSearch:
         if not sets or not any(self._others):
             return self._others
         self.work += _ARMS
-        return self._other_arms()
+        try:  # a number that was put in is one of the program's
+            return self._other_arms(Observed(self.trial, self.states))
+        except FailedError:
+            return self._other_arms(self.observed)
 
     def _holds(self, other: OtherArm) -> bool:
         """Whether the program as it stands now is right for another arm."""
@@ -546,7 +549,7 @@ class LineSearch:
 
     def _counts(self, edit: ProgramEdit) -> bool:
         """Whether an edit is of a whole number in the text, a factor: of none of the arm's."""
-        return id(edit.node) in self._whole
+        return id(edit.node) in self._whole and not edit.of_the_arm
 
     def _sets_a_number(self, edit: ProgramEdit) -> bool:
         """Whether an edit gives the program a number that may be this arm's."""
@@ -812,7 +815,7 @@ def _makes_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
 def _moves_one_of(rows: list[Array], edit: ProgramEdit) -> bool:
     """Whether numbers that stand as the robot has them would be exchanged in their row."""
     row = edit.node
-    if edit.kind not in ("entries swapped", "reversed", "shifted"):
+    if edit.kind not in ("entries swapped", "reversed", "shifted") or edit.of_the_arm:
         return False
     if edit.part == DATA:
         values = edit.changes[0].holder if isinstance(edit.changes[0].holder, list) else []

@@ -14,7 +14,7 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.check.compare import relative_errors
 from kinlab.check.diagnosis import Cause
-from kinlab.doctor.bytecode.syntax import nodes
+from kinlab.doctor.bytecode.syntax import factors, nodes
 from kinlab.doctor.changes import Case, table_of
 from kinlab.doctor.program.cuts import cuts
 from kinlab.doctor.program.digits import of_rounded_numbers
@@ -382,7 +382,7 @@ def _of_statement(statement: ast.stmt, several: list[ProgramEdit], trial: Trial)
     """What is wrong in several places of one statement."""
     old = _text(statement)
     with changed(trial, tuple(several)):
-        new = _text(statement)
+        new = _flat(_text(statement), old)
     what = _("; ").join(dict.fromkeys(_(_WHAT[edit.kind]) for edit in several))
     told = _("{place}, {what}: `{old}` should be `{new}`")
     place = _line(replace(several[0], node=statement), trial)
@@ -440,9 +440,58 @@ def _pieces(edit: ProgramEdit, trial: Trial) -> tuple[str, str]:
                 before = before[:1]
     pairs = [(one, other) for one, other in zip(before, after, strict=True) if one != other]
     short = [pair for pair in pairs if max(map(len, pair)) <= _WIDE]
-    if short:
-        return short[-1]
-    return pairs[0] if pairs else (before[0], after[0])
+    old, new = short[-1] if short else pairs[0] if pairs else (before[0], after[0])
+    return old, _flat(new, old)
+
+
+def _flat(new: str, old: str) -> str:
+    """A piece with signs and factors of products as people type them: ``-2*a*b`` for ``2*(-a*b)``.
+
+    One that had such parentheses before keeps them.
+    """
+    try:
+        tree, before = ast.parse(new), ast.parse(old)
+    except SyntaxError:  # the head of a loop
+        return new
+    if any(map(_in_front, nodes(before))) or not any(map(_in_front, nodes(tree))):
+        return new
+    return _text(_Flat().visit(tree).body[0])
+
+
+def _in_front(node: ast.AST) -> bool:
+    """Whether it is a number times a product in parentheses, or a minus in front of one."""
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        parts = factors(node.operand)
+        return len(parts) > 1 and not isinstance(parts[0], ast.Constant | ast.UnaryOp)
+    if not isinstance(node, ast.BinOp) or not isinstance(node.op, ast.Mult):
+        return False
+    parts = factors(node.right)
+    number = isinstance(node.left, ast.Constant) and not isinstance(parts[0], ast.Constant)
+    return number and len(parts) > 1
+
+
+class _Flat(ast.NodeTransformer):
+    def visit_UnaryOp(self, node: ast.UnaryOp) -> ast.expr:
+        self.generic_visit(node)
+        if not _in_front(node):
+            return node
+        first, *rest = factors(node.operand)
+        flat: ast.expr = ast.UnaryOp(node.op, first)
+        for one in rest:
+            flat = ast.BinOp(flat, ast.Mult(), one)
+        return flat
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.expr:
+        self.generic_visit(node)
+        if not _in_front(node):
+            return node
+        first, *rest = factors(node.right)
+        flat: ast.expr = node.left
+        if isinstance(first, ast.UnaryOp) and isinstance(first.op, ast.USub):
+            flat, first = ast.UnaryOp(ast.USub(), flat), first.operand
+        for one in (first, *rest):
+            flat = ast.BinOp(flat, ast.Mult(), one)
+        return flat
 
 
 def _after(edit: ProgramEdit) -> str:

@@ -9,19 +9,30 @@ from math import pi
 from kinlab.doctor.bytecode.syntax import copied, names, nodes
 from kinlab.doctor.program.edits.scope import Scope, Turned, statement_of, stem_of, summands
 from kinlab.doctor.program.observed import Shape
-from kinlab.doctor.program.places import ANGLES, Here, ProgramEdit, called, follow, number, root
+from kinlab.doctor.program.places import (
+    ANGLES,
+    Here,
+    ProgramEdit,
+    called,
+    follow,
+    number,
+    numbered,
+    root,
+)
 
 ENTRIES = ast.Name | ast.Subscript | ast.Attribute
 _ODD = 0.04
 """What a factor costs more of what is only passed on, or has a number in front."""
 _GIVEN = 0.06
-"""What it costs more to transpose what a line only returns."""
+"""What it costs more to transpose what a line only returns, or a sum."""
 _NEAR = 0.06
 """What a matrix costs more that stands in front of another vector of the line."""
 _TURNING = 0.1
 """The same of one that stands in front of another vector of the part."""
 _BESIDE = 0.04
 """The same of a term that stands in the line beside, of what is called alike."""
+_FEW_MASSES = 2
+"""Masses of which a sum is tried anyway."""
 _NEXT_ANGLE = 1.08
 """Cost of the angle of the joint before, or next, in a sum: c12 for c2."""
 _DIVIDED = 1.07
@@ -163,7 +174,8 @@ def _matrices(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit]:
         passed = isinstance(node, ast.Call) and root(node.func) not in ("np", "numpy")
         passed = passed or isinstance(node, ast.Name)
         given = isinstance(here.parent, ast.Return) and passed
-        cost = 1.04 + _GIVEN * given
+        whole = isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+        cost = 1.04 + _GIVEN * (given or whole)
         yield here.instead(ast.Attribute(node, "T", ast.Load()), "transposed", cost)
     if isinstance(here.parent, ast.Subscript) and here.field == "value" and len(shape) > 2:
         return
@@ -210,6 +222,8 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
         yield here.instead(ast.BinOp(node, ast.Pow(), number(2)), "power", 1.08)
     if term:
         yield from _two_factors(here, scope)
+    if operated:
+        yield from _masses_behind(here, scope)
     for text, scalar in scope.pieces_here(()).items():
         if text == own or isinstance(scalar, ast.BinOp | ast.UnaryOp):
             continue
@@ -228,6 +242,21 @@ def _scalars(here: Here, scope: Scope, term: bool, operated: bool) -> Iterator[P
             for op, cost in ((ast.Add(), 1.0), (ast.Sub(), 1.05)):
                 new = ast.BinOp(node, op, scalar)
                 yield here.instead(new, "missing term", cost + dear)
+
+
+def _masses_behind(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """All the masses that a link carries: ``m3 + m4 + m5`` for ``m3``, or for ``m3 + m4``."""
+    summed = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Add | ast.Sub)
+    given = [numbered(one) for one in summands(here.node)]
+    heads = {one[0] for one in given if one is not None}
+    if summed or None in given or len(heads) > 1 or not heads <= {"m", "M"}:
+        return
+    known, (head,) = scope.pieces_here(()), heads
+    new, count, last = here.node, 0, max(one[1] for one in given if one is not None)
+    while (name := f"{head}{last + count + 1}") in known:
+        new, count = ast.BinOp(new, ast.Add(), ast.Name(name, ast.Load())), count + 1
+    if count + len(given) > _FEW_MASSES:
+        yield here.instead(new, "missing term", 1.08)
 
 
 def _two_factors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

@@ -37,6 +37,7 @@ def of_forgotten(here: Here, scope: Scope, shape: Shape) -> Iterator[ProgramEdit
             yield from _with_vectors(here, scope)
         if isinstance(parent, _SET):
             yield from _energies(here, scope)
+            yield from _of_all_joints(here, scope)
         if isinstance(parent, _SET | ast.List | ast.Tuple):
             yield from _crosswise(here)
         if isinstance(op, ast.Mult) and isinstance(node, ast.Call) and called(node) == "cos":
@@ -190,6 +191,18 @@ def _energies(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
                 half = ast.BinOp(number(0.5), ast.Mult(), one)
                 term = ast.BinOp(half, ast.Mult(), ast.BinOp(rate, ast.Pow(), number(2)))
                 yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.12)
+
+
+def _of_all_joints(here: Here, scope: Scope) -> Iterator[ProgramEdit]:
+    """Half a row that nothing uses, times the squares of the rates: the rotors' energy."""
+    rows = [(name, shape) for name, shape in scope.shapes.items() if len(shape) == 1]
+    for idle, size in [one for one in rows if one[0] in scope.unused][:_FEW]:
+        for rates, shape in rows:
+            if shape == size and rates not in scope.unused:
+                squares = ast.BinOp(ast.Name(rates, ast.Load()), ast.Pow(), number(2))
+                half = ast.BinOp(number(0.5), ast.Mult(), ast.Name(idle, ast.Load()))
+                term = ast.BinOp(half, ast.MatMult(), squares)
+                yield here.instead(ast.BinOp(here.node, ast.Add(), term), "missing term", 1.1)
 
 
 def _with_vectors(here: Here, scope: Scope) -> Iterator[ProgramEdit]:

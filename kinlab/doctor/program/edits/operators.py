@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations, permutations
 from typing import Any
 
-from kinlab.doctor.bytecode.syntax import copied, names, nodes, shallow
+from kinlab.doctor.bytecode.syntax import copied, factors, names, nodes, shallow
 from kinlab.doctor.program.edits import chains
 from kinlab.doctor.program.edits.numbers.data import measured, moved_on, other_words
 from kinlab.doctor.program.edits.scope import PI, Scope, Turned, statement_of
@@ -31,6 +31,10 @@ _PAIR, _NUMBERS = 2, ast.Constant | ast.Name | ast.UnaryOp | ast.Attribute
 """Entries that are exchanged where they are moved on; what rows of numbers are made of."""
 _HALVES, _TYPED = (2, 0.5), 1.045
 """Factors that stand in front, and the cost of one that does not belong there."""
+_POWER, _OF_A_NUMBER = 1.08, 1.25
+"""Cost of another power, and of one of a number, which nobody means: ``0.25**2``."""
+_OF_ITS_MASS = 0.015
+"""What it costs less where the mass of its link stands beside it."""
 _OF_ROD = 0.04
 """What that costs more in a rod's moment of inertia, whose number is as soon mistaken."""
 _HALF = 1.03
@@ -150,7 +154,8 @@ def of_operator(here: Here, observed: Observed, index: bool) -> Iterator[Program
                 tail = ast.BinOp(left.right, ast.Div(), right)
                 yield here.instead(ast.BinOp(left.left, left.op, tail), "parentheses", 1.25)
     elif isinstance(op, ast.Pow):
-        yield here.instead(left, "power", 1.1)
+        cost = _OF_A_NUMBER if isinstance(left, ast.Constant) else _POWER
+        yield here.instead(left, "power", cost)
         if isinstance(left, ast.BinOp) and isinstance(left.op, ast.Add):
             each = [ast.BinOp(one, op, right) for one in (left.left, left.right)]
             yield here.instead(ast.BinOp(each[0], left.op, each[1]), "parentheses", 1.15)
@@ -256,6 +261,13 @@ def of_call(here: Here, scope: Scope, observed: Observed) -> Iterator[ProgramEdi
             yield here.within(node.args, len(node.args) - 1, number(k), "index", cost)
     if name == "range":
         yield from _range(here, scope)
+    for word in node.keywords:
+        if (
+            word.arg == "axis"
+            and isinstance(word.value, ast.Constant)
+            and word.value.value in (0, 1)
+        ):
+            yield here.within(word, "value", number(1 - word.value.value), "index", 1.08)
     if name == "zip" and len(cut := {_cut(one) for one in node.args}) == 1 and cut != {""}:
         wholes = [getattr(one, "value", one) for one in node.args]
         yield here.within(node, "args", wholes, "loop", 1.08)
@@ -570,6 +582,7 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
                 cost = _IN_LINE  # of what stands in one line one is taken for another
             if scope.are_halves(other, node.id):
                 cost = _HALF + _OF_ROD * _in_a_rods_moment(here)
+                cost -= _OF_ITS_MASS * _is_of_the_mass(here, other)
             if other == across and {other, node.id} <= scope.sines:
                 kind, cost = "sin/cos", 1.04
             yield here.instead(ast.Name(other, ast.Load()), kind, cost)
@@ -582,6 +595,19 @@ def of_name(here: Here, scope: Scope, observed: Observed, index: bool) -> Iterat
             if other != node.id and entries == shape[1:] and scope.shapes.get(other) != shape:
                 cost = 1.15 if _alike(other, node.id) else 1.2
                 yield here.instead(ast.Name(other, ast.Load()), "name", cost)
+
+
+def _is_of_the_mass(here: Here, name: str) -> bool:
+    """Whether a name has the number of a mass that it is multiplied with: ``m2*l1*lc2``."""
+    product: ast.expr = here.node
+    for above in reversed(here.above):
+        if not isinstance(above, ast.BinOp) or not isinstance(above.op, ast.Mult):
+            break
+        product = above
+    parts = (x.operand if isinstance(x, ast.UnaryOp) else x for x in factors(product))
+    masses = (x.id for x in parts if isinstance(x, ast.Name) and x.id[0] in "mM")
+    own = name[len(_letters(name)) :]
+    return own != "" and any(one[len(_letters(one)) :] == own for one in masses)
 
 
 def _in_a_rods_moment(here: Here) -> bool:
@@ -664,10 +690,11 @@ def of_constant(here: Here, index: bool, scope: Scope) -> Iterator[ProgramEdit]:
         for new in (value + 1, value - 1):
             power = isinstance(here.parent, ast.BinOp) and isinstance(here.parent.op, ast.Pow)
             kind = "power" if power else "number"
-            cost = 1.08 if power else 1.18
+            cost = _POWER if power else 1.18
             if power and isinstance(getattr(here.parent, "left", None), ast.Constant):
-                cost = 1.25  # 0.25**2: nobody means another power of a number
-            yield here.within(here.node, "value", new, kind, cost)
+                cost = _OF_A_NUMBER
+            if not power or new != 1:  # what has none is typed without
+                yield here.within(here.node, "value", new, kind, cost)
 
 
 def of_sequence(here: Here, observed: Observed) -> Iterator[ProgramEdit]:

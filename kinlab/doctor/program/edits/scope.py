@@ -186,9 +186,8 @@ class Scope:
                 for k in range(shape[0]):
                     entry = ast.Subscript(copied(plain), ast.Constant(k), ast.Load())
                     self.pieces.setdefault((), {}).setdefault(ast.unparse(entry), entry)
-        loads = {n.attr for one in trial.trees for n in nodes(one) if isinstance(n, ast.Attribute)
-                 and isinstance(n.ctx, ast.Load)}  # fmt: skip
-        self.idle_attributes = {name for name in self.attributes if name not in loads}
+        self.idle_attributes = {*self.attributes} - _read_attributes(trial)
+        self._of_objects_beside(_filled_attributes(trial) - _read_attributes(trial))
         self._of_its_object(parts[part])
         self._of_idle_attributes(parts[part])
         self._of_siblings(trial)
@@ -250,6 +249,24 @@ class Scope:
             return True
         entries = [one for one in nodes(node) if isinstance(one, ast.Subscript)]
         return bool(self.idle_entries) and any(ast.unparse(x) in self.idle_entries for x in entries)
+
+    def _of_objects_beside(self, idle: set[str]) -> None:
+        """What nothing reads of an object that has as much beside it: ``arm.v[i]`` of ``arm.p[i]``.
+
+        Args:
+            idle: the lists that are filled and never read.
+        """
+        for shape, known in self.pieces.items():
+            rows = [x for x in known.values() if shape and isinstance(x, ast.Subscript)]
+            for row in rows:
+                kept = row.value
+                if not isinstance(kept, ast.Attribute) or not isinstance(kept.value, ast.Name):
+                    continue
+                for name in sorted(idle):
+                    other = ast.Attribute(kept.value, name, ast.Load())
+                    entry = ast.Subscript(other, row.slice, ast.Load())
+                    self.pieces[shape].setdefault(ast.unparse(entry), entry)
+                    self.idle_entries.add(ast.unparse(entry))
 
     def _of_siblings(self, trial: Trial) -> None:
         """What other objects of the module have where one has it: ``two.m`` beside ``one.m``."""
@@ -524,6 +541,20 @@ def _appended_to(node: ast.AST) -> Iterator[ast.expr]:
     call = node.value if isinstance(node, ast.Expr) else None
     if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
         yield from [call.func.value] * (call.func.attr == "append")
+
+
+def _filled_attributes(trial: Trial) -> set[str]:
+    """The attributes at the end of which a program puts something."""
+    every = [x for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Attribute)]
+    kept = [x.value for x in every if x.attr == "append"]
+    return {x.attr for x in kept if isinstance(x, ast.Attribute)}
+
+
+def _read_attributes(trial: Trial) -> set[str]:
+    """The attributes that a program reads, but to put something at the end of them."""
+    every = [x for tree in trial.trees for x in nodes(tree) if isinstance(x, ast.Attribute)]
+    filled = {id(x.value) for x in every if x.attr == "append"}
+    return {x.attr for x in every if isinstance(x.ctx, ast.Load) and id(x) not in filled}
 
 
 def _idle_entries(trial: Trial, shapes: dict[str, Shape]) -> set[str]:

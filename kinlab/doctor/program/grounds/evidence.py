@@ -82,6 +82,7 @@ class Grounds:
         self.trusted: set[int] = set()
         self.helpers: set[int] = set()
         self.mirrored: set[int] = set()
+        self.crossing: set[int] = set()
         self._of_data: dict[str, float] = {}
         self.worked_out = {
             (part, name) for part, tree in enumerate(trial.trees) for name in _worked_out(tree)
@@ -108,11 +109,13 @@ class Grounds:
                     self.values |= {own, 1 / own} if own else set()
         self._below()
         self.helpers, self.mirrored = true_helpers(trial, observed)
+        self.crossing = {k for k in self.helpers if self._is_skew(trial.trees[k])}
 
     def against(self, edit: ProgramEdit) -> float:
         """What an edit costs more than it would where nothing is known to be right."""
         # a helper may be right for twists that are laid out in the other order
-        helps = edit.part in self.helpers and edit.kind not in _LAYOUTS
+        turned = edit.kind in _LAYOUTS and edit.part not in self.crossing
+        helps = edit.part in self.helpers and not turned
         if edit.part in self.sound or helps:
             return _SOUND
         if edit.part == DATA:
@@ -173,10 +176,11 @@ class Grounds:
             return False
         if edit.kind == "sign" and isinstance(node, ast.BinOp):
             if isinstance(node.op, ast.MatMult):  # ``R @ v`` of a vector that is used once
-                once = node.right.id if isinstance(node.right, ast.Name) else ""
-                return (edit.part, once) in self.worked_out and once in self.once
+                return self._is_once(edit.part, node.right)
             every = (x for term in summands(node) for x in factors(term))
             return any(isinstance(x, ast.Name) and x.id in self.renamed for x in every)
+        if edit.kind == "sign" and isinstance(node, ast.Call) and called(node) == "solve":
+            return self._is_once(edit.part, node.args[-1])
         targets = holder.targets if isinstance(holder, ast.Assign) else []
         if any(isinstance(one, ast.Name) and one.id in self.renamed for one in targets):
             return False  # another name for it
@@ -188,6 +192,18 @@ class Grounds:
             known -= {*_STATES} if edit.kind not in _WHOLLY else set()
             return not (known or (term and edit.kind in ("sign", "missing term")))
         return False
+
+    def _is_skew(self, tree: ast.AST) -> bool:
+        """Whether a part gives the matrix of a cross product, whose transpose is its opposite."""
+        given = (node.value for node in nodes(tree) if isinstance(node, ast.Return) and node.value)
+        seen = [self.observed.of(value) for value in given]
+        values = [x for one in seen if one is not None for x in one.values]
+        return bool(values) and all(x.shape == (3, 3) and np.array_equal(x, -x.T) for x in values)
+
+    def _is_once(self, part: int, node: ast.expr) -> bool:
+        """Whether it is a name of what is worked out before, and used here alone."""
+        name = node.id if isinstance(node, ast.Name) else ""
+        return (part, name) in self.worked_out and name in self.once
 
     def _agreed(self, tree: ast.AST) -> Iterator[ast.Name]:
         """Names that are given to a function whose arguments are called so."""

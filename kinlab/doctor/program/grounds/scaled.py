@@ -18,7 +18,13 @@ import numpy as np
 from kinlab.arrays import Array
 from kinlab.doctor.bytecode.syntax import nodes
 from kinlab.doctor.changes import table_of
-from kinlab.doctor.program.edits.numbers.data import NumberPlace, leaves_of, numbers, together
+from kinlab.doctor.program.edits.numbers.data import (
+    NumberPlace,
+    holds_more,
+    leaves_of,
+    numbers,
+    together,
+)
 from kinlab.doctor.program.edits.operators import SIZES
 from kinlab.doctor.program.grounds.called import kinds_called
 from kinlab.doctor.program.grounds.labels import Label, Labels
@@ -162,12 +168,15 @@ def _one_for_several(found: Sequence[ProgramNumber], kinds: Kinds) -> bool:
 
 
 def holds_an_arm(trial: Trial) -> bool:
-    """Whether a program asks an arm itself, or this package, where no other can be put."""
+    """Whether a program asks an arm itself, or this package, where no other can be put.
+
+    Nor can it be where an array has too many numbers.
+    """
     used = {name for tree in trial.trees for name in named_in(tree)}
     held = [value for name, value in trial.program.space.items() if name in used]
     kept = [attributes(one) for one in (*held, *trial.program.bound)]
     held += [x for of in kept for name, x in of.items() if name in used]
-    return any(home(x) in ("kinlab", "pinocchio") for x in held)
+    return any(home(x) in ("kinlab", "pinocchio") for x in held) or holds_more(trial)
 
 
 def twisted_by(table: DHTable, found: Sequence[ProgramNumber]) -> float:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import islice, product
+from itertools import combinations_with_replacement, islice, product
 from typing import Any
 
 import numpy as np
@@ -28,8 +28,8 @@ _ROWS = 4
 """Rows that several columns of the table may make of one."""
 _TOLD, _MOVING = 3, 2
 """Numbers of a column that tell which of the table's it is; how many may be no numbers."""
-_SEVERAL = 0.01
-"""What it costs more where several numbers of a row are off."""
+_ALONE = 0.01
+"""What a number of a row costs more where others of it are off too."""
 _END, _DECIMALS = 1.0, 15
 """Cost of the arm's base or tool for the identity; decimals that its numbers have."""
 _PARTS = 12
@@ -61,7 +61,10 @@ def of_table(trial: Trial, observed: Observed, robot: Any) -> Iterator[ProgramEd
         whole = [found[k] for key, found in columns.items() if key[0] == whose and k in found]
         several = [*islice(product(*cells.values()), _ROWS)] if len(cells) > 1 else []
         yield from (_row(k, some, whole) for some in several)
-        yield from (cell.edit(right) for some in cells.values() for cell, right in some)
+        more = _ALONE if several else 0.0
+        for cell, right in (one for some in cells.values() for one in some):
+            edit = cell.edit(right)
+            yield replace(edit, cost=edit.cost + more)
 
 
 def _ends(trial: Trial, table: DHTable) -> Iterator[ProgramEdit]:
@@ -127,7 +130,8 @@ class _Cell:
             return self.place.edit(right, kind, _COST)
         change = FieldChange(self.holder, self.field, typed(right))
         both = (self.value, right)
-        return ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
+        edit = ProgramEdit(self.part, (change,), kind, _COST, self.node, numbers=both)
+        return replace(edit, of_the_arm=True)
 
 
 def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) -> ProgramEdit:
@@ -139,12 +143,13 @@ def _row(k: int, some: Sequence[tuple[_Cell, float]], whole: Sequence[_Cell]) ->
     kind = "entries swapped" if sorted(old) == sorted(new) else "number"
     if first.place is None:
         changes = [change for cell, right in some for change in cell.edit(right).changes]
-        return ProgramEdit(first.part, tuple(changes), kind, _COST + _SEVERAL, first.node)
+        return ProgramEdit(first.part, tuple(changes), kind, _COST, first.node)
     both = [(cell.place, right) for cell, right in some if cell.place is not None]
     changes = [change for edit in together(both) for change in edit.changes]
     told = (", ".join(f"{x:.6g}" for x in old), ", ".join(f"{x:.6g}" for x in new))
-    cost, node = _COST + _SEVERAL, first.place.node
-    return ProgramEdit(DATA, tuple(changes), kind, cost, node, (k,), exchanged=told)
+    cost, node = _COST, first.place.node
+    edit = ProgramEdit(DATA, tuple(changes), kind, cost, node, (k,), exchanged=told)
+    return replace(edit, of_the_arm=True)
 
 
 def typed(value: float) -> ast.expr:
@@ -280,21 +285,25 @@ def _cells(rows: list[ast.expr], k: int, row: ast.expr) -> Iterator[tuple[Any, A
 
 def _wrong(values: Sequence[float], columns: Sequence[Array]) -> Iterator[tuple[int, float]]:
     """The numbers that are not as in a column of which most others are, and are not all alike."""
-    for column in columns:
-        same = [_same(float(x), y) for x, y in zip(column, values, strict=True)]
+    alike = [[_same(float(x), y) for x, y in zip(c, values, strict=True)] for c in columns]
+    if len({*values}) > 1 and any(map(all, alike)):
+        return
+    for column, same in zip(columns, alike, strict=True):
         apart = {float(x) for x, good in zip(column, same, strict=True) if good}
-        if not all(same) and 2 * sum(same) >= len(same):
+        if 2 * sum(same) >= len(same):
             for k in np.flatnonzero(np.logical_not(same)):
                 if column[k] or len(apart) > 1:
                     yield int(k), float(column[k])
 
 
 def _columns(table: DHTable) -> list[Array]:
-    """The columns of a table: its lengths, angles, masses, centres of mass."""
+    """The columns of a table: its lengths, angles, masses, centres and moments of inertia."""
     links = table.links
     plain = [[getattr(k, name) for k in links] for name in ("a", "alpha", "d", "theta", "mass")]
     centres = np.array([k.com for k in links], dtype=float).T
-    return [np.array(column, dtype=float) for column in (*plain, *centres)]
+    tensors = np.array([k.inertia for k in links], dtype=float)
+    moments = [tensors[:, i, j] for i, j in combinations_with_replacement(range(3), 2)]
+    return [np.array(column, dtype=float) for column in (*plain, *centres, *moments)]
 
 
 def _same(one: float, other: float) -> bool:

@@ -18,7 +18,7 @@ from kinlab.doctor.program.places import DATA, ProgramEdit, places
 from kinlab.doctor.program.trial import FieldChange, Trial, is_data
 
 _RIGHT_ANGLES = (0.0, pi / 2, -pi / 2)
-_TABLE = 60
+_TABLE = 100
 """Numbers of an array of which any may be wrong."""
 _ROWS = 8
 """Rows of a table, and numbers of a row, of which any two may have been exchanged."""
@@ -345,6 +345,16 @@ def measured(holder: ast.AST) -> bool:
     """A list that holds numbers with a point: a 0 in it is one of them, and no index."""
     return isinstance(holder, ast.List | ast.Tuple) and any(
         isinstance(one, ast.Constant) and isinstance(one.value, float) for one in holder.elts
+    )
+
+
+def holds_more(trial: Trial) -> bool:
+    """Whether the data hold an array that is too large for its numbers to be looked at."""
+    held = [trial.space[name] for name in trial.program.data]
+    held += [one for some in held if isinstance(some, list | tuple) for one in some]
+    held += [one for some in held if isinstance(some, dict) for one in some.values()]
+    return any(
+        isinstance(one, np.ndarray) and one.dtype.kind == "f" and one.size > _TABLE for one in held
     )
 
 
